@@ -1,34 +1,25 @@
-"""Groups of an outcome that every fidelity fills in the same way: provenance, motion, coefficients, heat."""
+"""Groups of an outcome that every fidelity fills in the same way: motion, coefficients, heat."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import replace
 from math import cos, hypot, inf, sin
 
 import rigid
-from fem_impact.arrays import Array
 from fem_impact.case.case import Case
 from fem_impact.case.effects.heating import halves
 from fem_impact.outcome.groups import (
     ArmCoefficients,
     BarrierMotion,
-    EffectChoice,
     Heat,
-    Provenance,
     Restitution,
     RodMotion,
-    Validity,
 )
 from fem_impact.outcome.keys import Num, Unknown, known, unknown
-from fem_impact.outcome.record import installed_versions, utc_now
-from fem_impact.physics.contact import fall
 from fem_impact.physics.flash import Flash, flash_bound
 from fem_impact.run.tests import tests_of
 from fem_impact.scene.inputs import melting
-from fem_impact.scene.write import digest
 
-NO_TARGET = Unknown("the scene gives a mesh, not the error it allows")
 NO_TABLE = "the scene repeats no measured set, so no table gives its arms"
 MASSIVE = Unknown("the barrier is massive")
 UPRIGHT = Unknown("the barrier does not turn")
@@ -42,56 +33,7 @@ HARD = "neither body yields, so that no hardness limits the pressure of a touchi
 UNDETERMINED = Unknown("the contact point does not approach, or no moment acts about the mass centre: 0 / 0")
 NO_PUSH = Unknown("gravity has drawn the rod to the barrier more than that has pushed it away")
 RESIDUAL_LIMIT = 1e-4  # of E_0: above it a run failed
-GRAVITY_TOLD, GRAVITY_RULES = 0.01, 0.5  # speed gained by falling over the approach: told, and too much
 ROUND_OFF = 1e-6  # a moment impulse over that of the normal impulse at arm d_d: below it there is none
-
-
-def provenance(
-    case: Case,
-    effect_choices: tuple[EffectChoice, ...] | Unknown,
-    without: Iterable[str] = (),
-) -> Provenance:
-    """Return where a record comes from; ``without`` are effects that the fidelity does not know."""
-    return Provenance(
-        fidelity=case.fidelity,
-        scene_id=case.scene.id,
-        scene_title=case.scene.title,
-        scene_digest=digest(case.scene),
-        created_utc=utc_now(),
-        versions=installed_versions(),
-        effects=tuple(name for name in case.active if name not in without),
-        effect_choices=effect_choices,
-    )
-
-
-def validity(
-    case: Case,
-    finished: bool,
-    stopped_because: str,
-    V_n: float,
-    meshes: str,
-    assumptions: Iterable[str] = (),
-    warnings: Iterable[str] = (),
-) -> Validity:
-    """Return how far to trust a record of one run that ends with a normal velocity, m/s.
-
-    ``meshes`` says why it has no limit of two meshes.
-    """
-    return Validity(
-        finished=finished,
-        stopped_because=stopped_because + (strikes_again(V_n) if finished else ""),
-        assumptions=tuple(assumptions),
-        outside=case.outside,
-        warnings=tuple(warnings),
-        accuracy_target=NO_TARGET,
-        accuracy_setting=NO_TARGET,
-        expected_error=NO_TARGET,
-        expected_wall=NO_TARGET,
-        achieved_error=NO_TARGET,
-        achieved_wall=NO_TARGET,
-        mesh_limit=Unknown(meshes),
-        mesh_band=Unknown(meshes),
-    )
 
 
 def comes_down(V_n: float) -> bool:
@@ -104,42 +46,6 @@ def strikes_again(V_n: float) -> str:
     if not comes_down(V_n):
         return ""
     return f" The mass centre still comes down at {-V_n:.3g} m/s, so that the rod strikes again later."
-
-
-def open_ledger(share: float) -> str:
-    """Return why a run whose ledger misses a share of E_0 failed, nothing where it closes."""
-    if abs(share) <= RESIDUAL_LIMIT:
-        return ""
-    limit = f"more than {RESIDUAL_LIMIT:g}: do not use this run."
-    return f"The energy ledger misses {abs(share):.1e} of E_0, {limit}"
-
-
-def gravity_warning(case: Case, intervals: Array) -> list[str]:
-    """Warn where gravity acts on the rod for so long while it touches that the result moves."""
-    speed, share = _borne(case, intervals)
-    if not GRAVITY_TOLD < share <= GRAVITY_RULES:
-        return []
-    why = "The contact bears that too, so that V_n, e and E_r come out higher by about as much."
-    return [f"{_gained(speed, share)}. {why}"]
-
-
-def too_slow(case: Case, intervals: Array) -> str:
-    """Return why an impact in which gravity rules failed, nothing where it does not."""
-    speed, share = _borne(case, intervals)
-    remedy = "it is no impact any more. Give a higher speed, or leave out the gravity effect."
-    return f"{_gained(speed, share)}: {remedy}" if share > GRAVITY_RULES else ""
-
-
-def _borne(case: Case, intervals: Array) -> tuple[float, float]:
-    """Return the speed, m/s, that gravity gives the rod in contact, and its normal part over the approach."""
-    speed = fall(case.slots.gravity, intervals[-1, 1], intervals)
-    return speed, speed * cos(case.scene.impact.angle) / case.contact.approach
-
-
-def _gained(speed: float, share: float) -> str:
-    return (
-        f"Gravity gives the rod {speed * 1e3:.3g} mm/s while it touches, {100 * share:.2g} % of its approach"
-    )
 
 
 def motion(case: Case, V_n: float, V_t: float, Omega: float, mass: float, k2: float) -> RodMotion:

@@ -11,36 +11,15 @@ import numpy as np
 from fem_impact.case.case import Case
 from fem_impact.case.measured import reduced_table
 from fem_impact.modal.impact import ModalResult, solve
-from fem_impact.outcome.groups import Contact, ContactInterval, Energy, Heat, Markers, RunCost
+from fem_impact.outcome.groups import Energy, Heat, Markers, RunCost
 from fem_impact.outcome.keys import Num, Unknown, unknown
 from fem_impact.outcome.record import Outcome
-from fem_impact.physics.contact import between
 from fem_impact.progress import Progress
-from fem_impact.run.common import (
-    CUT_OFF,
-    HARDER,
-    MASSIVE,
-    UNBENT,
-    angular_momentum_error,
-    apart,
-    barrier_motion,
-    comes_down,
-    gravity_warning,
-    momentum_error,
-    motion,
-    open_ledger,
-    plastic_shares,
-    provenance,
-    restitution,
-    rod_flows,
-    too_slow,
-    validity,
-)
-from fem_impact.run.doubts import doubts
-from fem_impact.run.resolution import without_end
+from fem_impact.run.assemble import ImpactEnd, Reduction
+from fem_impact.run.common import HARDER, MASSIVE, RESIDUAL_LIMIT, UNBENT, apart, plastic_shares, rod_flows
 
 HALVINGS = 2  # of the time step
-WITHOUT = ("rate-hardening", "machined-skin", "radiation", "material-damping", "contact-heating")
+OMITTED = ("rate-hardening", "machined-skin", "radiation", "material-damping", "contact-heating")
 CHOICES = Unknown("effects are weighed for the finite elements; `fem-impact check` lists them")
 NOT_MESHED = Unknown("the reduced model has no elements")
 NO_STRESS = Unknown("the reduced model does not compute residual stress")
@@ -60,63 +39,44 @@ def closed(
     """
     for halved in range(HALVINGS + 1):
         result = solve(case, progress, recorded, 0.5**halved)
-        if not open_ledger(result.residual / result.E_0):
+        if abs(result.residual / result.E_0) <= RESIDUAL_LIMIT:
             break
     return result
 
 
 def reduce(case: Case, result: ModalResult) -> Outcome:
     """Return the Outcome of a modal impact."""
-    rod, contacts = result.rod, result.contacts[:, :2]
-    moved = motion(case, result.V_n, result.V_t, result.Omega, rod.mass, rod.k2)
-    fallen = (case.slots.gravity or 0.0) * between(contacts)
-    base = result.V_bn, result.V_bt
-    struck = barrier_motion(case, *base, momentum_error(case, moved, *base, fallen))
-    if case.scene.barrier.inertia is not None:
-        error = angular_momentum_error(case, moved, struck, result.Omega_b, apart(case), result.away)
-        struck = replace(struck, Omega_b=result.Omega_b, angular_momentum_error=error)
-    coefficients, energy = restitution(case, moved, struck, fallen), _energy(case, result)
-    origin = provenance(case, CHOICES, WITHOUT)
-    failed = open_ledger(result.residual / result.E_0) or too_slow(case, contacts)
-    cut = failed or ("" if result.separated else result.reason)
-    outcome = Outcome(
-        provenance=origin,
-        validity=validity(
-            case,
-            result.finished and not failed,
-            failed or result.reason,
-            result.V_n - result.V_bn,
-            "the reduced model has no second mesh",
-            (
-                *ASSUMPTIONS,
-                *_dent(case),
-                *([LEVEL] if case.scene.barrier.inertia else []),
-                *beside_solid(case),
-            ),
-            [
-                *([] if cut else doubts(origin, moved, coefficients, energy)),
-                *gravity_warning(case, contacts),
-                *_tilted(result),
-                *case.unknown,
-            ],
-        ),
-        motion=moved,
-        barrier=struck,
-        restitution=coefficients,
-        energy=energy,
-        contact=_contact(result),
-        heat=unknown(Heat, "heat is followed on the finite elements only"),
-        cost=_cost(result),
+    barrier, base = case.scene.barrier, (result.V_bn, result.V_bt)
+    turns = barrier.inertia is not None
+    end = ImpactEnd(
+        V_n=result.V_n,
+        V_t=result.V_t,
+        Omega=result.Omega,
+        mass=result.rod.mass,
+        k2=result.rod.k2,
+        base=base,
+        leaving=result.V_n - result.V_bn,
+        contacts=result.contacts,
+        missing=result.residual / result.E_0,
+        finished=result.finished,
+        separated=result.separated,
+        reason=result.reason,
+        turn=(result.Omega_b, apart(case), result.away) if turns else None,
     )
-    return without_end(outcome, cut) if cut else outcome
-
-
-def _tilted(result: ModalResult) -> list[str]:
-    """Warn where a barrier turns so far in contact that its surface counts as inclined."""
     turned = abs(result.Omega_b) * float(result.contacts[-1, 1])
-    if turned <= TILT_TOLD:
-        return []
-    return [f"The barrier turns by up to {turned:.2g} rad in contact, but its surface is taken as level."]
+    tilted = f"The barrier turns by up to {turned:.2g} rad in contact, but its surface is taken as level."
+    return Reduction.of(case, end).outcome(
+        _energy(case, result),
+        unknown(Markers, "the camera's markers are followed on the finite elements only"),
+        unknown(Heat, "heat is followed on the finite elements only"),
+        _cost(result),
+        peak_force=result.force,
+        choices=CHOICES,
+        unmeshed="the reduced model has no second mesh",
+        omitted=OMITTED,
+        assumptions=(*ASSUMPTIONS, *_dent(case), *([LEVEL] if turns else []), *beside_solid(case)),
+        last_warnings=(*([tilted] if turned > TILT_TOLD else []), *case.unknown),
+    )
 
 
 def _energy(case: Case, result: ModalResult) -> Energy:
@@ -148,19 +108,6 @@ def _energy(case: Case, result: ModalResult) -> Energy:
         gravity=result.fallen / E_0 if case.slots.gravity else Unknown("the gravity effect is off"),
         residual=result.residual / E_0,
         added_mass=NOT_MESHED,
-    )
-
-
-def _contact(result: ModalResult) -> Contact:
-    rows = (map(float, row) for row in result.contacts)
-    return Contact(
-        intervals=tuple(
-            ContactInterval(start=start, end=end, impulse_n=normal, impulse_t=tangential)
-            for start, end, normal, tangential in rows
-        ),
-        strikes_again=comes_down(result.V_n - result.V_bn) if result.finished else CUT_OFF,
-        peak_force=result.force,
-        markers=unknown(Markers, "the camera's markers are followed on the finite elements only"),
     )
 
 

@@ -10,26 +10,14 @@ from typing import TYPE_CHECKING
 
 import rigid
 from fem_impact.case.effects.heating import halves
-from fem_impact.outcome.groups import Contact, Energy, Heat, Markers, RodMotion, RunCost
+from fem_impact.outcome.groups import Energy, Heat, Markers, RodMotion, RunCost
 from fem_impact.outcome.keys import Unknown, known, unknown
 from fem_impact.outcome.record import Outcome
 from fem_impact.physics.contact_law import contact_law
 from fem_impact.physics.contact_law import restitution as thornton
 from fem_impact.physics.flash import closed_form
-from fem_impact.run.common import (
-    MASSIVE,
-    after,
-    barrier_motion,
-    comes_down,
-    heat,
-    momentum_error,
-    motion,
-    plastic_shares,
-    provenance,
-    restitution,
-    validity,
-)
-from fem_impact.run.doubts import doubts
+from fem_impact.run.assemble import ImpactEnd, Reduction
+from fem_impact.run.common import MASSIVE, after, heat, plastic_shares
 
 if TYPE_CHECKING:
     from fem_impact.case.case import Case
@@ -42,7 +30,7 @@ MEAN_HEAT = (
     "temperature rise was 0.3 to 1.3 times that of finite elements."
 )
 UNKNOWN = "a rigid rod in an impact without duration does not know it"
-WITHOUT = (
+OMITTED = (
     *("vibration", "rate-hardening", "machined-skin", "radiation", "plate-bending", "gravity"),
     "large-rotation",
     "material-damping",
@@ -60,39 +48,36 @@ def rigid_outcome(case: Case) -> Outcome:
     path, wall, cpu = _timed_path(case.contact, e)
     V_n, V_t, Omega = (float(velocity) for velocity in path.motion)
     base = _barrier_gain(case, V_n, V_t)
-    moved = motion(case, V_n + base[0], V_t + base[1], Omega, rod.mass, rod.k2)
-    struck = barrier_motion(case, *base, momentum_error(case, moved, *base))
-    energy = _energy(case, path, moved, base)
-    origin, coefficients = provenance(case, Unknown(UNKNOWN), WITHOUT), restitution(case, moved, struck)
-    warnings = (*doubts(origin, moved, coefficients, energy), *case.unknown)
-    return Outcome(
-        provenance=origin,
-        validity=validity(
-            case,
-            True,
-            "A rigid impact is over at once.",
-            V_n,
-            UNKNOWN,
-            assumptions=(
-                source,
-                *ASSUMPTIONS,
-                *([STIFF_PLATE] if case.slots.plate else []),
-                *([MEAN_HEAT] if case.slots.heat else []),
-            ),
-            warnings=warnings,
+    reduction = Reduction.of(
+        case,
+        ImpactEnd(
+            V_n=V_n + base[0],
+            V_t=V_t + base[1],
+            Omega=Omega,
+            mass=rod.mass,
+            k2=rod.k2,
+            base=base,
+            leaving=V_n,
+            contacts=None,
+            missing=0.0,
+            finished=True,
+            separated=True,
+            reason="A rigid impact is over at once.",
         ),
-        motion=moved,
-        barrier=struck,
-        restitution=coefficients,
-        energy=energy,
-        contact=Contact(
-            intervals=Unknown(UNKNOWN),
-            strikes_again=comes_down(V_n),
-            peak_force=Unknown(UNKNOWN),
-            markers=unknown(Markers, UNKNOWN),
-        ),
-        heat=_heat(case, known(energy.friction) * energy.E_0),
-        cost=replace(unknown(RunCost, UNKNOWN), wall=wall, cpu=cpu),
+    )
+    energy = _energy(case, path, reduction.motion, base)
+    plate, heated = [STIFF_PLATE] if case.slots.plate else [], [MEAN_HEAT] if case.slots.heat else []
+    return reduction.outcome(
+        energy,
+        unknown(Markers, UNKNOWN),
+        _heat(case, known(energy.friction) * energy.E_0),
+        replace(unknown(RunCost, UNKNOWN), wall=wall, cpu=cpu),
+        peak_force=Unknown(UNKNOWN),
+        choices=Unknown(UNKNOWN),
+        unmeshed=UNKNOWN,
+        omitted=OMITTED,
+        assumptions=(source, *ASSUMPTIONS, *plate, *heated),
+        last_warnings=case.unknown,
     )
 
 

@@ -10,45 +10,17 @@ import numpy as np
 import rigid
 from fem_impact.case.effects.heating import halves
 from fem_impact.errors import RunError
-from fem_impact.outcome.groups import (
-    BarrierMotion,
-    Contact,
-    ContactInterval,
-    EffectChoice,
-    Energy,
-    Heat,
-    RodMotion,
-    RunCost,
-    Validity,
-)
+from fem_impact.outcome.groups import Energy, Heat, RodMotion, RunCost
 from fem_impact.outcome.keys import Num, Unknown, known, unknown
-from fem_impact.outcome.record import Outcome
-from fem_impact.physics.contact import between, fall
+from fem_impact.physics.contact import fall
 from fem_impact.physics.flash import flash
-from fem_impact.run.common import (
-    CUT_OFF,
-    MASSIVE,
-    UNBENT,
-    after,
-    angular_momentum_error,
-    barrier_motion,
-    comes_down,
-    gravity_warning,
-    heat,
-    momentum_error,
-    motion,
-    open_ledger,
-    provenance,
-    relative,
-    restitution,
-    too_slow,
-    validity,
-)
-from fem_impact.run.doubts import doubts
+from fem_impact.run.assemble import ImpactEnd, Reduction
+from fem_impact.run.common import CUT_OFF, MASSIVE, UNBENT, after, heat
 from fem_impact.run.markers import replay
-from fem_impact.run.resolution import unresolved, without, without_end
+from fem_impact.run.resolution import unresolved
 
 if TYPE_CHECKING:
+    from fem_impact.outcome.record import Outcome
     from fem_impact.solid.run import SolidResult
 
 
@@ -71,57 +43,42 @@ def reduce(result: SolidResult) -> Outcome:
     if not result.model.book.intervals:
         past = f"{result.time * 1e6:.3g} us, {result.steps} steps"
         raise RunError(f"There was no contact in {past}. {result.reason}")
-    case, moved = result.case, _motion(result)
-    fallen = (case.slots.gravity or 0.0) * between(result.model.book.table[:, :2])
-    error = momentum_error(case, moved, *result.base, fallen)
-    struck = barrier_motion(case, *result.base, error)
-    if (turn := result.turned) is not None:
-        error = angular_momentum_error(case, moved, struck, *turn)
-        struck = replace(struck, Omega_b=turn.spin, angular_momentum_error=error)
-    coefficients, energy = restitution(case, moved, struck, fallen), _energy(result, moved)
-    origin = provenance(case, _choices(result))
-    reason = unresolved(result)
-    withheld = bool(reason) and case.scene.accuracy.unresolved == "withhold"
-    failed = open_ledger(result.worst / result.E_0) or too_slow(case, result.model.book.table[:, :2])
-    cut = failed or ("" if result.separated else result.reason)
-    doubted = [] if withheld or cut else doubts(origin, moved, coefficients, energy)
-    outcome = Outcome(
-        provenance=origin,
-        validity=_validity(result, failed, relative(moved, struck)[0], doubted),
-        motion=moved,
-        barrier=struck,
-        restitution=coefficients,
-        energy=energy,
-        contact=_contact(result, moved, struck),
-        heat=_heat(result, coefficients.edge.E_lt, energy.vibration),
-        cost=_cost(result),
+    case, m, contacts = result.case, result.motion, result.model.book.table
+    # what gravity gave the rod in contact and after it is taken out
+    fallen, alpha = fall(case.slots.gravity, result.time, contacts[:, :2]), case.scene.impact.angle
+    V_n = m.V_n + fallen * np.cos(alpha)
+    end = ImpactEnd(
+        V_n=V_n,
+        V_t=m.V_t + fallen * np.sin(alpha),
+        Omega=m.Omega,
+        mass=m.mass,
+        k2=m.inertia / m.mass,
+        base=result.base,
+        leaving=float(V_n) - result.base[0],
+        contacts=contacts,
+        missing=result.worst / result.E_0,
+        finished=result.finished,
+        separated=result.separated,
+        reason=result.reason,
+        turn=result.turned,
     )
-    outcome = without(outcome, Unknown(reason)) if withheld else outcome
-    return without_end(outcome, cut) if cut else outcome
-
-
-def _choices(result: SolidResult) -> tuple[EffectChoice, ...]:
-    """Return the choice of effects; measured shares of the run time take the place of expected ones."""
-    return tuple(
-        replace(choice, share=result.shares.get(choice.name, choice.share)) for choice in result.case.choices
+    reduction = Reduction.of(case, end)
+    energy, narrow = _energy(result, reduction.motion), unresolved(result)
+    doubtful = [narrow] if narrow else []
+    # measured shares of the run time take the place of expected ones
+    choices = (replace(choice, share=result.shares.get(choice.name, choice.share)) for choice in case.choices)
+    return reduction.outcome(
+        energy,
+        replay(result, *after(reduction.motion)[:2]),
+        _heat(result, reduction.restitution.edge.E_lt, energy.vibration),
+        _cost(result),
+        peak_force=result.peak_force,
+        choices=tuple(choices),
+        unmeshed=ONE_MESH,
+        first_warnings=(*doubtful, *result.warnings, *_ringing(result), *_untimed(result)),
+        last_warnings=case.warnings,
+        withheld=narrow if case.scene.accuracy.unresolved == "withhold" else "",
     )
-
-
-def _validity(result: SolidResult, failed: str, V_n: float, doubts: list[str]) -> Validity:
-    case, contacts = result.case, result.model.book.table[:, :2]
-    return validity(
-        case,
-        result.finished and not failed,
-        failed or result.reason,
-        V_n,
-        ONE_MESH,
-        warnings=[*_doubts(result), *doubts, *gravity_warning(case, contacts), *case.warnings],
-    )
-
-
-def _doubts(result: SolidResult) -> list[str]:
-    told = (unresolved(result), *result.warnings, *_ringing(result), *_untimed(result))
-    return [sentence for sentence in told if sentence]
 
 
 def _ringing(result: SolidResult) -> list[str]:
@@ -146,14 +103,6 @@ def _untimed(result: SolidResult) -> list[str]:
         f"The share of the run time of {', '.join(names)} is not known: it was too short for the processor's "
         "clock beside the rest."
     ]
-
-
-def _motion(result: SolidResult) -> RodMotion:
-    """Return velocities before and after; what gravity gave the rod in contact and after it is taken out."""
-    case, m, alpha = result.case, result.motion, result.case.scene.impact.angle
-    fallen = fall(case.slots.gravity, result.time, result.model.book.table[:, :2])
-    V_n, V_t = m.V_n + fallen * np.cos(alpha), m.V_t + fallen * np.sin(alpha)
-    return motion(case, V_n, V_t, m.Omega, m.mass, m.inertia / m.mass)
 
 
 def _energy(result: SolidResult, moved: RodMotion) -> Energy:
@@ -222,19 +171,6 @@ def _heat(result: SolidResult, E_lt: Num, vibration: Num) -> Heat:
     peaks = (float(power.max()), float(flux.max()), float(patch.max()))
     less = vibration if isinstance(vibration, Unknown) else known(E_lt) - vibration
     return heat(result.case, found, *peaks, less)
-
-
-def _contact(result: SolidResult, moved: RodMotion, struck: BarrierMotion) -> Contact:
-    intervals = (
-        ContactInterval(start=i.start, end=i.end, impulse_n=float(i.impulse_n), impulse_t=float(i.impulse_t))
-        for i in result.model.book.intervals
-    )
-    return Contact(
-        intervals=tuple(intervals),
-        strikes_again=comes_down(relative(moved, struck)[0]) if result.finished else CUT_OFF,
-        peak_force=result.peak_force,
-        markers=replay(result, *after(moved)[:2]),
-    )
 
 
 def _cost(result: SolidResult) -> RunCost:

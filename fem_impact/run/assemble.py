@@ -1,0 +1,232 @@
+"""The outcome of an impact from how it ended, the same for every fidelity, and how far to trust it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from math import cos
+from typing import Self
+
+from fem_impact.arrays import Array
+from fem_impact.case.case import Case
+from fem_impact.outcome.groups import (
+    BarrierMotion,
+    Contact,
+    ContactInterval,
+    EffectChoice,
+    Energy,
+    Heat,
+    Markers,
+    Provenance,
+    Restitution,
+    RodMotion,
+    RunCost,
+    Validity,
+)
+from fem_impact.outcome.keys import Num, Unknown
+from fem_impact.outcome.record import Outcome, installed_versions, utc_now
+from fem_impact.physics.contact import between, fall
+from fem_impact.run.common import (
+    CUT_OFF,
+    RESIDUAL_LIMIT,
+    angular_momentum_error,
+    barrier_motion,
+    comes_down,
+    momentum_error,
+    motion,
+    restitution,
+    strikes_again,
+)
+from fem_impact.run.doubts import doubts
+from fem_impact.run.resolution import without, without_end
+from fem_impact.scene.write import digest
+
+NO_TARGET = Unknown("the scene gives a mesh, not the error it allows")
+GRAVITY_TOLD, GRAVITY_RULES = 0.01, 0.5  # speed gained by falling over the approach: told, and too much
+
+
+@dataclass(frozen=True, slots=True)
+class ImpactEnd:
+    """How an impact ended.
+
+    Attributes
+    ----------
+    V_n, V_t, Omega : of the rod, m/s, rad/s, what gravity gave it removed, as seen from the barrier before
+    mass, k2 : of the rod, kg, m2
+    base : velocity (n, t), m/s, that the impact gave the barrier
+    leaving : normal velocity of the rod as seen from the barrier after the impact, m/s
+    contacts : (m, 4) start and end, s, and impulses along n and t, N s, of each; None where it takes no time
+    missing : what the energy ledger misses, of E_0
+    finished : whether no later contact is possible; separated : whether the contact has ended
+    reason : why the computation ended, a sentence
+    turn : of a barrier that turns: its spin, rad/s, and the rod's mass centre from its own (n, t), m, before
+        and after
+    """
+
+    V_n: float
+    V_t: float
+    Omega: float
+    mass: float
+    k2: float
+    base: tuple[float, float]
+    leaving: float
+    contacts: Array | None
+    missing: float
+    finished: bool
+    separated: bool
+    reason: str
+    turn: tuple[float, tuple[float, float], tuple[float, float]] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Reduction:
+    """An impact's end, with the motions and coefficients that follow from it."""
+
+    case: Case
+    end: ImpactEnd
+    motion: RodMotion
+    barrier: BarrierMotion
+    restitution: Restitution
+
+    @classmethod
+    def of(cls, case: Case, end: ImpactEnd) -> Self:
+        """Return the motions, and the coefficients of the relative motion."""
+        rod = motion(case, end.V_n, end.V_t, end.Omega, end.mass, end.k2)
+        flight = 0.0 if end.contacts is None else between(end.contacts[:, :2])
+        fallen = (case.slots.gravity or 0.0) * flight
+        barrier = barrier_motion(case, *end.base, momentum_error(case, rod, *end.base, fallen))
+        if end.turn is not None:
+            error = angular_momentum_error(case, rod, barrier, *end.turn)
+            barrier = replace(barrier, Omega_b=end.turn[0], angular_momentum_error=error)
+        return cls(case, end, rod, barrier, restitution(case, rod, barrier, fallen))
+
+    def outcome(
+        self,
+        energy: Energy,
+        markers: Markers,
+        heat: Heat,
+        cost: RunCost,
+        *,
+        peak_force: Num,
+        choices: tuple[EffectChoice, ...] | Unknown,
+        unmeshed: str,
+        omitted: Iterable[str] = (),
+        assumptions: Iterable[str] = (),
+        first_warnings: Iterable[str] = (),
+        last_warnings: Iterable[str] = (),
+        withheld: str = "",
+    ) -> Outcome:
+        """Return the outcome; what a failed, cut off or unresolved run does not know is unknown there.
+
+        Parameters
+        ----------
+        choices : of effects, or why there are none; omitted : effects that the fidelity does not know
+        unmeshed : why there is no limit of two meshes
+        first_warnings, last_warnings : sentences before and after those on e, mu, E_r and gravity
+        withheld : why the contact counts as not resolved, empty where it does not
+        """
+        case, end = self.case, self.end
+        gravity, ruled = _gravity(case, end.contacts)
+        failed = _open_ledger(end.missing) or ruled
+        cut = failed or ("" if end.separated else end.reason)
+        origin = _provenance(case, choices, omitted)
+        doubted = [] if withheld or cut else doubts(origin, self.motion, self.restitution, energy)
+        warnings = (*first_warnings, *doubted, *gravity, *last_warnings)
+        outcome = Outcome(
+            provenance=origin,
+            validity=_validity(case, end, failed, unmeshed, assumptions, warnings),
+            motion=self.motion,
+            barrier=self.barrier,
+            restitution=self.restitution,
+            energy=energy,
+            contact=Contact(
+                intervals=_intervals(end.contacts, unmeshed),
+                strikes_again=comes_down(end.leaving) if end.finished else CUT_OFF,
+                peak_force=peak_force,
+                markers=markers,
+            ),
+            heat=heat,
+            cost=cost,
+        )
+        outcome = without(outcome, Unknown(withheld)) if withheld else outcome
+        return without_end(outcome, cut) if cut else outcome
+
+
+def _provenance(
+    case: Case, choices: tuple[EffectChoice, ...] | Unknown, omitted: Iterable[str]
+) -> Provenance:
+    return Provenance(
+        fidelity=case.fidelity,
+        scene_id=case.scene.id,
+        scene_title=case.scene.title,
+        scene_digest=digest(case.scene),
+        created_utc=utc_now(),
+        versions=installed_versions(),
+        effects=tuple(name for name in case.active if name not in omitted),
+        effect_choices=choices,
+    )
+
+
+def _validity(
+    case: Case,
+    end: ImpactEnd,
+    failed: str,
+    unmeshed: str,
+    assumptions: Iterable[str],
+    warnings: Iterable[str],
+) -> Validity:
+    """Return how far to trust one run, which may have ``failed`` for a reason."""
+    finished = end.finished and not failed
+    return Validity(
+        finished=finished,
+        stopped_because=(failed or end.reason) + (strikes_again(end.leaving) if finished else ""),
+        assumptions=tuple(assumptions),
+        outside=case.outside,
+        warnings=tuple(warnings),
+        accuracy_target=NO_TARGET,
+        accuracy_setting=NO_TARGET,
+        expected_error=NO_TARGET,
+        expected_wall=NO_TARGET,
+        achieved_error=NO_TARGET,
+        achieved_wall=NO_TARGET,
+        mesh_limit=Unknown(unmeshed),
+        mesh_band=Unknown(unmeshed),
+    )
+
+
+def _intervals(contacts: Array | None, why: str) -> tuple[ContactInterval, ...] | Unknown:
+    if contacts is None:
+        return Unknown(why)
+    return tuple(
+        ContactInterval(start=start, end=end, impulse_n=normal, impulse_t=tangential)
+        for start, end, normal, tangential in contacts.tolist()
+    )
+
+
+def _open_ledger(share: float) -> str:
+    """Return why a run whose ledger misses a share of E_0 failed, nothing where it closes."""
+    if abs(share) <= RESIDUAL_LIMIT:
+        return ""
+    limit = f"more than {RESIDUAL_LIMIT:g}: do not use this run."
+    return f"The energy ledger misses {abs(share):.1e} of E_0, {limit}"
+
+
+def _gravity(case: Case, contacts: Array | None) -> tuple[tuple[str, ...], str]:
+    """Return a warning where gravity acts so long in contact that it moves the result, and why it rules it.
+
+    Where it rules, the run failed: it was no impact.
+    """
+    if contacts is None:
+        return (), ""
+    speed = fall(case.slots.gravity, contacts[-1, 1], contacts[:, :2])
+    share = speed * cos(case.scene.impact.angle) / case.contact.approach
+    gained = (
+        f"Gravity gives the rod {speed * 1e3:.3g} mm/s while it touches, {100 * share:.2g} % of its approach"
+    )
+    if share > GRAVITY_RULES:
+        remedy = "it is no impact any more. Give a higher speed, or leave out the gravity effect."
+        return (), f"{gained}: {remedy}"
+    if share > GRAVITY_TOLD:
+        why = "The contact bears that too, so that V_n, e and E_r come out higher by about as much."
+        return (f"{gained}. {why}",), ""
+    return (), ""
