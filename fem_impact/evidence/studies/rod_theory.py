@@ -17,7 +17,7 @@ from fem_impact.case.case import Case
 from fem_impact.evidence.references.hertz import SPAN
 from fem_impact.evidence.references.oblique import ObliqueRod, oblique_rod
 from fem_impact.evidence.studies.rods import DroppedRod, length_of
-from fem_impact.modal.furrow import indent
+from fem_impact.modal.groove import indent
 from fem_impact.modal.impact import reach
 from fem_impact.modal.march import integrate_impact
 from fem_impact.modal.motion import ALONE, MOST_CONTACTS, RIGID, Bounds, Start
