@@ -91,8 +91,8 @@ class Bodies:
     @cached_property
     def max_time(self) -> float:
         """The latest time at which a run stops, s: stated, or as `latest_time` has it."""
-        stated = self.scene.accuracy.max_time
-        return latest_time(self.scene.projectile, self.estimate.duration) if stated is None else stated
+        max_time = self.scene.accuracy.max_time
+        return latest_time(self.scene.projectile, self.estimate.duration) if max_time is None else max_time
 
     @property
     def mesh_inclination(self) -> float:

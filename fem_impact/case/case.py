@@ -107,8 +107,7 @@ class Case:
     def active(self) -> tuple[str, ...]:
         """The effects in the model, in the order in which they enter it (SceneError: as of `decision`)."""
         self._require_effects()
-        stated = self.scene.effects
-        on = self.decision.on if AUTO in stated else stated
+        on = self.decision.on if AUTO in self.scene.effects else self.scene.effects
         return tuple(name for name in NAMES if name in on)
 
     def _require_effects(self) -> None:

@@ -78,8 +78,8 @@ def rod_cell(bodies: Bodies) -> float:
     if mesh is None:
         return body_cell(bodies)
     half, (x, z) = mesh.half(), bodies.body.contact_point(bodies.scene.impact.angle)
-    here = np.linalg.norm(half.points - [x, 0.0, z], axis=1) < 1e-9 * bodies.rod.length
-    touching = np.flatnonzero(here[half.cells].any(axis=1))
+    at_contact = np.linalg.norm(half.points - [x, 0.0, z], axis=1) < 1e-9 * bodies.rod.length
+    touching = np.flatnonzero(at_contact[half.cells].any(axis=1))
     return float(meshes.edge_lengths(half, touching).mean())
 
 
@@ -141,8 +141,8 @@ def advice(bodies: Bodies, radius: float | None = None) -> str:
     h = size_for(bodies, ADVISED[kind(bodies)], radius)
     if h < FINEST:
         return "No tip size resolves it: use the modal fidelity"
-    made = min(base / 2 ** ceil(log2(base / h)) for base in (rod_cell(bodies), body_cell(bodies)))
-    return f"Give accuracy.tip_size = {max(made, FINEST) * 1e3:.2g} mm or less"
+    edge = min(base / 2 ** ceil(log2(base / h)) for base in (rod_cell(bodies), body_cell(bodies)))
+    return f"Give accuracy.tip_size = {max(edge, FINEST) * 1e3:.2g} mm or less"
 
 
 def widest_tip_size(bodies: Bodies) -> float:

@@ -43,24 +43,24 @@ def require_approach(bodies: Bodies) -> None:
         )
 
 
-def all_effects(stated: Sequence[str]) -> tuple[str, ...]:
+def all_effects(scene_effects: Sequence[str]) -> tuple[str, ...]:
     """Return all effects but those that a scene forces off; those of a scene that lists them are its own."""
-    if AUTO not in stated:
-        return tuple(name for name in NAMES if name in stated)
-    barrier = next((name for name in stated if name in BARRIERS), BARRIERS[-1])
-    wanted = set(NAMES) - set(BARRIERS) - _forced_off(stated) | {barrier}
+    if AUTO not in scene_effects:
+        return tuple(name for name in NAMES if name in scene_effects)
+    barrier = next((name for name in scene_effects if name in BARRIERS), BARRIERS[-1])
+    wanted = set(NAMES) - set(BARRIERS) - _forced_off(scene_effects) | {barrier}
     return _in_order(wanted)
 
 
 def decide(whole: Bodies) -> Decision:
     """Return what is decided of the effects of a scene, from bodies with `all_effects` in force."""
-    stated = whole.scene.effects
+    scene_effects = whole.scene.effects
     number = {name: effect.number(whole) for name, effect in EFFECTS.items()}
     needed = _with_one_barrier({name for name in NAMES if number[name] > EFFECTS[name].threshold})
-    if AUTO not in stated:
-        return Decision(number, needed, set(stated))
-    wanted = (needed | set(stated)) - _forced_off(stated) - {AUTO}
-    barrier = next((name for name in stated if name in BARRIERS), None)
+    if AUTO not in scene_effects:
+        return Decision(number, needed, set(scene_effects))
+    wanted = (needed | set(scene_effects)) - _forced_off(scene_effects) - {AUTO}
+    barrier = next((name for name in scene_effects if name in BARRIERS), None)
     barrier = barrier or next(name for name in reversed(BARRIERS) if name in needed)
     return Decision(number, needed, _with_one_barrier(wanted - set(BARRIERS) | {barrier}))
 
@@ -97,8 +97,8 @@ def neglected(choices: Sequence[EffectChoice]) -> tuple[str, ...]:
     )
 
 
-def _forced_off(stated: Sequence[str]) -> set[str]:
-    return {name for name in NAMES if f"-{name}" in stated}
+def _forced_off(scene_effects: Sequence[str]) -> set[str]:
+    return {name for name in NAMES if f"-{name}" in scene_effects}
 
 
 def _with_one_barrier(wanted: set[str]) -> set[str]:
@@ -111,8 +111,8 @@ def _in_order(wanted: set[str]) -> tuple[str, ...]:
     return tuple(with_prerequisites([name for name in NAMES if name in wanted]))
 
 
-def _is_forced(name: str, stated: Sequence[str]) -> bool:
-    if AUTO not in stated:
+def _is_forced(name: str, scene_effects: Sequence[str]) -> bool:
+    if AUTO not in scene_effects:
         return True
-    barrier = name in BARRIERS and any(b in stated for b in BARRIERS)
-    return barrier or name in stated or f"-{name}" in stated
+    barrier = name in BARRIERS and any(b in scene_effects for b in BARRIERS)
+    return barrier or name in scene_effects or f"-{name}" in scene_effects

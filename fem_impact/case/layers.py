@@ -85,9 +85,9 @@ def _too_thin(bodies: Bodies, zones: Zones, share: float) -> SceneError:
     thin = int(np.argmin([layer.thickness for layer in bodies.barrier.layers]))
     thickness = bodies.barrier.layers[thin].thickness
     across = 2 * ceil(0.5 * bodies.scene.across * zones.base * FLATTEST / thickness * 1.5)
-    told = f"their height would be {share:.2g} of their width" if share else "no row is left for it"
+    flatness = f"their height would be {share:.2g} of their width" if share else "no row is left for it"
     return SceneError(
-        f"fits no row of the barrier's cells, {zones.base * 1e3:.3g} mm wide: {told}.",
+        f"fits no row of the barrier's cells, {zones.base * 1e3:.3g} mm wide: {flatness}.",
         key=f"barrier.layers[{thin + 1}].thickness",
         value=f"{thickness * 1e3:.3g} mm",
         remedy=f"Give accuracy.across = {max(across, bodies.scene.across + 2)}, or a thicker layer.",

@@ -25,6 +25,18 @@ LENGTHS = (0.08, 0.24)
 DIAMETER = 0.019
 SPEEDS = (1.30, 6.10)
 ANGLES = (math.radians(17.0), math.radians(60.0))
+TURNING = "outside the measured range: the measured rods did not turn before impact"
+ELASTIC_SEGMENTS = (
+    "idealised: only the first segment of the projectile may yield; the others and joints stay elastic"
+)
+FACETS = (
+    "idealised: the flat facets of the user's mesh are the projectile's surface; cells that are split at "
+    "the contact keep them"
+)
+BONDED_LAYERS = (
+    "idealised: layers are bonded; closed formulas (for the choice of effects, and for the restitution "
+    "of the rigid fidelity) know the first layer alone"
+)
 TIPS = {("A", 0.007), ("B", 0.003)}
 
 
@@ -38,16 +50,14 @@ def validity(bodies: Bodies, meshed_through: bool) -> tuple[str, ...]:
     sentences = (
         _outside(scene.projectile.length, LENGTHS, "length", "length"),
         _section(scene),
-        _segments(scene),
-        _own_mesh(scene),
-        _layers(scene),
+        ELASTIC_SEGMENTS if scene.projectile.segments else "",
+        FACETS if scene.projectile.own_mesh is not None else "",
+        BONDED_LAYERS if scene.barrier.layers else "",
         thin_plate(bodies, meshed_through),
         _outside(speed, SPEEDS, "speed", "speed"),
         _outside(scene.impact.angle, ANGLES, "angle", "angle"),
         _fall(scene),
-        "outside the measured range: the measured rods did not turn before impact"
-        if scene.impact.omega
-        else "",
+        TURNING if scene.impact.omega else "",
         _steels(scene),
         _barrier(scene),
         _surface(scene, active),
@@ -61,8 +71,8 @@ def _outside(value: float, ends: tuple[float, float], name: str, dimension: str)
     slack = 1e-9 * abs(ends[1])
     if ends[0] - slack <= value <= ends[1] + slack:
         return ""
-    stated = format_quantity(value, dimension)
-    return f"outside the measured range: {name} {stated}, measured {low} to {high}"
+    text = format_quantity(value, dimension)
+    return f"outside the measured range: {name} {text}, measured {low} to {high}"
 
 
 def _section(scene: Scene) -> str:
@@ -74,30 +84,6 @@ def _section(scene: Scene) -> str:
     ):
         return ""
     return "outside the measured range: measured were 19 mm rods with a 7 mm nose (A) or a 3 mm edge (B)"
-
-
-def _segments(scene: Scene) -> str:
-    if not scene.projectile.segments:
-        return ""
-    return "idealised: only the first segment of the projectile may yield; the others and joints stay elastic"
-
-
-def _own_mesh(scene: Scene) -> str:
-    if scene.projectile.own_mesh is None:
-        return ""
-    return (
-        "idealised: the flat facets of the user's mesh are the projectile's surface; cells that are split at "
-        "the contact keep them"
-    )
-
-
-def _layers(scene: Scene) -> str:
-    if not scene.barrier.layers:
-        return ""
-    return (
-        "idealised: layers are bonded; closed formulas (for the choice of effects, and for the restitution "
-        "of the rigid fidelity) know the first layer alone"
-    )
 
 
 def _fall(scene: Scene) -> str:
@@ -127,8 +113,8 @@ def _barrier(scene: Scene) -> str:
         "was free": barrier.mass is not None,
         "moved": barrier.v_n or barrier.v_t,
     }
-    found = [f"no measured barrier {way}" for way, stated in ways.items() if stated]
-    return f"outside the measured range: {' or '.join(found)}" if found else ""
+    unlike = [f"no measured barrier {way}" for way, holds in ways.items() if holds]
+    return f"outside the measured range: {' or '.join(unlike)}" if unlike else ""
 
 
 def _surface(scene: Scene, active: Collection[str]) -> str:
@@ -214,12 +200,12 @@ def require_round(bodies: Bodies, fidelity: str) -> None:
     if fidelity == "solid" or (fidelity == "rigid" and bodies.scene.restitution is not None):
         return
     if bodies.contact.lands_flat:
-        stated = ", or state restitution" if fidelity == "rigid" else ""
+        by_key = ", or state restitution" if fidelity == "rigid" else ""
         raise SceneError(
             f"is that of {FLAT_FACE}, but {fidelity} takes the contact law of a round tip.",
             key="impact.angle",
             value="0 deg",
-            remedy=f"Use --fidelity solid{stated}.",
+            remedy=f"Use --fidelity solid{by_key}.",
         )
 
 
@@ -236,13 +222,13 @@ def require_turned(rod: ProjectileSpec, asked: str) -> None:
 
 def not_reduced(bodies: Bodies) -> str:
     """Return what the reduced model has no answer for, empty where it has one."""
-    found = {
+    obstacles = {
         "a projectile with a mesh of its own": bodies.rod.own_mesh,
         "a barrier of layers": bodies.barrier.layers,
         FLAT_FACE: bodies.contact.lands_flat,
         "a plate thinner than its contact is wide": is_wider(bodies),
     }
-    return next((what for what, there in found.items() if there), "")
+    return next((what for what, holds in obstacles.items() if holds), "")
 
 
 def require_own_mesh(bodies: Bodies, fidelity: str) -> None:

@@ -50,13 +50,12 @@ def reduced_table() -> tuple[dict[str, Any], ...]:
 
     Scenes from which constants of the reduced model were read are left out.
     """
-    rows = csv.DictReader(_data("reduced.csv").splitlines())
-    read = ({key: _value(key, text) for key, text in row.items()} for row in rows)
+    texts = ("name", "group")
+    read = (
+        {key: text if key in texts else float(text) if text else None for key, text in row.items()}
+        for row in csv.DictReader(_data("reduced.csv").splitlines())
+    )
     return tuple(row for row in read if row["group"] != "calibration")
-
-
-def _value(key: str, text: str) -> float | str | None:
-    return text if key in ("name", "group") else float(text) if text else None
 
 
 def _data(name: str) -> str:

@@ -31,12 +31,12 @@ def _require_mesh(rod: ProjectileSpec, across: int) -> None:
         _make_mesh(rod, across)
     except meshes.ClosedEndError as error:
         number = 0 if isclose(rod.bore[0][0], error.distance, rel_tol=1e-9) else len(rod.bore) - 1
-        found = [*_thicker(rod, across, number, error.distance), *_finer(rod, across)]
+        remedies = [*_thicker(rod, across, number, error.distance), *_finer(rod, across)]
         raise SceneError(
             f"cannot be meshed: {error}.",
             key=f"projectile.bore[{number + 1}]",
             value=f"z = {1e3 * rod.bore[number][0]:.4g} mm",
-            remedy=f"Give {' or '.join(found)}." if found else FARTHER,
+            remedy=f"Give {' or '.join(remedies)}." if remedies else FARTHER,
         ) from None
     except meshes.MeshError as error:
         raise no_mesh(error, rod, across) from None

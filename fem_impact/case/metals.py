@@ -41,13 +41,13 @@ def _metals(bodies: Bodies) -> dict[str, Material]:
 
 
 def _body(body: str, metal: Material, bodies: Bodies) -> str:
-    used, stated = body == "rod" or bodies.contact.compliant, bodies.scene.effects
+    used, effects = body == "rod" or bodies.contact.compliant, bodies.scene.effects
     if used and not metal.yields:
         return (
             f"The {body} ({metal.name}) has no yield stress and stays elastic. A ceramic or a glass cracks "
             "instead of yielding; cracks are not followed, nor the energy that they take."
         )
-    rate_wanted = "rate-hardening" in stated or ("auto" in stated and "-rate-hardening" not in stated)
+    rate_wanted = "rate-hardening" in effects or ("auto" in effects and "-rate-hardening" not in effects)
     if YIELDS[body] in bodies.effects and rate_wanted and rate_law(metal) is None:
         return (
             f"The {body} ({metal.name}) has no rate data: its flow stress does not grow with the strain "

@@ -62,14 +62,14 @@ def thin_plate(bodies: Bodies, meshed_through: bool) -> str:
     if h is None or error <= THIN:
         return ""
     width = contact_width(bodies)
-    told = f"the contact is {width * 1e3:.2g} mm wide, {width / h:.2g} of the plate's thickness"
+    thin = f"the contact is {width * 1e3:.2g} mm wide, {width / h:.2g} of the plate's thickness"
     if meshed_through:
         return (
-            f"idealised: {told}, so the plate is meshed through it and bends by itself: its impedance is not "
+            f"idealised: {thin}, so the plate is meshed through it and bends by itself: its impedance is not "
             f"added, which would count the bending twice{_hardly_left(bodies, h)}"
         )
     return (
-        f"idealised: {told}, and taken as that of a half-space, which gives {100 * _deeper(bodies):.2g} % of "
+        f"idealised: {thin}, and taken as that of a half-space, which gives {100 * _deeper(bodies):.2g} % of "
         f"its way deeper than the plate is thick: e may be off by some {100 * error:.2g} %"
     )
 
@@ -100,12 +100,13 @@ def require_plate(bodies: Bodies, meshed_through: bool) -> None:
         return
     if is_wider(bodies) and not meshed_through:
         width = 2 * max(estimate.a_t, estimate.a_b)
+        by_mesh = ", or use --fidelity solid, which meshes the plate through its thickness"
         raise SceneError(
             f"is less than the width of the contact, {width * 1e3:.2g} mm: it is no local one, and the plate "
             "would bulge under it.",
             key="barrier.thickness",
             value=f"{barrier.thickness * 1e3:.3g} mm",
-            remedy=f"Give a thicker plate or a lower speed{_by_mesh(bodies)}.",
+            remedy=f"Give a thicker plate or a lower speed{by_mesh * is_thin(bodies)}.",
         )
     if barrier.span is not None and barrier.span < (least := least_span(bodies.contact)):
         raise SceneError(
@@ -115,10 +116,6 @@ def require_plate(bodies: Bodies, meshed_through: bool) -> None:
             value=f"{barrier.span * 1e3:.3g} mm",
             remedy=f"Give at least {least * 1e3:.3g} mm.",
         )
-
-
-def _by_mesh(bodies: Bodies) -> str:
-    return ", or use --fidelity solid, which meshes the plate through its thickness" * is_thin(bodies)
 
 
 def require_plate_mesh(bodies: Bodies, base: float, block: tuple[Array, Array]) -> None:

@@ -151,8 +151,8 @@ def _own_factor(mesh: OwnMesh, rod: float) -> float:
     """Return the bytes of the factor for the modes of a user's mesh; split cells lie close together."""
     cells = cell_moments(mesh.half())
     section = (cells.high - cells.low).sum() / (cells.high.max() - cells.low.min())  # of the half, in cells
-    stated, piece = len(cells.low), PIECE * (2 * section) ** 1.5
-    return float(OWN_FILL * (stated * sqrt(min(stated, piece)) + max(rod - stated, 0.0) ** 1.5))
+    count, piece = len(cells.low), PIECE * (2 * section) ** 1.5
+    return float(OWN_FILL * (count * sqrt(min(count, piece)) + max(rod - count, 0.0) ** 1.5))
 
 
 def require_rest(bodies: Bodies, zones: Zones) -> None:

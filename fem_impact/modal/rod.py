@@ -79,8 +79,8 @@ def _moved(bodies: Bodies, places: Array) -> tuple[Array, Array]:
     """Return omega (k,), and what each mode moves places (m, 2) by, (m, 2, k), kg^-1/2; all (x, z)."""
     points, shape, omega = _modes(_elastic(bodies.rod), bodies.scene.across)
     near = AROUND * bodies.rod.diameter
-    kept = omega < section_frequency(bodies.rod.material, bodies.rod.diameter)
-    return omega[kept], np.array([_moved_place(points, shape[:, :, kept], near, *place) for place in places])
+    low = omega < section_frequency(bodies.rod.material, bodies.rod.diameter)
+    return omega[low], np.array([_moved_place(points, shape[:, :, low], near, *place) for place in places])
 
 
 def _moved_place(points: Array, shape: Array, around: float, x: float, z: float) -> Array:

@@ -220,10 +220,10 @@ def _with_arms(d_c: float, d_d: float, omega: float, m: RodMotion, E_0: float) -
     e: Num = UNDETERMINED
     e_m: Num = UNDETERMINED
     if m.v_n + d_c * omega < 0:
-        found = rigid.coefficients(*velocities, **body)
-        e, moment = float(found.e), d_c * (V_n - m.v_n) - d_d * (V_t - m.v_t) + m.k_squared * omega
+        coefficients = rigid.coefficients(*velocities, **body)
+        e, moment = float(coefficients.e), d_c * (V_n - m.v_n) - d_d * (V_t - m.v_t) + m.k_squared * omega
         if abs(moment) > ROUND_OFF * d_d * (V_n - m.v_n):
-            e_m = float(found.e_m)
+            e_m = float(coefficients.e_m)
     return ArmCoefficients(
         d_c=d_c, d_d=d_d, e=e, e_m=e_m, E_ln=float(lost.E_ln) / E_0, E_lt=float(lost.E_lt) / E_0
     )

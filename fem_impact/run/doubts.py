@@ -14,8 +14,8 @@ CONFIRM = " Confirm it with half the accuracy.tip_size."
 
 def doubts(provenance: Provenance, motion: RodMotion, restitution: Restitution, energy: Energy) -> list[str]:
     """Return a sentence on each of e, mu and E_r that is out of the range of a plain impact."""
-    found = (_on_restitution(provenance, motion, restitution), _on_ratio(provenance, motion, restitution))
-    return [sentence for sentence in (*found, _on_rigid(energy)) if sentence]
+    of_e, of_mu = (of(provenance, motion, restitution) for of in (_on_restitution, _on_ratio))
+    return [sentence for sentence in (of_e, of_mu, _on_rigid(energy)) if sentence]
 
 
 def _on_restitution(provenance: Provenance, motion: RodMotion, restitution: Restitution) -> str:

@@ -162,12 +162,12 @@ def beside_solid(case: Case) -> tuple[str, ...]:
         "drawn at random on coarser meshes), as the values that half of the scenes and nine tenths of them "
         f"stay below: {', '.join(parts)}.",
     ]
-    own = next((row for row in rows if row["name"] == case.scene.measured), None)
-    if own:
+    measured = next((row for row in rows if row["name"] == case.scene.measured), None)
+    if measured:
         values = ", ".join(
-            f"{name} {own[f'{key}_modal']:.3g} beside {own[f'{key}_solid']:.3g}{unit}"
+            f"{name} {measured[f'{key}_modal']:.3g} beside {measured[f'{key}_solid']:.3g}{unit}"
             for key, name, unit in COMPARED
-            if own[f"{key}_solid"] is not None
+            if measured[f"{key}_solid"] is not None
         )
         sentences.append(f"On {case.scene.measured}: {values}.")
     return tuple(sentences)

@@ -95,6 +95,6 @@ def without_end(outcome: Outcome, why: str) -> Outcome:
 
 def _blank(group: T, reason: Unknown, valid: tuple[str, ...]) -> T:
     """Return a group of numbers with all but the ``valid`` ones unknown for a reason."""
-    names = [one.name for one in fields(group) if one.name not in valid]
+    names = [field.name for field in fields(group) if field.name not in valid]
     blank: dict[str, Any] = {n: reason for n in names if not isinstance(getattr(group, n), Unknown)}
     return replace(group, **blank)

@@ -66,11 +66,16 @@ def rigid_outcome(case: Case) -> Outcome:
         ),
     )
     energy = _energy(case, path, reduction.motion, base)
+    thermal = unknown(Heat, UNKNOWN)
+    if case.slots.heat:
+        friction_work = known(energy.friction) * energy.E_0
+        closed = closed_form(case.contact, friction_work, halves(case.bodies))
+        thermal = heat(case, *closed, Unknown(UNKNOWN))
     plate, heated = [STIFF_PLATE] if case.slots.plate else [], [MEAN_HEAT] if case.slots.heat else []
     return reduction.outcome(
         energy,
         unknown(Markers, UNKNOWN),
-        _heat(case, known(energy.friction) * energy.E_0),
+        thermal,
         replace(unknown(RunCost, UNKNOWN), wall=wall, cpu=cpu),
         peak_force=Unknown(UNKNOWN),
         choices=Unknown(UNKNOWN),
@@ -99,18 +104,11 @@ def _timed_path(pair: ContactPair, e: float) -> tuple[rigid.SlidingPath, float, 
     return path, time.perf_counter() - wall, time.process_time() - cpu
 
 
-def _heat(case: Case, friction_work: float) -> Heat:
-    if not case.slots.heat:
-        return unknown(Heat, UNKNOWN)
-    closed = closed_form(case.contact, friction_work, halves(case.bodies))
-    return heat(case, *closed, Unknown(UNKNOWN))
-
-
 def _normal_restitution(case: Case) -> tuple[float, str]:
     """Return the energetic restitution and the sentence that names its source."""
-    stated, law = case.scene.restitution, contact_law(case.contact)
-    if stated is not None:
-        return stated, f"Restitution {stated:g} (energetic) is the scene's own."
+    restitution, law = case.scene.restitution, contact_law(case.contact)
+    if restitution is not None:
+        return restitution, f"Restitution {restitution:g} (energetic) is the scene's own."
     if isinf(law.limit):
         return 1.0, "Restitution 1: no body of the scene may yield, and Hertz' contact loses nothing."
     e = thornton(law, case.contact.effective_mass, case.contact.approach)

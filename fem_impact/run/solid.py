@@ -29,6 +29,7 @@ STIFF = Unknown("the vibration effect is off: the rod is rigid behind its nose")
 IN_WAVES = Unknown(
     "in a plate meshed through its thickness it is not told from the bending waves: W_plate holds both"
 )
+UNRELEASED = Unknown("the strain that the last forces release was not found")
 ONE_MESH = "error unknown: run a second tip size, or `fem-impact cost`"
 
 
@@ -109,7 +110,7 @@ def _energy(result: SolidResult, moved: RodMotion) -> Energy:
     a, E_0, barrier = result.accounts, result.E_0, result.case.scene.barrier
     V_n, V_t, Omega = after(moved)
     seen, k2 = (V_n - barrier.v_n, V_t - barrier.v_t), moved.k_squared
-    kept = float(rigid.kinetic_energy(*seen, Omega, mass=moved.mass, k2=k2))
+    kinetic = float(rigid.kinetic_energy(*seen, Omega, mass=moved.mass, k2=k2))
     given = 0.5 * (barrier.mass or 0.0) * (result.base[0] ** 2 + result.base[1] ** 2)
     given += 0.5 * (barrier.inertia or 0.0) * (result.turned.spin if result.turned else 0.0) ** 2
     stiff, vibration, floor = result.model.rod_stiffness is None, result.flight.energy, result.worst
@@ -120,14 +121,16 @@ def _energy(result: SolidResult, moved: RodMotion) -> Energy:
     sheared = {body: part * a[f"plastic_{body}"] for body, part in result.skin_shares.items()}
     bending = result.case.slots.bending is not None  # then what the plate holds are its waves
 
+    unchecked = UNRELEASED if result.finished else CUT_OFF
+
     def share(energy: float) -> float:
         return float(energy / E_0)
 
     return Energy(
         E_0=E_0,
-        rigid=share(kept),
+        rigid=share(kinetic),
         vibration=STIFF if stiff else share(vibration),
-        vibration_check=share(sum(check)) if check else STIFF if stiff else _unchecked(result),
+        vibration_check=share(sum(check)) if check else STIFF if stiff else unchecked,
         vibration_floor=STIFF if stiff else share(floor),
         below_floor=STIFF if stiff else bool(vibration < floor),
         friction=share(a["friction"]),
@@ -144,7 +147,7 @@ def _energy(result: SolidResult, moved: RodMotion) -> Energy:
         closing=share(a["closing"]),
         damping=_if_on("material-damping", result, share(a["damping"])),
         contact=Unknown("what a contact holds is strain energy of the meshed bodies"),
-        gravity=_if_on("gravity", result, share(kept - result.motion.kinetic - a["gravity"])),
+        gravity=_if_on("gravity", result, share(kinetic - result.motion.kinetic - a["gravity"])),
         residual=share(a["residual"]),
         added_mass=share(result.added_energy),
     )
@@ -154,12 +157,6 @@ def _if_on(effect: str, result: SolidResult, share: float) -> Num:
     return share if effect in result.case.active else Unknown(f"the {effect} effect is off")
 
 
-def _unchecked(result: SolidResult) -> Unknown:
-    if result.finished:
-        return Unknown("the strain that the last forces release was not found")
-    return CUT_OFF
-
-
 def _heat(result: SolidResult, E_lt: Num, vibration: Num) -> Heat:
     """Return flash temperature and bound, and rigid theory's friction loss less the vibration in it."""
     watch = result.heat
@@ -167,10 +164,10 @@ def _heat(result: SolidResult, E_lt: Num, vibration: Num) -> Heat:
         return unknown(Heat, "the contact-heating effect is off")
     power, patch, speed = (np.array(values) for values in (watch.power, watch.patch, watch.speed))
     flux = np.divide(power, patch, out=np.zeros_like(power), where=patch > 0)
-    found = flash(np.array(watch.t), flux, np.sqrt(patch / np.pi), speed, *halves(result.case.bodies))
+    rise = flash(np.array(watch.t), flux, np.sqrt(patch / np.pi), speed, *halves(result.case.bodies))
     peaks = (float(power.max()), float(flux.max()), float(patch.max()))
     less = vibration if isinstance(vibration, Unknown) else known(E_lt) - vibration
-    return heat(result.case, found, *peaks, less)
+    return heat(result.case, rise, *peaks, less)
 
 
 def _cost(result: SolidResult) -> RunCost:

@@ -53,8 +53,8 @@ def elastic_block(
     around = [
         plate_edges(body.mesh, m.E, m.nu, m.rho, bending)
         if bending
-        else spread_boundary(body.mesh, m.E, m.nu, m.rho, here, middle)
-        for m, here in body.parts
+        else spread_boundary(body.mesh, m.E, m.nu, m.rho, cells, middle)
+        for m, cells in body.parts
     ]
     spring, damping = (sum(parts[1:], parts[0]) for parts in zip(*around, strict=True))
     springs, pots = sp.diags(T.T @ spring.ravel()), T.T @ damping.ravel()

@@ -61,8 +61,8 @@ def yielding_zone(
     """
     from fem_impact.solid.yielding import YieldingZone
 
-    m, here = part or (body.material, body.yields)
-    cells = np.flatnonzero(body.yields & here)
+    m, chosen = part or (body.material, body.yields)
+    cells = np.flatnonzero(body.yields & chosen)
     nodes = body.mesh.cells[cells]
     dof, points, full = body.places[nodes], body.points[nodes], body.yielding == "full"
     return YieldingZone.of(body.name, dof, points, m.E, m.nu, law, layout.dummy, full, strength, cells)
@@ -214,15 +214,15 @@ class Builder:
     def zones(self) -> list[YieldingZone]:
         """Return the zone of each body that yields, of each of its materials."""
         laws = ((self.spec.rod_law,), self.spec.barrier_laws)
-        found = [
+        yielding = [
             (body, part, law)
-            for body, own in zip(self.meshed.bodies, laws, strict=False)
-            for part, law in zip(body.parts, own, strict=False)
+            for body, body_laws in zip(self.meshed.bodies, laws, strict=False)
+            for part, law in zip(body.parts, body_laws, strict=False)
             if law and ((part[1] & body.yields).any() or len(body.parts) == 1)
         ]
         return [
             yielding_zone(body, law, self.meshed.layout, self.strength(body, part[1]), part)
-            for body, part, law in found
+            for body, part, law in yielding
         ]
 
     def strength(self, body: MeshedBody, here: Bools) -> Array | None:

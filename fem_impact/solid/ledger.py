@@ -54,8 +54,8 @@ class Ledger:
     worst: float = 0.0
 
     def __post_init__(self) -> None:
-        own = (name for item in self.items for name in item.accounts)
-        self.names = tuple(dict.fromkeys((*ACCOUNTS, *own)))
+        of_items = (name for item in self.items for name in item.accounts)
+        self.names = tuple(dict.fromkeys((*ACCOUNTS, *of_items)))
 
     def sample(self, state: State) -> dict[str, float]:
         """Return all accounts (missing effects are 0) and the residual, J."""

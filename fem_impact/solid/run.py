@@ -146,11 +146,11 @@ def solve(case: Case, options: RunOptions = RunOptions(), model: Model | None = 
         march(model, state, observers)
     finally:
         watchers.flush()
-    loop, here = clock.read(), marching.read()
+    loop, marched = clock.read(), marching.read()
     watchers.watch.observe(state)
     free = watchers.stop.finished and model.rod_stiffness is not None
     check = view.vibration(state, model) if free else None
-    wall, cpu = (long - part for long, part in zip(whole.read(), here, strict=True))
+    wall, cpu = (long - part for long, part in zip(whole.read(), marched, strict=True))
     cost = LoopCost(*loop, wall, cpu, _peak_memory(), watchers.guard.smallest)
     result = _result(case, model, view, state, watchers, check, cost)
     for strain in watchers.strain if free else []:
@@ -236,8 +236,8 @@ def _turned(case: Case, model: Model, state: State) -> BarrierTurn:
     rod = model.layout.rod[~model.geometry.rod.mesh.is_hanging]
 
     def centre(x: Array) -> Array:
-        own = model.mass[model.layout.footing[0]] * model.ground.place(x)
-        return np.asarray(2 * (model.mass[block[:, 0]] @ x[block][:, [0, 2]] + own) / whole)
+        moment = model.mass[model.layout.footing[0]] * model.ground.place(x)
+        return np.asarray(2 * (model.mass[block[:, 0]] @ x[block][:, [0, 2]] + moment) / whole)
 
     def apart(x: Array) -> tuple[float, float]:
         away = mass_centre(model.mass, x, rod)[[0, 2]] - centre(x)
@@ -245,8 +245,8 @@ def _turned(case: Case, model: Model, state: State) -> BarrierTurn:
 
     middle = centre(state.x)
     nodes = [(model.mass[block[:, 0]], state.x[block] - [middle[0], 0.0, middle[1]], state.v[block])]
-    own = model.ground.place(state.x) - middle
-    at, v = np.array([[own[0], 0.0, own[1]]]), state.v[model.layout.footing][None]
+    t, n = model.ground.place(state.x) - middle
+    at, v = np.array([[t, 0.0, n]]), state.v[model.layout.footing][None]
     nodes.append((model.mass[model.layout.footing[:1]], at, v))
     spun = sum(float(m @ (r[:, 2] * v[:, 0] - r[:, 0] * v[:, 2])) for m, r, v in nodes)
     spun += float(model.mass[model.layout.turn[0]]) * model.ground.spin(state.v)

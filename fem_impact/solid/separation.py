@@ -52,7 +52,8 @@ class Separation:
         book = self.model.book
         if not book.intervals or book.touching or state.time - book.last_touch < QUIET:
             return False
-        motion = self._relative(state)
+        motion, (u_n, u_t) = self.view.rigid(state), self.model.ground.speed(state.v)
+        motion = replace(motion, V_n=motion.V_n - u_n, V_t=motion.V_t - u_t)  # as seen from the barrier
         ahead = min(self.horizon, self._tail_strikes(state, motion))
         if not self._stays_away(state, motion, max(ahead, SAMPLE)):
             return False
@@ -68,11 +69,6 @@ class Separation:
             f"The rod does not touch again within the next {self.horizon * 1e3:.3g} ms of free flight."
         )
         return True
-
-    def _relative(self, state: State) -> RigidMotion:
-        """Return the rod's motion as seen from the barrier as a whole."""
-        motion, (u_n, u_t) = self.view.rigid(state), self.model.ground.speed(state.v)
-        return replace(motion, V_n=motion.V_n - u_n, V_t=motion.V_t - u_t)
 
     def _tail_strikes(self, state: State, motion: RigidMotion) -> float:
         """Return the time, s from now, until the tail reaches the barrier; infinite if it does not."""

@@ -105,8 +105,8 @@ def footing_step(
     along_t = np.stack([np.ones_like(t), np.zeros_like(t), n])
     along_n = np.stack([np.zeros_like(t), np.ones_like(t), -t])
     root, K = np.sqrt(inverse), (along_t * k_t) @ along_t.T + (along_n * k_n) @ along_n.T
-    own = float(np.linalg.eigvalsh(root[:, None] * K * root)[-1])
-    return float(share * 2.0 / np.sqrt((share * 2.0 / block) ** 2 + own))
+    largest = float(np.linalg.eigvalsh(root[:, None] * K * root)[-1])
+    return float(share * 2.0 / np.sqrt((share * 2.0 / block) ** 2 + largest))
 
 
 @dataclass(slots=True)
@@ -157,11 +157,11 @@ class TurningDashpots:
         def relative(of: Array) -> Array:
             return np.asarray(of[self.places] - of[self.ends] - lever * of[turn])
 
-        own, seen = inverse[self.places], relative(v)
+        of_block, seen = inverse[self.places], relative(v)
         old = seen - state.kick * relative(inverse * state.force)
-        share = 0.5 * state.kick * own * self.damping
-        impulse = ((seen - share * old) / (1 + share) - seen) / own
-        v[self.places] += own * impulse
+        share = 0.5 * state.kick * of_block * self.damping
+        impulse = ((seen - share * old) / (1 + share) - seen) / of_block
+        v[self.places] += of_block * impulse
         np.add.at(v, self.ends, -inverse[self.ends] * impulse)
         v[turn] -= inverse[turn] * float(lever @ impulse)
         self.radiated -= 0.5 * float(impulse @ (old + relative(v)))

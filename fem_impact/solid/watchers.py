@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, ClassVar, Protocol
 
 import numpy as np
 
-from fem_impact.arrays import Array
 from fem_impact.fem.geometry import tail_corners
 from fem_impact.fem.kernels import COMPILING
 from fem_impact.files.fields_write import FieldWriter
@@ -27,7 +26,6 @@ from fem_impact.solid.strain import StrainWatch
 from fem_impact.tables.history import HISTORY, HistoryWriter
 
 if TYPE_CHECKING:
-    from fem_impact.case.bodies import Bodies
     from fem_impact.case.case import Case
     from fem_impact.solid.heatwatch import HeatWatch
 
@@ -101,22 +99,24 @@ class Watchers:
         watch = Watch(model.ledger(), scene.save.history_every)
         history, frames, strain = [], [], []
         if out is not None:
-            own = [c for c in map(history_column, watch.ledger.names) if c not in HISTORY]
-            writer = HistoryWriter(out / "history.csv", (*HISTORY, *own), go_on=go_on)
+            others = [c for c in map(history_column, watch.ledger.names) if c not in HISTORY]
+            writer = HistoryWriter(out / "history.csv", (*HISTORY, *others), go_on=go_on)
             history = [History(model, view, watch, writer, scene.save.history_every)]
         if out is not None and scene.save.frames:
             frames = [_frames(case, model, view, out, go_on)]
-        if out is not None and scene.save.strain_samples and _has_slices(model):
+        sliced = model.rod_stiffness is not None and model.layout.body_shape[1] > 2
+        if out is not None and scene.save.strain_samples and sliced:
             strain = [StrainWatch.of(case, model, out / "waves.h5")]
-        stop = Separation(
-            model, view, case.max_time, horizon(case.scene.projectile), _untouchable(case.bodies, model)
-        )
-        skin, peak, added = (
-            SkinWatch(model, case.slots.bending is not None),
-            PeakForce(model.book),
-            AddedMass(model.added_mass),
-        )
-        heat = _heat_watch(model) if case.slots.heat else None
+        all_may_touch = model.geometry.barrier is None and model.rod_stiffness is not None
+        tail = np.zeros((0, 3)) if all_may_touch else tail_corners(case.bodies)
+        stop = Separation(model, view, case.max_time, horizon(case.scene.projectile), tail)
+        skin, peak = SkinWatch(model, case.slots.bending is not None), PeakForce(model.book)
+        added = AddedMass(model.added_mass)
+        heat = None
+        if case.slots.heat:
+            from fem_impact.solid.heatwatch import HeatWatch
+
+            heat = HeatWatch(model)
         return cls(StepGuard(model), watch, history, frames, strain, skin, peak, added, heat, stop)
 
     @property
@@ -142,23 +142,6 @@ class Watchers:
         """Return all objects with state, by names that depend on the scene only."""
         parts: list[Moving] = [state, clock, *model.forces, *model.impulses, *self.all]
         return {f"{i}-{type(part).__name__}": part for i, part in enumerate(parts)}
-
-
-def _untouchable(bodies: Bodies, model: Model) -> Array:
-    """Return the corners (k, 3) of the rod's tail, m, where the model lets only its tip touch, else none."""
-    whole = model.geometry.barrier is None and model.rod_stiffness is not None
-    return np.zeros((0, 3)) if whole else tail_corners(bodies)
-
-
-def _has_slices(model: Model) -> bool:
-    """Return whether the rod vibrates and has slices along which its strain can be read."""
-    return model.rod_stiffness is not None and model.layout.body_shape[1] > 2
-
-
-def _heat_watch(model: Model) -> HeatWatch:
-    from fem_impact.solid.heatwatch import HeatWatch
-
-    return HeatWatch(model)
 
 
 def _frames(case: Case, model: Model, view: RodState, out: Path, go_on: bool) -> Frames:

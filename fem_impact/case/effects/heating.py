@@ -15,13 +15,13 @@ if TYPE_CHECKING:
 def thermal(bodies: Bodies) -> dict[str, float | None]:
     """Return conductivity and heat capacity of both bodies by the key of [heating] that overrides them."""
     metals = {"rod": bodies.contact.rod, "barrier": bodies.contact.barrier}
-    own = {
+    of_metals = {
         f"{body}_{key}": getattr(metal, key)
         for body, metal in metals.items()
         for key in ("conductivity", "heat_capacity")
     }
-    stated = {key: getattr(bodies.scene.heating, key) for key in own}
-    return {key: own[key] if value is None else value for key, value in stated.items()}
+    of_scene = {key: getattr(bodies.scene.heating, key) for key in of_metals}
+    return {key: of_metals[key] if value is None else value for key, value in of_scene.items()}
 
 
 def halves(bodies: Bodies) -> Halves:
