@@ -341,7 +341,7 @@ class MeshedBodies:
         x[self.layout.dummy] = dummy_element()
         for body in self.bodies:
             x[body.places] = body.points
-        self.drawn.draw_in(self.layout.slices_of(x))
+        self.drawn.condense(self.layout.slices_of(x))
         return x
 
     def move_rod(self, t: float, n: float) -> None:

@@ -142,25 +142,25 @@ class MassPoints:
         lever, weight = (level / root).ravel(), (m * level / root).ravel()
         return cls(lever, weight, np.sqrt(round_moment / moment), np.zeros(rod.body_nodes.shape[1]))
 
-    def draw_in(self, rows: Array) -> None:
+    def condense(self, rows: Array) -> None:
         """Convert, in place, positions of nodes (3 n, layers) into positions of mass points."""
         add_linear(self.lever, self.weight, self.inward - 1, self.room, rows)
 
-    def spread(self, rows: Array) -> None:
+    def expand(self, rows: Array) -> None:
         """Convert, in place, positions or velocities of mass points (3 n, layers) to the nodes'."""
         add_linear(self.lever, self.weight, 1 / self.inward - 1, self.room, rows)
 
     def gather(self, rows: Array) -> None:
-        """Convert, in place, forces on nodes (3 n, layers) to mass points: `spread` transposed."""
+        """Convert, in place, forces on nodes (3 n, layers) to mass points: `expand` transposed."""
         add_linear(self.weight, self.lever, 1 / self.inward - 1, self.room, rows)
 
     def section(self) -> sp.csr_matrix:
-        """Return the matrix P (3 n, 3 n) of `spread` for one layer."""
+        """Return the matrix P (3 n, 3 n) of `expand` for one layer."""
         blocks = zip(self.lever.reshape(3, -1), self.weight.reshape(3, -1), 1 / self.inward - 1, strict=True)
         return sp.csr_matrix(sp.block_diag([np.eye(len(l)) + g * np.outer(l, w) for l, w, g in blocks]))
 
     def matrix(self, layers: int, size: int) -> sp.csr_matrix:
-        """Return the matrix P (size, size) of `spread` over a flat vector; the slices' rows come first."""
+        """Return the matrix P (size, size) of `expand` over a flat vector; the slices' rows come first."""
         if not len(self.lever):
             return sp.identity(size, format="csr")
         inside = sp.diags(np.arange(layers) > 0, dtype=np.float64)

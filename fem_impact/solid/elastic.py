@@ -38,11 +38,11 @@ class ElasticRod:
         self.frame.localise(state.x[:n], self.d)
         self.y[:] = 0.0
         d, y = self.layout.slices_of(self.d), self.layout.slices_of(self.y)
-        self.drawn.spread(d)
+        self.drawn.expand(d)
         self.slices.apply(d, y)
         self.nose.multiply(self.d)
         self.nose.add_to(self.y)
-        self.drawn.draw_in(d)
+        self.drawn.condense(d)
         self.drawn.gather(y)
         self.frame.add_force(self.d, self.y, state.force[:n])
 

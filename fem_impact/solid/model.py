@@ -87,9 +87,9 @@ class Model:
 
     def nodes(self, vector: Array) -> Array:
         """Return displacements or velocities of the nodes from those of the mass points, both (size,)."""
-        spread = vector.copy()
-        self.drawn.spread(self.layout.slices_of(spread))
-        return spread
+        moved = vector.copy()
+        self.drawn.expand(self.layout.slices_of(moved))
+        return moved
 
     def initial_state(self) -> State:
         """Return the state just before the first contact."""

@@ -27,7 +27,7 @@ def rows_of(bar, values):
 def test_the_polar_moment_of_a_section_is_that_of_the_circle(drawn):
     bar, mass, points = drawn
     rows = rows_of(bar, bar.mesh.points)
-    points.draw_in(rows)
+    points.condense(rows)
     n = len(bar.body_nodes)
     nodal = np.bincount(bar.mesh.cells.ravel(), mass.ravel())[bar.body_nodes[:, 2]]
     x, y = rows[:n, 2], rows[n : 2 * n, 2]
@@ -40,10 +40,10 @@ def test_nodes_and_masses_are_each_others_inverse_and_the_first_layer_stays(draw
     bar, _, points = drawn
     rows = np.random.default_rng(0).normal(size=(len(points.lever), bar.body_nodes.shape[1]))
     moved = rows.copy()
-    points.spread(moved)
+    points.expand(moved)
     assert abs(moved - rows)[:, 1:].max() > 1e-3
     assert (moved[:, 0] == rows[:, 0]).all()
-    points.draw_in(moved)
+    points.condense(moved)
     assert moved == pytest.approx(rows, abs=1e-13)
 
 
@@ -52,7 +52,7 @@ def test_forces_do_the_same_work_on_nodes_and_masses(drawn):
     rng = np.random.default_rng(1)
     force, velocity = rng.normal(size=(2, len(points.lever), bar.body_nodes.shape[1]))
     spread, gathered = velocity.copy(), force.copy()
-    points.spread(spread)
+    points.expand(spread)
     points.gather(gathered)
     assert (force * spread).sum() == pytest.approx((gathered * velocity).sum(), rel=1e-12)
 
@@ -62,7 +62,7 @@ def test_the_matrix_is_the_operator(drawn):
     layers = bar.body_nodes.shape[1]
     vector = np.random.default_rng(2).normal(size=len(points.lever) * layers + 7)
     rows = vector[:-7].reshape(-1, layers).copy()
-    points.spread(rows)
+    points.expand(rows)
     expected = np.concatenate([rows.ravel(), vector[-7:]])
     assert points.matrix(layers, len(vector)) @ vector == pytest.approx(expected, abs=1e-13)
 
@@ -71,11 +71,11 @@ def test_a_motion_of_the_whole_section_is_left_alone(drawn):
     bar, mass, points = drawn
     rows = np.ones((len(points.lever), bar.body_nodes.shape[1]))
     n = len(bar.body_nodes)
-    points.spread(rows)
+    points.expand(rows)
     assert rows[:n] == pytest.approx(np.ones_like(rows[:n]), abs=1e-12)
     assert rows[2 * n :] == pytest.approx(np.ones_like(rows[:n]), abs=1e-12)
     sideways = rows_of(bar, np.tile([[0.0, 1.0, 0.0]], (len(bar.mesh.points), 1)))
-    MassPoints.of_rod(bar, mass, DENSITY, TWISTING).spread(sideways)
+    MassPoints.of_rod(bar, mass, DENSITY, TWISTING).expand(sideways)
     assert sideways[n : 2 * n] == pytest.approx(np.ones_like(rows[:n]), abs=1e-12)
 
 

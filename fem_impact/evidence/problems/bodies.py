@@ -180,7 +180,7 @@ def _start(body: FreeBody, parts: list[Meshed], layout: DofLayout, drawn: MassPo
         x[part.places] = part.points
     v[layout.rod] = body.velocity
     for vector in (x, v):
-        drawn.draw_in(layout.slices_of(vector))
+        drawn.condense(layout.slices_of(vector))
     return x, v
 
 

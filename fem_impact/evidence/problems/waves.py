@@ -97,7 +97,7 @@ def _ring(p: Values, model: Model) -> tuple[float, float, State]:
     stretch = np.stack([0 * w, 0 * w, -np.sin(0.5 * pi * s)], axis=1)
     state = model.initial_state()
     state.v[model.layout.rod] = PLUCK * (bend / abs(w).max() + stretch)
-    model.drawn.draw_in(model.layout.slices_of(state.v))
+    model.drawn.condense(model.layout.slices_of(state.v))
     probes = [Probe(model, bend, PERIODS / float(beam.frequency[0])), Probe(model, stretch, 0.0)]
     march(model, state, probes)
     return probes[0].frequency(), probes[1].frequency(), state
