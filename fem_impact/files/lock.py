@@ -9,8 +9,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from filelock import FileLock, Timeout
-
 from fem_impact.errors import OutputPathError
 from fem_impact.files.atomic import make_directory, unwritable
 
@@ -31,6 +29,8 @@ def directory_lock(out: Path) -> Iterator[None]:
     OutputPathError
         Another process or thread writes to the directory, or it cannot be made.
     """
+    from filelock import FileLock, Timeout  # 20 ms, for which no help text should wait
+
     path = make_directory(out).resolve() / LOCK
     # one object a path, which counts how often each thread has locked it. A second attempt is made where the
     # previous owner removes the file between its opening and its locking here
