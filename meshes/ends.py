@@ -13,7 +13,7 @@ from meshes.rod import nose_cells
 from meshes.section import Section, section
 from meshes.topology import EDGES
 
-__all__ = ["End", "end_of"]
+__all__ = ["ShapeEnd", "end_of"]
 
 # The nose grid ends where the surface is steeper than this, rad from the radial direction; scaled sections
 # lean as the surface does
@@ -27,7 +27,7 @@ POOR = 0.15  # least scaled Jacobian of a nose
 
 
 @dataclass(frozen=True, slots=True)
-class End:
+class ShapeEnd:
     """One end of a body, its own tip at z = 0.
 
     Attributes
@@ -53,7 +53,7 @@ def end_of(
     levels: int = 0,
     bore: FloatArray | None = None,
     closed: float = np.inf,
-) -> End:
+) -> ShapeEnd:
     """Return the best nose grid of an end.
 
     Parameters
@@ -123,14 +123,14 @@ class _Builder:
     bore: FloatArray | None
     closed: float
 
-    def best(self) -> tuple[float, int, End | None]:
+    def best(self) -> tuple[float, int, ShapeEnd | None]:
         """Return the score of the best nose grid, the vertex of the line at which it ends, and the grid."""
         cuts = [(cut, self.tried(cut)) for cut in _cuts(self.line)]
         scored = [(self.score(end), cut, end) for cut, end in cuts if end is not None]
         score, cut, end = max(scored, key=lambda one: one[:2], default=((0.0, 0.0), 0, None))
         return score[0], cut, end
 
-    def tried(self, cut: int, near: FloatArray | None = None, levels: int = 0) -> End | None:
+    def tried(self, cut: int, near: FloatArray | None = None, levels: int = 0) -> ShapeEnd | None:
         """Return the nose grid that ends at a vertex of the line, or None where there is no room for it."""
         shape, line = Meridian(self.line[: cut + 1], self.line[cut:]), self.line
         pitch = 2.0 * shape.radius / self.across
@@ -146,7 +146,7 @@ class _Builder:
             return None
         grid = lay_nose(shape, start, split, self.half, pitch, hole, disc)
         top = float(np.interp(start, line[cut:, 1], line[cut:, 0]))
-        return End(start, grid, shape.radius, top, self.bore is not None)
+        return ShapeEnd(start, grid, shape.radius, top, self.bore is not None)
 
     def hole(self, start: float) -> tuple[float, float]:
         """Return the radius of an open bore at the face and at a height, m; 0 where the end is closed."""
@@ -154,7 +154,7 @@ class _Builder:
             return 0.0, 0.0
         return float(self.bore[0, 0]), float(np.interp(start, self.bore[:, 1], self.bore[:, 0]))
 
-    def sections_begin(self, end: End) -> FloatArray:
+    def sections_begin(self, end: ShapeEnd) -> FloatArray:
         """Return the nodes (n, 3), m, of the section at which an end meets the body."""
         half, hole = self.half, self.hole(end.start)[1]
         radius = end.top * half.radius
@@ -162,7 +162,7 @@ class _Builder:
             radius = hole + (end.top - hole) * (half.radius - half.bore) / (1.0 - half.bore)
         return np.column_stack([radius[:, None] * half.direction, np.full(len(radius), end.start)])
 
-    def score(self, end: End) -> tuple[float, float]:
+    def score(self, end: ShapeEnd) -> tuple[float, float]:
         """Return how good the cells of an end are: their shape, up to `FAIR`, then their shortest edge, m."""
         half = self.half
         nose, cells = nose_cells(half, end.grid, len(half.unit), np.arange(len(half.unit)), end.hollow)

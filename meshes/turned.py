@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from meshes.arrays import BoolArray, FloatArray, IntArray
-from meshes.ends import End, end_of
+from meshes.ends import ShapeEnd, end_of
 from meshes.errors import ClosedEndError, MeshError
 from meshes.hexmesh import HexMesh, from_cells, half_body_tags
 from meshes.meridian import CORNER, closest_on
@@ -180,7 +180,7 @@ def contact_radius(
     return tip.radius
 
 
-def _tip(body: _Body, near: FloatArray | None = None, levels: int = 0) -> End:
+def _tip(body: _Body, near: FloatArray | None = None, levels: int = 0) -> ShapeEnd:
     """Return the end at the tip."""
     first, _ = body.bored_from_to
     if first <= 0.0:
@@ -214,7 +214,7 @@ def _mirrored(line: FloatArray) -> FloatArray:
     return np.asarray(np.stack([line[::-1, 0], line[-1, 1] - line[::-1, 1]], axis=1))
 
 
-def _reached(body: _Body, tip: End, zones: Sequence[Zone], buffer: int) -> tuple[float, float]:
+def _reached(body: _Body, tip: ShapeEnd, zones: Sequence[Zone], buffer: int) -> tuple[float, float]:
     """Return the range of z, m, in which cells may be split."""
     if not zones:
         return 0.0, tip.start
@@ -281,7 +281,9 @@ def _sections(
     return points, np.concatenate(cells), layer_of
 
 
-def _nose(body: _Body, end: End, first: int, layer: IntArray, flipped: bool) -> tuple[FloatArray, IntArray]:
+def _nose(
+    body: _Body, end: ShapeEnd, first: int, layer: IntArray, flipped: bool
+) -> tuple[FloatArray, IntArray]:
     """Nodes and cells of the nose at one end; at the tail it is flipped over."""
     points, cells = nose_cells(body.half, end.grid, first, layer, end.hollow)
     if flipped:

@@ -102,12 +102,12 @@ def assess(options: Options) -> int:
 
 def _dropped_rod(options: Options) -> Scene:
     """Return the scene of the dropped steel rod that the options state."""
-    from fem_impact.answers.verdict.drop import DroppedRod
+    from fem_impact.answers.verdict.drop import RodDropInput
     from fem_impact.answers.verdict.dropped import scene_of
     from fem_impact.scene.units import option_quantity
 
     height = option_quantity(options.height, "length", "--height")
-    return scene_of(DroppedRod(rod_of(options), height, angle_of(options), options.surface))
+    return scene_of(RodDropInput(rod_of(options), height, angle_of(options), options.surface))
 
 
 def _tolerance(options: Options) -> float:

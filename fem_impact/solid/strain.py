@@ -23,7 +23,7 @@ HELD = 0.999  # share of the vibration energy in the modes that are stored for t
 
 
 @dataclass(frozen=True, slots=True)
-class Sections:
+class StrainSections:
     """Weights that read mean motion and tilt of each section of the slices.
 
     The points of a section stand at c + x a: c is their mean, a the change along the section coordinate x.
@@ -87,7 +87,7 @@ class StrainWatch:
 
     moving: ClassVar[tuple[str, ...]] = ("due", "samples")
     model: Model
-    sections: Sections
+    sections: StrainSections
     path: Path
     length: float
     speeds: tuple[float, float]
@@ -99,7 +99,7 @@ class StrainWatch:
     @classmethod
     def of(cls, case: Case, model: Model, path: Path) -> Self:
         """Prepare; a wave of speed sqrt(E/rho) crosses one slice in ``save.strain_samples`` intervals."""
-        rod, sections = case.scene.projectile, Sections.of(model)
+        rod, sections = case.scene.projectile, StrainSections.of(model)
         speeds = bar_speed(rod.material), bending_group_speed(rod)
         interval = sections.pitch / speeds[0] / case.scene.save.strain_samples
         return cls(
@@ -129,7 +129,7 @@ class StrainWatch:
         if not self.rows:
             return
         rod = self.model.geometry.rod
-        # the first slice is left out, see `Sections`
+        # the first slice is left out, see `StrainSections`
         position = rod.body_start + self.sections.pitch * (np.arange(self._count) + 1.5)
         times, stretch, bending = np.split(self.samples, [1, 1 + self._count], axis=1)
         t, n = self.sections.axis

@@ -12,7 +12,7 @@ from fem_impact.files.waves import read_waves
 from fem_impact.options import RunOptions
 from fem_impact.solid.rodview import RodState
 from fem_impact.solid.run import solve
-from fem_impact.solid.strain import Sections, StrainWatch, _held, _in_plane
+from fem_impact.solid.strain import StrainSections, StrainWatch, _held, _in_plane
 
 ELASTIC = ("vibration", "barrier-rigid", "large-rotation")
 
@@ -20,7 +20,7 @@ ELASTIC = ("vibration", "barrier-rigid", "large-rotation")
 @pytest.mark.parametrize("angle", [0.0, 0.8])
 def test_stretch_and_bending_of_a_known_motion_do_not_see_a_rotation(angle):
     model = scenes.model(*ELASTIC, length=0.06)
-    sections, rows = Sections.of(model), _in_plane(model, model.start[0])
+    sections, rows = StrainSections.of(model), _in_plane(model, model.start[0])
     (t, n), (axis_t, axis_n) = rows, sections.axis
     z, x = axis_t * t + axis_n * n, axis_n * t - axis_t * n
     strain, curvature = 3e-4, 0.02

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from fem_impact.answers.verdict.drop import DENSITY, DroppedRod, sets_of
+from fem_impact.answers.verdict.drop import DENSITY, RodDropInput, sets_of
 from rigid import (
     Projectile,
     critical_ratio,
@@ -44,7 +44,7 @@ class Range:
     e: tuple[float, float]
     d_c: tuple[float, float]
 
-    def grid(self, case: DroppedRod) -> tuple[Floats, dict[str, Any]]:
+    def grid(self, case: RodDropInput) -> tuple[Floats, dict[str, Any]]:
         """Return restitutions (9, 1) and arms with d_c (9,)."""
         return np.linspace(*self.e, STEPS)[:, None], case.body(np.linspace(*self.d_c, STEPS))
 
@@ -65,7 +65,7 @@ class Worst(NamedTuple):
     mu_c: float
 
 
-def worst_losses(case: DroppedRod, known: Range) -> Worst | None:
+def worst_losses(case: RodDropInput, known: Range) -> Worst | None:
     """Return the largest total and the largest tangential loss; None where a critical ratio is negative."""
     v_n, v_t = case.velocity
     e, body = known.grid(case)
@@ -85,7 +85,7 @@ def worst_losses(case: DroppedRod, known: Range) -> Worst | None:
     return Worst(largest(*total), largest(*tangential), float(limit.max()))
 
 
-def sliding_heat(case: DroppedRod, known: Range) -> float:
+def sliding_heat(case: RodDropInput, known: Range) -> float:
     """Return the largest friction work of a rigid rod over all Coulomb coefficients, fraction of E_0.
 
     Sliding, sticking and reverse sliding are resolved in the impulse domain with energetic restitution. The
@@ -97,7 +97,7 @@ def sliding_heat(case: DroppedRod, known: Range) -> float:
     return float(work.max()) / (0.5 * case.speed**2)
 
 
-def upper_bound_loss(case: DroppedRod, known: Range) -> float:
+def upper_bound_loss(case: RodDropInput, known: Range) -> float:
     """Return the largest loss of the first impact for any friction and restitution, fraction of E_0."""
     body = case.body(np.linspace(*known.d_c, 2001))
     return float(pinned_loss(*case.velocity, **body, mass=2.0 / case.speed**2).max())
@@ -179,7 +179,7 @@ def measured_on(surface: str) -> dict[str, CarriedTests]:
     }
 
 
-def carry(tests: CarriedTests, case: DroppedRod) -> Carried:
+def carry(tests: CarriedTests, case: RodDropInput) -> Carried:
     """Predict the losses of a case from each test (Eq 23-25 with e_m = -1)."""
     v_n, v_t = case.velocity
     body = case.body(case.arms.d_c + tests.offset * case.rod.length)

@@ -31,12 +31,12 @@ COLUMNS = (
 STEPS = (0.1, 0.3, 0.5)
 """Impulse ratios mu between the colours of the chart."""
 NEAR_RATIO, NEAR_MU = 1.15, 0.05
-"""Points are alike whose T1/tau lie within a factor and whose mu within a distance."""
+"""ChartPoints are alike whose T1/tau lie within a factor and whose mu within a distance."""
 LEAST_NEAR = 5
 
 
 @dataclass(frozen=True, slots=True)
-class Points:
+class ChartPoints:
     """Points of the chart, each array (n,): T1/tau, mu, change of e, E_vib over E_0; whether both yield."""
 
     made: str
@@ -46,10 +46,10 @@ class Points:
     E_vib: Array
     yielding: Array
 
-    def where(self, chosen: Array) -> Points:
+    def where(self, chosen: Array) -> ChartPoints:
         """Return some of the points."""
         columns = (self.ratio, self.mu, self.change, self.E_vib, self.yielding)
-        return Points(self.made, *(column[chosen] for column in columns))
+        return ChartPoints(self.made, *(column[chosen] for column in columns))
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,17 +68,17 @@ class Collapse:
 
 
 @cache
-def points() -> Points:
+def points() -> ChartPoints:
     """Return the stored points."""
     table = files("fem_impact.answers.verdict").joinpath("data", TABLE)
     made, _, text = table.read_text(encoding="utf-8").partition("\n")
     rows = list(csv.DictReader(text.splitlines()))
     ratio, mu, change, E_vib = (np.array([float(row[name]) for row in rows]) for name in COLUMNS[-4:])
     yielding = np.array([row["contact"] == "yielding" for row in rows])
-    return Points(made.removeprefix("# "), ratio, mu, change, E_vib, yielding)
+    return ChartPoints(made.removeprefix("# "), ratio, mu, change, E_vib, yielding)
 
 
-def collapse(some: Points, values: Array) -> Collapse:
+def collapse(some: ChartPoints, values: Array) -> Collapse:
     """Return by how much points of like T1/tau and mu differ in ``values`` (n,)."""
     away = []
     for i in range(len(values)):
@@ -109,7 +109,7 @@ def chart(verdict: Verdict) -> Picture:
 
 def _panel(
     label: str,
-    some: Points,
+    some: ChartPoints,
     values: tuple[Array, float, float],
     own: str,
     ratio: Array,
@@ -131,7 +131,7 @@ def _panel(
     return Panel("", "T1/tau, bending period over contact time", label, (*series, point), here, levels)
 
 
-def caption(some: Points, kind: str) -> str:
+def caption(some: ChartPoints, kind: str) -> str:
     """Return what the chart shows, where it comes from and how far it can be read off."""
     e, vibration = collapse(some, np.abs(some.change)), collapse(some, some.E_vib)
     return (

@@ -31,7 +31,7 @@ TIP_RADII = {"A": 0.007, "B": 0.003, "plain": 0.0}
 
 
 @dataclass(frozen=True, slots=True)
-class DroppedRod:
+class RodDropInput:
     """A rod that falls without spin on an inclined steel plate.
 
     Attributes
@@ -89,7 +89,7 @@ def sets_of(surface: str) -> tuple[MeasuredSet, ...]:
     return tuple(s for s in measured_sets() if s.surface == surface)
 
 
-def weights_of(case: DroppedRod) -> dict[str, float]:
+def weights_of(case: RodDropInput) -> dict[str, float]:
     """Return inverse-distance weights of the measured sets of this surface (Shepard, distance^-4), sum 1.
 
     A measured case has weight on its own set alone, a case between two sets on both; sets with less than
@@ -100,7 +100,7 @@ def weights_of(case: DroppedRod) -> dict[str, float]:
     return {name: w / sum(kept.values()) for name, w in kept.items()}
 
 
-def _distance(case: DroppedRod, s: MeasuredSet) -> float:
+def _distance(case: RodDropInput, s: MeasuredSet) -> float:
     """Return the distance in length, angle and speed in units of `NEAR`.
 
     1 more lies between a tip with a flat face, whose edge strikes (B, plain), and a round nose (A).
@@ -115,7 +115,7 @@ def _distance(case: DroppedRod, s: MeasuredSet) -> float:
     return math.hypot(*steps)
 
 
-def warnings_of(case: DroppedRod) -> tuple[str, ...]:
+def warnings_of(case: RodDropInput) -> tuple[str, ...]:
     """Return warnings: few tests on this surface, and quantities outside the measured range."""
     if case.surface == "machined":
         return outside_of(case)
@@ -128,13 +128,13 @@ def warnings_of(case: DroppedRod) -> tuple[str, ...]:
     return (narrow, *outside_of(case))
 
 
-def outside_of(case: DroppedRod) -> tuple[str, ...]:
+def outside_of(case: RodDropInput) -> tuple[str, ...]:
     """Return a sentence on each quantity of the case outside the range measured on its surface."""
     sets = sets_of(case.surface)
     return (*_rod_warnings(case, sets), *_motion_warnings(case, sets))
 
 
-def _rod_warnings(case: DroppedRod, sets: tuple[MeasuredSet, ...]) -> Iterator[str]:
+def _rod_warnings(case: RodDropInput, sets: tuple[MeasuredSet, ...]) -> Iterator[str]:
     """Compare length, diameter and tip with those of the sets."""
     rod = case.rod
     lengths = sorted({s.length for s in sets})
@@ -149,7 +149,7 @@ def _rod_warnings(case: DroppedRod, sets: tuple[MeasuredSet, ...]) -> Iterator[s
         yield f"{tip}: measured on {case.surface} surfaces was tip {known}"
 
 
-def _motion_warnings(case: DroppedRod, sets: tuple[MeasuredSet, ...]) -> Iterator[str]:
+def _motion_warnings(case: RodDropInput, sets: tuple[MeasuredSet, ...]) -> Iterator[str]:
     """Compare angle and speed, each near the other, with the sets of the nearest measured length."""
     length = min((s.length for s in sets), key=lambda x: abs(math.log(case.rod.length / x)))
     same = [s for s in sets if s.length == length]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import hypot
 from typing import Any
 
-from fem_impact.answers.verdict.drop import DENSITY, DroppedRod
+from fem_impact.answers.verdict.drop import DENSITY, RodDropInput
 from fem_impact.errors import SceneError
 from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.impact import BESIDE, Impact
@@ -17,7 +17,7 @@ from rigid import GRAVITY, Projectile
 ROD, PLATE = "rod-steel", "plate-steel"
 
 
-def scene_of(case: DroppedRod) -> Scene:
+def scene_of(case: RodDropInput) -> Scene:
     """Return the scene of a dropped rod of the measured steels."""
     steels, rod = materials(), case.rod
     v_n, v_t = case.velocity
@@ -31,7 +31,7 @@ def scene_of(case: DroppedRod) -> Scene:
     )
 
 
-def dropped(scene: Scene) -> DroppedRod:
+def dropped(scene: Scene) -> RodDropInput:
     """Return the dropped rod that a scene states.
 
     Raises
@@ -47,7 +47,7 @@ def dropped(scene: Scene) -> DroppedRod:
     rod, impact = scene.projectile, scene.impact
     body = Projectile(rod.length, rod.diameter, rod.tip, rod.tip_radius, DENSITY)
     height = hypot(impact.v_n, impact.v_t) ** 2 / (2 * GRAVITY)
-    return DroppedRod(body, height, impact.angle, scene.surface.state)
+    return RodDropInput(body, height, impact.angle, scene.surface.state)
 
 
 def _not_measured(scene: Scene) -> str:

@@ -16,7 +16,7 @@ from fem_impact.answers.verdict.bounds import (
     upper_bound_loss,
     worst_losses,
 )
-from fem_impact.answers.verdict.drop import DroppedRod, outside_of, warnings_of, weights_of
+from fem_impact.answers.verdict.drop import RodDropInput, outside_of, warnings_of, weights_of
 from rigid import LIMIT, LIMIT_MM, Errors, behaves_rigidly, in_millimetres
 from rigid.arrays import Floats
 
@@ -50,12 +50,12 @@ _NAMES = ("total", "E_lt", "E_ln", "E_r")
 """Fractions of E_0 that are reported."""
 
 
-def transfer(case: DroppedRod) -> dict[str, Any]:
+def transfer(case: RodDropInput) -> dict[str, Any]:
     """Assess the first impact of a dropped rod with the measured coefficients of its surface.
 
     Parameters
     ----------
-    case : DroppedRod
+    case : RodDropInput
         Rod, height, angle and surface.
 
     Returns
@@ -116,7 +116,7 @@ def _share(values: dict[str, Floats], weights: dict[str, float]) -> dict[str, fl
     return {"mean": mean, "low": low, "high": high, **extremes}
 
 
-def _range(case: DroppedRod, tests: dict[str, CarriedTests], weights: dict[str, float]) -> Range:
+def _range(case: RodDropInput, tests: dict[str, CarriedTests], weights: dict[str, float]) -> Range:
     """Return the ranges of e and d_c over the tests of this surface; outside the measured cases all e."""
     outside = bool(outside_of(case))
     e = np.concatenate([t.e for t in tests.values()])
@@ -129,7 +129,7 @@ def _range(case: DroppedRod, tests: dict[str, CarriedTests], weights: dict[str, 
     return Range((0.0, 1.0) if outside else measured, d_c)
 
 
-def _case_entry(case: DroppedRod, energy: float) -> dict[str, Any]:
+def _case_entry(case: RodDropInput, energy: float) -> dict[str, Any]:
     rod, (v_n, v_t), arms = case.rod, case.velocity, case.arms
     sizes = {f"{name}_m": getattr(rod, name) for name in ("length", "diameter", "tip_radius")}
     motion = {"v_n_m_per_s": v_n, "v_t_m_per_s": v_t, "E_0_J": energy}
@@ -146,7 +146,7 @@ def _case_entry(case: DroppedRod, energy: float) -> dict[str, Any]:
     }
 
 
-def _worst(case: DroppedRod, known: Range, energy: float) -> dict[str, Any]:
+def _worst(case: RodDropInput, known: Range, energy: float) -> dict[str, Any]:
     worst = worst_losses(case, known)
     if worst is None:
         return {"total": None, "tangential": None, "reason": TURNING}
@@ -157,7 +157,7 @@ def _worst(case: DroppedRod, known: Range, energy: float) -> dict[str, Any]:
     return {**entries, "mu_c_largest": worst.mu_c, "reason": None}
 
 
-def _heat(case: DroppedRod, known: Range, energy: float) -> dict[str, Any]:
+def _heat(case: RodDropInput, known: Range, energy: float) -> dict[str, Any]:
     """Return the upper bound of friction heat, and the lower one of a rigid rod with Coulomb friction."""
     certain = upper_bound_loss(case, known)
     worst = worst_losses(case, known)
@@ -175,7 +175,7 @@ def _heat(case: DroppedRod, known: Range, energy: float) -> dict[str, Any]:
     }
 
 
-def _slenderness(case: DroppedRod) -> dict[str, Any]:
+def _slenderness(case: RodDropInput) -> dict[str, Any]:
     gamma, meets = case.rod.gamma, bool(behaves_rigidly(case.rod.gamma))
     verdict = (
         "met: dropped steel bars this stout rebounded as rigid bodies"

@@ -14,7 +14,7 @@ from fem_impact.evidence.problems import setups
 from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values, within
 from fem_impact.evidence.problems.spheres import (
     MARGIN,
-    Plate,
+    StruckPlate,
     ball_mass,
     modulus,
     parameters,
@@ -135,18 +135,18 @@ def solve_plate(p: Values) -> Solved:
     return Solved(tuple(checks), max(run.impact.state.step for run in runs), runs[0].cells)
 
 
-def _through(p: Values, plate: Plate, end: float) -> PlateStrike:
+def _through(p: Values, plate: StruckPlate, end: float) -> PlateStrike:
     """Return an impact on a plate that is meshed through its thickness, until ``end``, s."""
     model = sphere_model(p, plain_hertz(p, p["speed"]), p["speed"], plate=plate)
     return PlateStrike.of(p, model, end)
 
 
-def _plate(p: Values, time: float) -> tuple[Plate, str]:
+def _plate(p: Values, time: float) -> tuple[StruckPlate, str]:
     """Return the plate for a contact of ``time``, s, and how wide the contact is."""
     thickness = _thickness(p, p["number"])
     speed, edges = pulse_wave(p["E"], p["nu"], p["rho"], thickness, time)
     width = 2 * plain_hertz(p, p["speed"]).radius / thickness
-    return Plate(thickness, edges, speed), f"contact {width:.2g} of the thickness wide"
+    return StruckPlate(thickness, edges, speed), f"contact {width:.2g} of the thickness wide"
 
 
 def _wide(p: Values, exact: PlateImpact) -> tuple[Check, ...]:

@@ -79,7 +79,7 @@ def small_contact(p: Values, share: float = 1.0) -> None:
 
 
 @dataclass(frozen=True, slots=True)
-class Plate:
+class StruckPlate:
     """A plate under a ball: thickness, m; its edges from the contact, m; speed of its bending waves, m/s."""
 
     thickness: float
@@ -134,7 +134,7 @@ def sphere_model(
     v_n: float,
     v_t: float = 0.0,
     f: float = 0.0,
-    plate: Plate | None = None,
+    plate: StruckPlate | None = None,
 ) -> Model:
     """Return a ball just above the barrier, fine around its pole, moving down at v_n and along t at -v_t.
 

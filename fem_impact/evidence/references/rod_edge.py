@@ -154,7 +154,7 @@ class _Patch:
 
 
 @dataclass(frozen=True, slots=True)
-class _Body:
+class _EdgeBody:
     """The rod's operators: stiffness by powers of the order, inertia; each unknown's component."""
 
     basis: skfem.CellBasis
@@ -163,7 +163,7 @@ class _Body:
     component: Ints
 
     @classmethod
-    def of(cls, mesh: skfem.MeshTri, nu: float) -> _Body:
+    def of(cls, mesh: skfem.MeshTri, nu: float) -> _EdgeBody:
         """Assemble; stiffness is quadratic in the order."""
         basis = skfem.Basis(mesh, skfem.ElementVector(skfem.ElementTriP2(), 3), intorder=5)
         none, one, two = (_elastic.assemble(basis, m=float(m), nu=nu) for m in range(3))
@@ -223,7 +223,7 @@ def edge_excess(
     """
     finest = min(min(patch) for patch in patches)
     mesh = _mesh(edge, angle, finest / FINEST)
-    body, touch = _Body.of(mesh, nu), _centre(edge)[:, 0] + edge * np.array([sin(angle), -cos(angle)])
+    body, touch = _EdgeBody.of(mesh, nu), _centre(edge)[:, 0] + edge * np.array([sin(angle), -cos(angle)])
     reach = 1.5 * max(along for along, _ in patches)
     near = mesh.facets_satisfying(lambda x: np.hypot(*(x.T - touch).T) < reach, boundaries_only=True)
     skin = skfem.FacetBasis(mesh, body.basis.elem, facets=near, intorder=QUADRATURE)

@@ -11,7 +11,7 @@ from fem_impact.answers.verdict.bounds import (
     upper_bound_loss,
     worst_losses,
 )
-from fem_impact.answers.verdict.drop import DroppedRod, weights_of
+from fem_impact.answers.verdict.drop import RodDropInput, weights_of
 from fem_impact.answers.verdict.transfer import transfer
 from fem_impact.errors import SceneError
 from rigid import (
@@ -34,11 +34,11 @@ def case_of(s):
     """The case that repeats a measured set."""
     speed = float(np.hypot(s.motion["v_n"], s.motion["v_t"]).mean())
     rod = Projectile(s.length, s.diameter, s.tip, s.tip_radius, 7850.0)
-    return DroppedRod(rod, speed**2 / (2 * GRAVITY), s.alpha, s.surface)
+    return RodDropInput(rod, speed**2 / (2 * GRAVITY), s.alpha, s.surface)
 
 
 def short_rod(height=0.225, degrees=45.0, surface="machined", tip="B", radius=0.003, length=0.08):
-    return DroppedRod(Projectile(length, 0.019, tip, radius, 7850.0), height, np.radians(degrees), surface)
+    return RodDropInput(Projectile(length, 0.019, tip, radius, 7850.0), height, np.radians(degrees), surface)
 
 
 @pytest.mark.parametrize("s", measured_sets(), ids=lambda s: s.id)
@@ -215,7 +215,7 @@ def test_the_published_drop_as_a_command(cli):
         "not met",
     ):
         assert words in " ".join(out.split())
-    case = DroppedRod(Projectile(0.24, 0.019, "A", 0.007, 7850.0), 0.82, np.radians(45.0), "contaminated")
+    case = RodDropInput(Projectile(0.24, 0.019, "A", 0.007, 7850.0), 0.82, np.radians(45.0), "contaminated")
     document = transfer(case)
     assert document["losses"]["total"]["mean"] == pytest.approx(0.49, abs=0.02)
     assert len(document["friction_heat"]["assumptions"]) == 5

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fem_impact.answers.verdict.assess import assess
-from fem_impact.answers.verdict.chart import COLUMNS, Points, chart, collapse, points
+from fem_impact.answers.verdict.chart import COLUMNS, ChartPoints, chart, collapse, points
 from fem_impact.answers.verdict.effect import modal_pair
 from fem_impact.answers.verdict.screening import screening
 from fem_impact.outcome.keys import known
@@ -18,10 +18,10 @@ SCRIPT = Path(__file__).parents[2] / "benchmarks" / "design_chart.py"
 
 
 def made(n, change):
-    """Points of random T1/tau and mu, and their change of e as a function of both."""
+    """ChartPoints of random T1/tau and mu, and their change of e as a function of both."""
     rng = np.random.default_rng(0)
     ratio, mu = rng.uniform(0.3, 3.0, n), rng.uniform(0.0, 0.6, n)
-    return Points("made", ratio, mu, change(ratio, mu, rng), ratio, np.ones(n, dtype=bool))
+    return ChartPoints("made", ratio, mu, change(ratio, mu, rng), ratio, np.ones(n, dtype=bool))
 
 
 @pytest.mark.parametrize("row", [5, 101, 401, 702])  # without friction a tip follows round-off
