@@ -268,10 +268,10 @@ MUTANTS = (
         "tests/evidence/problems/test_verify_tips.py::test_a_coarse_sphere_on_a_plane_is_a_finite_ball",
     ),
     Mutant(
-        "cells of a rod's tip counted over its diameter, not where it touches",
+        "cells of a rod's tip taken as asked for, not as they are where it touches",
         "fem_impact/evidence/problems/sears_rod.py",
-        "if levels_for_radius(edge, touch,",
-        "if levels_for_radius(2 * R / p['across'] / 2 ** len(zones), touch,",
+        'edge = float(np.sort(np.hypot(skin[:, 0], skin[:, 1])[skin[:, 2] < 0.5 * p["length"]])[1])',
+        'edge = setups.fine_tip(touch, p["cells"])',
         "tests/evidence/problems/test_verify_sears.py::test_the_cells_are_counted_where_it_touches",
     ),
     Mutant(

@@ -1,6 +1,7 @@
 """Results that were changed after the run: refused with file and reason, or shown with that sentence."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -81,7 +82,7 @@ def spoil_bytes(chance, data):
 
 def full_outcome():
     """An outcome with effect choices and two meshes, in which nearly no value is null."""
-    told = [choice.told(0.1) for choice in Case.of(load("t5b")).choices]
+    told = [replace(choice, share=0.1) for choice in Case.of(load("t5b")).choices]
     choices = [{key.name: key.of(choice) for key in keys_of(type(choice))} for choice in told]
     meshes = {"mesh_limit": {"mu": 0.6, "e_edge": 0.3}, "mesh_band": {"mu": 0.01}}
     return result_maker.values(effect_choices=choices, **meshes)

@@ -109,19 +109,19 @@ def test_a_thick_rod_has_modes_too():
 
 
 def test_a_rod_that_gravity_draws_in_more_than_it_is_pushed_away_has_no_coefficients():
-    scene = load("t5b")
-    still = barrier_motion(scene, 0.0, 0.0, 0.0)
-    found = restitution(scene, motion(Case.of(scene, "rigid"), -1.6, -0.5, 90.0, 0.17, 5.56e-4), still)
+    case = Case.of(load("t5b"), "rigid")
+    still = barrier_motion(case, 0.0, 0.0, 0.0)
+    found = restitution(case, motion(case, -1.6, -0.5, 90.0, 0.17, 5.56e-4), still)
     for number in (found.mu, found.mu_c, found.edge.e, found.paper.E_ln, found.impulse.d_c):
         assert number == NO_PUSH
-    pushed = restitution(scene, motion(Case.of(scene, "rigid"), -1.4, -0.5, 90.0, 0.17, 5.56e-4), still)
+    pushed = restitution(case, motion(case, -1.4, -0.5, 90.0, 0.17, 5.56e-4), still)
     assert pushed.mu > 0
 
 
 def test_arms_that_do_not_approach_have_no_restitution():
-    scene = replace_all(load("t5b"), {"impact.omega": "60 rad/s"})
-    still = barrier_motion(scene, 0.0, 0.0, 0.0)
-    found = restitution(scene, motion(Case.of(scene, "rigid"), 0.4, -0.5, 90.0, 0.17, 5.56e-4), still)
+    case = Case.of(replace_all(load("t5b"), {"impact.omega": "60 rad/s"}), "rigid")
+    still = barrier_motion(case, 0.0, 0.0, 0.0)
+    found = restitution(case, motion(case, 0.4, -0.5, 90.0, 0.17, 5.56e-4), still)
     assert found.impulse.d_c > 1.502 / 60
     assert isinstance(found.impulse.e, Unknown)
     assert "approach" in found.impulse.e.reason

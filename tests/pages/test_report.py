@@ -305,10 +305,10 @@ def test_study_without_runs_or_comparison_still_reports(study):
     [
         ({"schema": "other/2"}, '"schema" = "other/2" is not'),
         ({"rows": "none"}, "rows must be array"),
-        ({"rows": [{"schema_version": 6}]}, r"rows\[0\]: key .* is missing"),
+        ({"rows": [{"schema_version": 7}]}, r"rows\[0\]: key .* is missing"),
         (
             {"rows": [{"schema_version": 3}]},
-            r"rows\[0\]: .* is not the version 6 .*; compute the run again",
+            r"rows\[0\]: .* is not the version 7 .*; compute the run again",
         ),
         ({"comparison": [{"set": "t2"}]}, r"comparison\[0\] must contain .*quantity"),
     ],
@@ -349,11 +349,19 @@ def test_pieces_escape_and_vanish_when_empty():
     assert with_band(0.5, None) == "0.5"
 
 
-def test_a_barrier_beside_the_one_in_use_has_no_change_to_tell():
-    told = {"forced": False, "needed": True, "measure": "m", "number": 1.0, "threshold": 0.5, "share": None}
-    told |= {"source": "s", "sentence": "t", "change_of_e": 0.2, "change_of_E_vib_over_E_0": 3e-4}
-    names = {"barrier-elastic": False, "barrier-elastoplastic": True, "gravity": False}
-    choices = [told | {"name": name, "on": on} for name, on in names.items()]
+def test_an_effect_is_shown_with_its_number_threshold_and_whether_it_is_on():
+    shared = {
+        "forced": False,
+        "needed": True,
+        "measure": "m",
+        "number": 1.25,
+        "threshold": 0.5,
+        "share": None,
+    }
+    shared |= {"source": "s", "sentence": "t"}
+    names = {"barrier-elastoplastic": True, "gravity": False}
+    choices = [shared | {"name": name, "on": on} for name, on in names.items()]
     text = str(effects_section(outcome_maker.outcome(effect_choices=choices)))
-    elastic, plastic, gravity = text.split("<tr>")[-3:]
-    assert "± 0.2" not in elastic and "± 0.2" in plastic and "± 0.2" in gravity
+    plastic, gravity = text.split("<tr>")[-2:]
+    assert ">on<" in plastic and ">off<" in gravity
+    assert all("1.25" in row and "0.5" in row for row in (plastic, gravity))

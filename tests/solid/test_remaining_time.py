@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from fem_impact.solid import observers
+from fem_impact.solid.contact.book import StepRecord
 from fem_impact.solid.observers import QUIET, REBOUND, ProgressObserver
 
 EXPECTED, STOPPING = 200e-6, 0.1  # s, N s
@@ -16,7 +17,9 @@ def told(monkeypatch):
     """Report at a time of the run and of the clock; return what was shown. Kernels load until 10 s."""
     shown, clock = [], SimpleNamespace(monotonic=lambda: clock.now, now=0.0)
     monkeypatch.setattr(observers, "clock", clock)
-    book = SimpleNamespace(step=np.zeros(9), intervals=[], touching=True, last_touch=0.0, impulse=np.zeros(3))
+    book = SimpleNamespace(
+        step=StepRecord(), intervals=[], touching=True, last_touch=0.0, impulse=np.zeros(3)
+    )
     watch = SimpleNamespace(drift=0.0)
     observer = ProgressObserver(shown.append, watch, SimpleNamespace(book=book), EXPECTED, STOPPING, "")
 

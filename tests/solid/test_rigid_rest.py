@@ -40,13 +40,13 @@ def test_slices_and_modes_are_not_built():
 
 
 def test_mass_and_inertia_are_those_of_the_rod(sliding):
-    rod = sliding.plan.scene.projectile.rigid_body
+    rod = sliding.case.scene.projectile.rigid_body
     assert sliding.motion.mass == pytest.approx(rod.mass, rel=1e-9)
     assert sliding.motion.inertia / sliding.motion.mass == pytest.approx(rod.k2, rel=0.01)
 
 
 def test_momentum_angular_momentum_and_energy_balance(sliding):
-    m, book, impact = sliding.motion, sliding.model.book, sliding.plan.scene.impact
+    m, book, impact = sliding.motion, sliding.model.book, sliding.case.scene.impact
     assert m.mass * (m.V_n - impact.v_n) == pytest.approx(2 * book.impulse[1], rel=1e-9)
     assert m.mass * (m.V_t - impact.v_t) == pytest.approx(2 * book.impulse[0], rel=1e-9)
     start = sliding.model.start[0][sliding.view.places]

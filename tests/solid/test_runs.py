@@ -8,6 +8,7 @@ import pytest
 import solid_scenes as scenes
 from threadpoolctl import threadpool_info, threadpool_limits
 
+from fem_impact.case.bodies import Bodies
 from fem_impact.case.case import Case
 from fem_impact.errors import RunError
 from fem_impact.fem import body
@@ -74,7 +75,7 @@ def test_ledger_closes(which, request):
 
 
 def test_energies_are_those_of_the_whole_rod(elastic):
-    rod, impact = elastic.plan.scene.projectile.rigid_body, elastic.plan.scene.impact
+    rod, impact = elastic.case.scene.projectile.rigid_body, elastic.case.scene.impact
     assert elastic.motion.mass == pytest.approx(rod.mass, rel=1e-9)
     assert elastic.E_0 == pytest.approx(0.5 * rod.mass * (impact.v_n**2 + impact.v_t**2), rel=1e-6)
     gained = elastic.motion.V_n - impact.v_n
@@ -91,7 +92,7 @@ def test_moment_of_the_contact_is_the_angular_momentum(yielding):
     m, book = yielding.motion, yielding.model.book
     start = yielding.model.start[0][yielding.view.places]
     centre = yielding.view.mass @ start / yielding.view.mass.sum()
-    impact = yielding.plan.scene.impact
+    impact = yielding.case.scene.impact
     before = m.mass * (centre[2] * impact.v_t - centre[0] * impact.v_n)
     after = m.inertia * m.Omega + m.mass * (m.centre[2] * m.V_t - m.centre[0] * m.V_n)
     assert after - before == pytest.approx(-2 * book.impulse[2], rel=2e-3)
@@ -152,7 +153,7 @@ def test_sliding_rod_has_the_impulse_ratio_of_its_friction(f):
 
 
 def test_same_run_twice_is_the_same_to_the_last_bit(yielding):
-    again = solve(yielding.plan)
+    again = solve(yielding.case)
     assert again.steps == yielding.steps
     assert again.accounts == yielding.accounts
     assert again.motion.V_n == yielding.motion.V_n
@@ -292,11 +293,13 @@ def _between(share):
     """Make meshes whose lowest point stands a share of a cell beside the middle of a cell."""
     real = body.build_geometry
 
-    def made(scene, zones, gap, meshed, vibrating):
-        angle, h = scene.impact.angle, zones.tip_size
+    def made(bodies, zones, gap, meshed, vibrating):
+        scene, h = bodies.scene, zones.tip_size
+        angle = scene.impact.angle
         turn = share * h / scene.projectile.tip_radius
         # the middle of a cell is the lowest point of a rod that stands a little steeper
-        geometry = real(replace(scene, impact=replace(scene.impact, angle=angle + turn)), zones, gap, meshed)
+        steeper = replace(scene, impact=replace(scene.impact, angle=angle + turn))
+        geometry = real(Bodies(steeper, bodies.effects), zones, gap, meshed)
         rho, z = scene.projectile.rigid_body.contact_point(angle)
         lowest = np.array([float(rho), 0.0, float(z)])
         points = (geometry.rod.mesh.points - lowest) @ to_barrier_frame(angle).T
@@ -362,7 +365,7 @@ def test_a_flat_strike_does_not_turn_the_rod_or_is_called_doubtful():
 
 def test_nothing_but_the_fine_zone_comes_down_to_the_barrier(yielding):
     """Only patch nodes are contact candidates, so all other skin nodes must stay above the surface."""
-    model = build(yielding.plan)
+    model = build(yielding.case)
     mesh = model.geometry.rod.mesh
     skin = np.unique(mesh.faces_with(SKIN))
     heights = model.layout.rod[skin, 2]
