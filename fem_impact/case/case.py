@@ -100,24 +100,22 @@ class Case:
             if the contact point does not come towards the barrier: the numbers of the effects are of an
             approach.
         """
-        self._require_effects()
         return decide(self._whole)
 
     @cached_property
     def active(self) -> tuple[str, ...]:
         """The effects in the model, in the order in which they enter it (SceneError: as of `decision`)."""
-        self._require_effects()
-        on = self.decision.on if AUTO in self.scene.effects else self.scene.effects
-        return tuple(name for name in NAMES if name in on)
-
-    def _require_effects(self) -> None:
-        require_approach(self._whole)
-        check_effects(self.scene.effects)
+        if AUTO not in self.scene.effects:
+            return self._whole.effects
+        return tuple(name for name in NAMES if name in self.decision.on)
 
     @cached_property
     def _whole(self) -> Bodies:
-        """The bodies with all effects in force that the scene does not force off."""
-        return Bodies(self.scene, all_effects(self.scene.effects))
+        """The bodies with all effects in force that the scene does not force off (SceneError: as above)."""
+        bodies = Bodies(self.scene, all_effects(self.scene.effects))
+        require_approach(bodies)
+        check_effects(self.scene.effects)
+        return bodies
 
     @cached_property
     def bodies(self) -> Bodies:

@@ -15,7 +15,6 @@ from math import pi, sqrt
 from fem_impact.physics.contact import ContactPair
 from fem_impact.physics.contact_law import contact_law
 
-LOSS = 1.73  # 1 - e over lambda for small lambda, from s'' + (1 + lambda d/dt) s^1.5 = 0
 MAIN_LOBE = 1.5  # highest frequency of a half-sine pulse over 1 / its duration: the end of its main lobe
 
 
