@@ -305,8 +305,8 @@ MUTANTS = (
     Mutant(
         "rate hardening by the strain of a step, not by its rate, eight lanes together",
         "fem_impact/solid/plastic_return.py",
-        "n, slow, count = law[2], _reference(rate) * dt, 0",
-        "n, slow, count = law[2], _reference(rate) * 1e-6, 0",
+        "n, slow, count = _exponent(law), _reference(rate) * dt, 0",
+        "n, slow, count = _exponent(law), _reference(rate) * 1e-6, 0",
         f"{YIELDING}::test_lanes_together_return_like_one_alone",
     ),
     Mutant(

@@ -99,7 +99,7 @@ def _elastic(rod: ProjectileSpec) -> ProjectileSpec:
     """Return the rod without what its modes do not depend on, so that they are found again."""
 
     def elastic(metal: Material) -> Material:
-        return replace(metal, name="elastic", yield_stress=1e9, ultimate_stress=1e9)
+        return Material("elastic", metal.E, metal.nu, metal.rho)
 
     segments = tuple(replace(part, material=elastic(part.material)) for part in rod.segments)
     return replace(rod, material=elastic(rod.material), segments=segments)

@@ -19,7 +19,7 @@ from math import inf, sqrt
 from typing import NamedTuple
 
 from fem_impact.physics.contact import LIMIT_PRESSURE, ContactPair
-from fem_impact.physics.hardening import Hardening, strain_rate
+from fem_impact.physics.hardening import Hardening, HardeningLaw, strain_rate
 
 FULLY_PLASTIC = 3.0  # H over the flow stress (Tabor)
 REPRESENTATIVE = 0.2  # strain of an indentation over a/R (Tabor)
@@ -59,16 +59,18 @@ class FlowLaw(NamedTuple):
     yields: bool
 
 
-def flow_law(pair: ContactPair, rod: Hardening | None, barrier: Hardening | None) -> FlowLaw:
+def flow_law(pair: ContactPair, rod: HardeningLaw | None, barrier: HardeningLaw | None) -> FlowLaw:
     """Return the law of two bodies and their flow curves, None of one that does not yield.
 
     The softer body flows, at the strain rate of the indentation, if the first contact reaches its hardness.
+    A table of its flow stress is stood for by the nearest power law.
     """
     size, soft, E_star = pair.estimate, pair.softer, pair.modulus
     R1, R2 = size.R1, size.R2
     flows = soft is not None and size.pressure >= LIMIT_PRESSURE * soft.yield_stress
     of_soft = [(barrier, pair.barrier), (rod, pair.rod)]
-    curve = next((law for law, metal in of_soft if law and metal == soft), Hardening(inf, 0.0, 0.0))
+    of_curves = (law.power for law, metal in of_soft if law and metal == soft)
+    curve = next(of_curves, Hardening(inf, 0.0, 0.0))
     faster = curve.rate.factor(strain_rate(size)) if curve.rate else 1.0
     over_length = (R2 / R1) ** 0.25  # an ellipse is shorter along t than the circle of its area
     return FlowLaw(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from math import log, log1p, sqrt
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -68,6 +69,24 @@ class Skin:
     factor: float
 
 
+class PowerLaw(NamedTuple):
+    """The numbers of `Hardening` as compiled code reads them; Pa, -, -."""
+
+    yield_stress: float
+    slope: float
+    exponent: float
+
+
+class Pieces(NamedTuple):
+    """Points (k,) of `TabulatedHardening` as compiled code reads them: plastic strain, and stress in Pa."""
+
+    strain: NDArray[np.float64]
+    stress: NDArray[np.float64]
+
+
+FlowCurve = PowerLaw | Pieces
+
+
 @dataclass(frozen=True, slots=True)
 class Hardening:
     """Flow stress sigma(eps_p) = yield_stress (1 + slope eps_p)^exponent, times a rate factor if any.
@@ -91,6 +110,71 @@ class Hardening:
         """Return the flow stress, Pa, at equivalent plastic strains of any shape."""
         strain = np.asarray(plastic_strain, dtype=np.float64)
         return np.asarray(self.yield_stress * (1 + self.slope * strain) ** self.exponent)
+
+    @property
+    def curve(self) -> PowerLaw:
+        """The numbers that compiled code reads."""
+        return PowerLaw(self.yield_stress, self.slope, self.exponent)
+
+    @property
+    def power(self) -> Hardening:
+        """The power law that stands for this curve: itself."""
+        return self
+
+
+FITTED = 0.2
+"""Largest strain of an indentation, 0.2 a/R (Tabor 1951), up to which a power law is fitted to a table."""
+
+
+@dataclass(frozen=True, slots=True)
+class TabulatedHardening:
+    """Flow stress, straight between points (plastic strain, Pa), flat behind the last; times a rate factor.
+
+    ``points`` begin at a plastic strain of 0, with the yield stress; strains grow, stresses do not fall.
+    """
+
+    points: tuple[tuple[float, float], ...]
+    rate: RateLaw | None = None
+
+    def __post_init__(self) -> None:
+        (first, least), *_ = self.points
+        steps = list(pairwise(self.points))
+        if len(self.points) < 2 or first != 0 or not least > 0 or any(b[0] <= a[0] for a, b in steps):
+            raise ValueError("A table of the flow stress needs two points or more, strains growing from 0.")
+        if any(b[1] < a[1] for a, b in steps):
+            raise ValueError("A softening material has no unique answer on any mesh: stresses must not fall.")
+
+    @property
+    def yield_stress(self) -> float:
+        """Flow stress, Pa, without plastic strain."""
+        return self.points[0][1]
+
+    @property
+    def curve(self) -> Pieces:
+        """The points that compiled code reads."""
+        strain, stress = np.array(self.points).T
+        return Pieces(np.ascontiguousarray(strain), np.ascontiguousarray(stress))
+
+    def flow_stress(self, plastic_strain: ArrayLike) -> NDArray[np.float64]:
+        """Return the flow stress, Pa, at equivalent plastic strains of any shape."""
+        return np.asarray(np.interp(np.asarray(plastic_strain, dtype=np.float64), *self.curve))
+
+    @property
+    def power(self) -> Hardening:
+        """The power law with the same yield stress that is nearest to the curve up to `FITTED`."""
+        strain = np.linspace(0.0, FITTED, 101)[1:]
+        gain = np.log(self.flow_stress(strain) / self.yield_stress)
+
+        def fitted(slope: float) -> tuple[float, float]:
+            base = np.log1p(slope * strain)
+            n = float(base @ gain / (base @ base))
+            return float(np.sum((n * base - gain) ** 2)), n
+
+        slope = min(np.geomspace(1e-2, 1e6, 161), key=lambda one: fitted(one)[0])
+        return Hardening(self.yield_stress, float(slope), fitted(slope)[1], self.rate)
+
+
+HardeningLaw = Hardening | TabulatedHardening
 
 
 def linear_hardening(yield_stress: float, modulus: float) -> Hardening:

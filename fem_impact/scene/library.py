@@ -10,14 +10,16 @@ from typing import Any
 
 from fem_impact.errors import SceneError, did_you_mean
 from fem_impact.plugins import added, wrong
-from fem_impact.scene import fields
-from fem_impact.scene.material import RATES, Material, Rate
-from fem_impact.scene.parameter import Parameter
+from fem_impact.scene.material import Material
+from fem_impact.scene.material_tables import material_of
+from fem_impact.scene.tables import Table, needed
 from fem_impact.scene.types import MEASURED_SETS, Surface
 from fem_impact.scene.units import parse_quantity
 
 CHANGED = " (changed)"
 """End of the name of a shipped material of which a scene changes a value."""
+BESIDE = ("melting", "intervals", "sources")
+"""Keys of a shipped material that are no values of it."""
 _DATA = files("fem_impact.scene").joinpath("data")
 
 
@@ -54,6 +56,22 @@ def material(name: str) -> Material:
         remedy = _nearest_material(name, known)
         raise SceneError("is not a shipped material.", value=name, remedy=remedy)
     return known[name]
+
+
+def read_material(table: Table | str) -> Material:
+    """Return a shipped material by its name, or one of a table of values (SceneError)."""
+    if isinstance(table, str):
+        return material(table)
+    made = material_of(needed(table, "name", '"my-steel", a name of its own'), table, ("name",))
+    known = materials().get(made.name)
+    if known is not None and known != made:
+        raise SceneError(
+            "is the name of a shipped material with other values.",
+            key="name",
+            value=made.name,
+            remedy="Give a changed material a name of its own.",
+        )
+    return made
 
 
 def _nearest_material(name: str, known: Collection[str]) -> str:
@@ -112,25 +130,7 @@ def nearest_scene(name: str) -> str:
 @cache
 def _material(name: str) -> Material:
     """Return a material of the table, read once."""
-    return _material_of(name, _table("materials.toml")[name])
-
-
-def _material_of(name: str, table: dict[str, Any]) -> Material:
-    law = {"law": table["law"]} if "law" in table else {}
-    return Material(name, **_values(table, fields.MATERIAL), **law, rate=_rate(table.get("rate")))
-
-
-def _rate(table: dict[str, Any] | None) -> Rate | None:
-    return RATES[table["law"]](**_values(table, fields.RATES[table["law"]])) if table else None
-
-
-def _values(table: dict[str, Any], wanted: tuple[Parameter, ...]) -> dict[str, Any]:
-    """Return the numbers of a shipped table in SI, with their defaults."""
-    return {
-        f.key: parse_quantity(table[f.key], f.dimension, f.key) if f.dimension else table[f.key]
-        for f in wanted
-        if f.key in table
-    } | {f.key: f.default for f in wanted if f.key not in table and f.default is not None}
+    return material_of(name, _table("materials.toml")[name], BESIDE)
 
 
 @cache
@@ -144,7 +144,7 @@ def _added_materials(ours: dict[str, Any]) -> dict[str, Any]:
     tables = added("materials", ours)
     for name, table in tables.items():
         try:
-            _material_of(name, table)
+            material_of(name, table, BESIDE)
         except (SceneError, TypeError, ValueError, AttributeError) as error:
             raise wrong(name, "materials", f"is no table of a material ({error}).") from None
     return tables

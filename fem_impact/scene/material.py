@@ -9,6 +9,7 @@ from typing import ClassVar, get_args
 from fem_impact.errors import SceneError
 from fem_impact.scene import fields
 from fem_impact.scene.checks import check_choice, check_numbers, check_text
+from fem_impact.scene.flow import Flow, JohnsonCookFlow, TableFlow
 
 MOST_STRAIN = 0.1
 """Elastic strain that no metal bears: a perfect crystal shears at G/(2 pi) (Frenkel 1926), in tension it
@@ -55,8 +56,9 @@ class Material:
     Attributes
     ----------
     yield_stress, ultimate_stress : Pa, of a tensile test; infinite for a body that never yields
-    hardening : plastic modulus d sigma / d eps_p, Pa, of linear hardening; without it flow stress is a power
-        law through the yield stress and what ``law`` names
+    hardening, tangent_modulus : Pa, d sigma / d eps_p or d sigma / d eps of linear hardening
+    flow : curve of the flow stress by another law; without any of these three it is a power law through the
+        yield stress and what ``law`` names
     hardness : Vickers' number HV, kgf/mm2 of the pyramid's faces
     law : ``tensile``, through the ultimate stress, or ``hardness``, through the flow stress of the hardness
     conductivity, heat_capacity : W/(m K), J/(kg K); None: not known
@@ -75,6 +77,8 @@ class Material:
     heat_capacity: float | None = None
     law: fields.FlowLaw = "tensile"
     rate: Rate | None = None
+    tangent_modulus: float | None = None
+    flow: Flow | None = None
 
     def __post_init__(self) -> None:
         check_text(self.name, "name", 60)
@@ -90,13 +94,31 @@ class Material:
         """Return whether the material has a yield stress."""
         return self.yield_stress < inf
 
+    @property
+    def plastic_modulus(self) -> float | None:
+        """The modulus d sigma / d eps_p, Pa, of linear hardening, None of another law."""
+        if self.tangent_modulus is None:
+            return self.hardening
+        return self.tangent_modulus / (1 - self.tangent_modulus / self.E)
+
+    @property
+    def curves(self) -> tuple[str, ...]:
+        """The keys that state how the flow stress grows, beside the strength that ``law`` names."""
+        return tuple(key for key in CURVES if getattr(self, key) is not None)
+
+
+CURVES = ("hardening", "tangent_modulus", "flow")
+
 
 def _check_strengths(metal: Material) -> None:
-    """Refuse one strength without the other, and what only a body that yields has, without any."""
-    if metal.yields and metal.ultimate_stress == inf:
-        remedy = "Give it, or leave out yield_stress too: the body then never yields."
+    """Refuse a yield stress alone, and what only a body that yields has, without it."""
+    if metal.yields and metal.ultimate_stress == inf and metal.law == "tensile" and not metal.curves:
+        remedy = (
+            'Give it, or tangent_modulus or hardening ("0 MPa": perfectly plastic), or a table flow; or '
+            "leave out yield_stress too: the body then never yields."
+        )
         raise SceneError("is missing beside yield_stress.", key="ultimate_stress", remedy=remedy)
-    for key in ("ultimate_stress", "hardening", "rate"):
+    for key in ("ultimate_stress", *CURVES, "rate"):
         if getattr(metal, key) not in (None, inf) and not metal.yields:
             raise SceneError("means nothing without yield_stress.", key=key, remedy="Leave it out.")
     if metal.yields and metal.yield_stress > MOST_STRAIN * metal.E:
@@ -117,12 +139,31 @@ def _check_strengths(metal: Material) -> None:
 
 
 def _check_law(metal: Material) -> None:
-    """Refuse a flow stress by hardness without a hardness, or beside a plastic modulus."""
-    if metal.law == "tensile":
-        return
-    if metal.hardness is None or not metal.yields:
+    """Refuse a flow stress that is stated twice, or without the numbers that it needs."""
+    if metal.law == "hardness" and (metal.hardness is None or not metal.yields):
         missing = "yield_stress" if metal.hardness else "hardness"
         raise SceneError(f"needs {missing}.", key="law", value=metal.law, remedy=f"Give {missing}.")
-    if metal.hardening is not None:
-        remedy = 'Leave out hardening, or write law = "tensile".'
-        raise SceneError("stands beside a plastic modulus.", key="law", value=metal.law, remedy=remedy)
+    if metal.law == "hardness" and metal.curves:
+        remedy = f'Leave out {metal.curves[0]}, or write law = "tensile".'
+        other = "a plastic modulus" if metal.curves[0] == "hardening" else metal.curves[0]
+        raise SceneError(f"stands beside {other}.", key="law", value=metal.law, remedy=remedy)
+    if len(metal.curves) > 1:
+        first, second, *_ = metal.curves
+        raise SceneError(f"stands beside {second}.", key=first, remedy="Keep one of the two.")
+    if metal.tangent_modulus is not None and metal.tangent_modulus >= metal.E:
+        value = f"{metal.tangent_modulus / 1e9:.4g} GPa"
+        raise SceneError("is not below E, the slope before yield.", key="tangent_modulus", value=value)
+    _check_flow(metal)
+
+
+def _check_flow(metal: Material) -> None:
+    """Refuse a table that does not begin at the yield stress, and heat without a heat capacity."""
+    flow = metal.flow
+    if isinstance(flow, TableFlow) and flow.points[0][1] != metal.yield_stress:
+        first = f"{flow.points[0][1] / 1e6:g} MPa"
+        remedy = f"Leave it out: it is the first point's stress, {first}."
+        value = f"{metal.yield_stress / 1e6:g} MPa"
+        raise SceneError("is not that of the table.", key="yield_stress", value=value, remedy=remedy)
+    if isinstance(flow, JohnsonCookFlow) and flow.m is not None and metal.heat_capacity is None:
+        remedy = "Give it, or leave out m, melting, reference and heat_share."
+        raise SceneError("is missing for the heat of the flow.", key="heat_capacity", remedy=remedy)

@@ -12,9 +12,9 @@ from typing import Any
 from fem_impact.errors import ResultError, SceneError, UsageError
 from fem_impact.scene import fields, library
 from fem_impact.scene.barrier import Barrier, Layer
-from fem_impact.scene.checks import check_choice, check_names, check_text
+from fem_impact.scene.checks import check_names, check_text
 from fem_impact.scene.impact import WAYS, Impact, the_way
-from fem_impact.scene.material import RATES, Material, Rate
+from fem_impact.scene.library import read_material
 from fem_impact.scene.own_mesh import OwnMesh
 from fem_impact.scene.projectile import ProjectileSpec, Segment
 from fem_impact.scene.shapes import (
@@ -258,7 +258,7 @@ def _of_profile(table: Table, own: dict[str, Any]) -> ProjectileSpec:
     check_keys(table, ("profile", "profile_smooth", "material"))
     points = stated_points(table["profile"], "profile")
     shape = Profile(points, table.get("profile_smooth", False))
-    return ProjectileSpec.turned(shape, within(table, "material", _material), **own)
+    return ProjectileSpec.turned(shape, within(table, "material", read_material), **own)
 
 
 def _of_mesh(table: Table, own: dict[str, Any]) -> ProjectileSpec:
@@ -267,7 +267,7 @@ def _of_mesh(table: Table, own: dict[str, Any]) -> ProjectileSpec:
         raise SceneError("stands beside a mesh, which has its own.", key="bore", remedy="Leave it out.")
     path = check_text(table["mesh"], "mesh", 1000)
     mesh = OwnMesh.of(path, table.get("mesh_unit", "m"), table.get("mesh_content"))
-    return ProjectileSpec.meshed(mesh, within(table, "material", _material), own["segments"])
+    return ProjectileSpec.meshed(mesh, within(table, "material", read_material), own["segments"])
 
 
 def _named_shape(table: Table, own: dict[str, Any]) -> ProjectileSpec:
@@ -276,7 +276,7 @@ def _named_shape(table: Table, own: dict[str, Any]) -> ProjectileSpec:
     refuse_tip(table)
     by_length = stated_by_length(name, table)
     sizes = numbers_of(table, sizes_of(name, by_length), ("shape", "material"))
-    material = within(table, "material", _material)
+    material = within(table, "material", read_material)
     if name not in TIPS:
         return ProjectileSpec.turned(NamedShape(name, tuple(sizes.values()), by_length), material, **own)
     radius = {"flat": 0.0, "hemisphere": sizes["diameter"] / 2}.get(name) or sizes.get("edge_radius", 0.0)
@@ -288,12 +288,13 @@ def _named_shape(table: Table, own: dict[str, Any]) -> ProjectileSpec:
 def _segment(table: Table) -> Segment:
     check_keys(table, ("to", "material"))
     end = parse_quantity(table["to"], "length", "to") if "to" in table else inf
-    return Segment(end, within(table, "material", _material))
+    return Segment(end, within(table, "material", read_material))
 
 
 def _layer(table: Table) -> Layer:
     return Layer(
-        **numbers_of(table, fields.LAYER, ("material",)), material=within(table, "material", _material)
+        **numbers_of(table, fields.LAYER, ("material",)),
+        material=within(table, "material", read_material),
     )
 
 
@@ -302,7 +303,7 @@ def _rod(table: Table, own: dict[str, Any]) -> ProjectileSpec:
     plain = {"tip_radius": 0.0} if table.get("tip") == "plain" else {}
     numbers = numbers_of(table, fields.PROJECTILE, ("tip", "material"), plain)
     tip = needed(table, "tip", '"A", "B" or "plain"')
-    return ProjectileSpec(tip=tip, material=within(table, "material", _material), **numbers, **own)
+    return ProjectileSpec(tip=tip, material=within(table, "material", read_material), **numbers, **own)
 
 
 def _barrier(table: Table) -> Barrier:
@@ -313,7 +314,7 @@ def _barrier(table: Table) -> Barrier:
         given["layers"] = listed(
             table["layers"], "layers", _layer, '{thickness = "2 mm", material = "rod-steel"}'
         )
-    return Barrier(within(table, "material", _material), **numbers, **given)
+    return Barrier(within(table, "material", read_material), **numbers, **given)
 
 
 def _impact(table: Table) -> Impact:
@@ -343,32 +344,6 @@ def _accuracy(table: Table | str) -> Accuracy:
                 "stands beside a target, which chooses the mesh.", key=key, remedy="Keep one of the two."
             )
     return Accuracy(**numbers, target=parse_share(table["target"], "target"))
-
-
-def _material(table: Table | str) -> Material:
-    if isinstance(table, str):
-        return library.material(table)
-    numbers = numbers_of(table, fields.MATERIAL, ("name", "law", "rate"))
-    stated: dict[str, Any] = {
-        f.key: f.checked(numbers[f.key]) for f in fields.MATERIAL if numbers[f.key] is not None
-    }
-    law = {"law": table["law"]} if "law" in table else {}
-    rate = within(table, "rate", _rate) if "rate" in table else None
-    made = Material(name=needed(table, "name", '"my-steel", a name of its own'), **stated, **law, rate=rate)
-    known = library.materials().get(made.name)
-    if known is not None and known != made:
-        raise SceneError(
-            "is the name of a shipped material with other values.",
-            key="name",
-            value=made.name,
-            remedy="Give a changed material a name of its own.",
-        )
-    return made
-
-
-def _rate(table: Table) -> Rate:
-    law = check_choice(needed(table, "law"), tuple(RATES), "law")
-    return RATES[law](**numbers_of(table, fields.RATES[law], ("law",)))
 
 
 def _surface(table: Table) -> Surface:

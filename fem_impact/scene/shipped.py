@@ -156,8 +156,8 @@ def _open_at_tail(rod: Any, was: ProjectileSpec) -> None:
 
 def _change(data: dict[str, Any], key: str, value: Any) -> None:
     *path, last = key.split(".")
-    if path[-2:] == ["material", "rate"]:
-        _open_rate(_section(data, path[:-1], key), last)
+    if path[-2:] in (["material", "rate"], ["material", "flow"]):
+        _open_law(_section(data, path[:-1], key), path[-1], last)
     if not path and last not in data:
         _refuse_bare(key, data)
     table = _section(data, path, key)
@@ -231,10 +231,10 @@ def _section(data: dict[str, Any], path: list[str], key: str) -> dict[str, Any]:
     return table
 
 
-def _open_rate(material: dict[str, Any], last: str) -> None:
-    """Make the table of a rate law; another law leaves none of the old one's numbers."""
-    if last == "law" or "rate" not in material:
-        material["rate"] = {}
+def _open_law(material: dict[str, Any], kind: str, last: str) -> None:
+    """Make the table of a law of rate or flow; another law leaves none of the old one's numbers."""
+    if last == "law" or kind not in material:
+        material[kind] = {}
 
 
 def _keep_one(table: dict[str, Any], last: str) -> None:

@@ -14,6 +14,7 @@ import tomli_w
 
 from fem_impact.scene import fields
 from fem_impact.scene.barrier import Barrier
+from fem_impact.scene.flow import Flow, TableFlow
 from fem_impact.scene.impact import Impact
 from fem_impact.scene.material import Material
 from fem_impact.scene.own_mesh import OwnMesh
@@ -120,7 +121,15 @@ def _material(material: Material) -> dict[str, Any]:
     law = {"law": material.law} if material.law != "tensile" else {}
     rate = material.rate
     rates = {"rate": {"law": rate.law, **_written(rate, fields.RATES[rate.law])}} if rate else {}
-    return {"name": material.name, **_written(material, fields.MATERIAL), **law, **rates}
+    flow = {"flow": _flow(material.flow)} if material.flow else {}
+    return {"name": material.name, **_written(material, fields.MATERIAL), **law, **flow, **rates}
+
+
+def _flow(flow: Flow) -> dict[str, Any]:
+    if isinstance(flow, TableFlow):
+        points = [[strain, fields.FLOW_STRESS.write(stress)] for strain, stress in flow.points]
+        return {"law": flow.law, "points": points}
+    return {"law": flow.law, **_written(flow, fields.FLOWS[flow.law])}
 
 
 def _written(part: object, wanted: tuple[Parameter, ...]) -> dict[str, Any]:

@@ -23,7 +23,7 @@ from fem_impact.fem.geometry import POINTS
 from fem_impact.fem.layout import DofLayout
 from fem_impact.fem.sparse import Hanging, NodeProduct
 from fem_impact.fem.stable import stable_step
-from fem_impact.physics.hardening import Hardening
+from fem_impact.physics.hardening import HardeningLaw
 from fem_impact.solid.contact.moving_plane import MovingPlane
 from fem_impact.solid.contact.patch import STEEP, make_patch
 from fem_impact.solid.contact.plane import PlaneContact
@@ -50,7 +50,7 @@ PLAY, BAND = 0.05, 0.02  # over the tip size, see `SurfaceContact`
 
 def yielding_zone(
     body: MeshedBody,
-    law: Hardening,
+    law: HardeningLaw,
     layout: DofLayout,
     strength: Array | None = None,
     part: tuple[Elastic, Bools] | None = None,

@@ -12,7 +12,7 @@ import numpy as np
 
 from fem_impact.fem.hexmodes import LANES
 from fem_impact.fem.kernels import by_type, inlined, kernel
-from fem_impact.physics.hardening import JohnsonCook
+from fem_impact.physics.hardening import JohnsonCook, PowerLaw
 
 SMALL = 0.01  # growth of the flow stress' base in one step up to which a few terms of its power are exact
 # scratch rows: 1 for lanes that go together, trial stress, growth, unknown and its last change, increment,
@@ -54,10 +54,45 @@ def _exp(u):  # type: ignore[no-untyped-def]
     return z * z
 
 
+@by_type("law", {PowerLaw: lambda law: law.exponent})
+def _exponent(law):  # type: ignore[no-untyped-def]
+    """Return n of sigma(strain + dp) = sigma(strain) (1 + growth dp)^n: 1 on a straight piece."""
+    return 1.0
+
+
+@inlined
+def _stress_and_slope(strain, law):  # type: ignore[no-untyped-def]
+    """Return stress and slope, Pa, of a curve of straight pieces, flat behind its last point."""
+    low, high = 0, len(law.strain) - 1
+    if strain >= law.strain[high]:
+        return law.stress[high], 0.0
+    while high - low > 1:
+        middle = (low + high) // 2
+        if law.strain[middle] <= strain:
+            low = middle
+        else:
+            high = middle
+    slope = (law.stress[high] - law.stress[low]) / (law.strain[high] - law.strain[low])
+    return law.stress[low] + slope * (strain - law.strain[low]), slope
+
+
+@by_type("law", {PowerLaw: lambda strain, law: law.slope / (1.0 + law.slope * strain)})
+def _growth(strain, law):  # type: ignore[no-untyped-def]
+    """Return the growth of `_exponent` at a plastic strain."""
+    stress, slope = _stress_and_slope(strain, law)
+    return slope / stress
+
+
+@by_type("law", {PowerLaw: lambda new, flow, strain, dp, law: new})
+def _on_curve(new, flow, strain, dp, law):  # type: ignore[no-untyped-def]
+    """Return the flow stress after a step, which ``new`` is where no corner of the curve was passed."""
+    return flow * _stress_and_slope(strain + dp, law)[0] / _stress_and_slope(strain, law)[0]
+
+
 @inlined
 def _plastic_increment(q, flow, strain, G3, law):  # type: ignore[no-untyped-def]
     """Solve q - 3 G dp = sigma(strain + dp) by Newton's method from the safe (left) side."""
-    growth, n = law[1] / (1.0 + law[1] * strain), law[2]
+    growth, n = _growth(strain, law), _exponent(law)
     dp = (q - flow) / (G3 + n * growth * flow)
     new = flow
     for _ in range(20):
@@ -111,8 +146,9 @@ def _hardened_increment(q, flow, strain, G3, law, rate, dt):  # type: ignore[no-
     no rate factor. Halley's method in u, from the lower of two bounds: all of q - sigma borne by the rate
     factor, or all by 3 G dp.
     """
-    slow, growth, least = _reference(rate) * dt, law[1] / (1.0 + law[1] * strain), _slowest(rate) * dt
-    over = q - flow * _power(growth * least, law[2])
+    slow, growth, least = _reference(rate) * dt, _growth(strain, law), _slowest(rate) * dt
+    n = _exponent(law)
+    over = q - flow * _power(growth * least, n)
     if over <= G3 * least:
         dp, new = _plastic_increment(q, flow, strain, G3, law)
         return dp, new, new
@@ -120,8 +156,8 @@ def _hardened_increment(q, flow, strain, G3, law, rate, dt):  # type: ignore[no-
     factor = 1.0
     for _ in range(MOST):
         dp, (factor, first, second) = slow * np.exp(u), _factor(u, rate)
-        new = flow * _power(growth * dp, law[2])
-        change = _correction(q, dp, new, factor, first, second, growth, G3, law[2])
+        new = flow * _power(growth * dp, n)
+        change = _correction(q, dp, new, factor, first, second, growth, G3, n)
         u += change
         if abs(change) <= CLOSE:
             dp *= 1.0 + change + 0.5 * change * change
@@ -145,9 +181,9 @@ def _start(w, trial2, flow, strain, G3, law, rate, dt):  # type: ignore[no-untyp
     These are beyond their flow stress and faster than the slowest rate. The numbers of the others are
     harmless.
     """
-    slope, n, slow, least, count = law[1], law[2], _reference(rate) * dt, _slowest(rate) * dt, 0
+    n, slow, least, count = _exponent(law), _reference(rate) * dt, _slowest(rate) * dt, 0
     for l in range(LANES):
-        growth, q = slope / (1.0 + slope * strain[l]), sqrt(trial2[l])
+        growth, q = _growth(strain[l], law), sqrt(trial2[l])
         over = q - flow[l] * _series(growth * least, n)
         together = over > G3 * least
         w[TOGETHER * LANES + l] = 1.0 if together else 0.0
@@ -181,7 +217,7 @@ def _begin(u, ratio, over, flow, rate):  # type: ignore[no-untyped-def]
 @inlined
 def _improve(w, flow, G3, law, rate, dt):  # type: ignore[no-untyped-def]
     """Make one step of `_hardened_increment` in all lanes; return how many have still to go on."""
-    n, slow, count = law[2], _reference(rate) * dt, 0
+    n, slow, count = _exponent(law), _reference(rate) * dt, 0
     for l in range(LANES):
         u, q, growth = w[UNKNOWN * LANES + l], w[SIZE * LANES + l], w[GROWTH * LANES + l]
         dp, (factor, first, second) = slow * _exp(u), _factor(u, rate)
@@ -208,7 +244,8 @@ def _return_together(w, trial2, rotated, stress, weight, flow, strain, work, G3,
         together = (w[TOGETHER * LANES + l] > 0.0) & exact
         w[GAIN * LANES + l] = w[GAIN * LANES + l] if together else 0.0
         new = w[SIZE * LANES + l] - G3 * w[GAIN * LANES + l]
-        flow[l] = new / _factor(w[UNKNOWN * LANES + l], rate)[0] if together else flow[l]
+        slow = new / _factor(w[UNKNOWN * LANES + l], rate)[0]
+        flow[l] = _on_curve(slow, flow[l], strain[l], w[GAIN * LANES + l], law) if together else flow[l]
         w[SHARE * LANES + l] = new / w[SIZE * LANES + l]
     for l in range(LANES):
         trial2[l] = 0.0 if w[GAIN * LANES + l] > 0.0 else trial2[l]
@@ -234,7 +271,7 @@ def return_map(w, trial2, rotated, stress, weight, flow, strain, work, G3, law, 
 
     The work uses the mean of the old and new stress, as the energy balance of the step does. ``rate`` is
     `JohnsonCook` or `CowperSymonds`, for which the loop is compiled apart, or None for a material without
-    rate hardening: the compiler then drops that branch.
+    rate hardening: the compiler then drops that branch. ``law`` is a `PowerLaw` or `Pieces`.
     """
     if rate is not None:
         _return_together(w, trial2, rotated, stress, weight, flow, strain, work, G3, law, rate, dt)
@@ -252,5 +289,5 @@ def return_map(w, trial2, rotated, stress, weight, flow, strain, work, G3, law, 
                 along += double * rotated[i * LANES + l] * stress[i * LANES + l]
                 stress[i * LANES + l] *= new / q
             work[l] += 0.5 * (new + 1.5 * along / q) * dp * weight[l]
+            flow[l] = _on_curve(slow, flow[l], strain[l], dp, law)
             strain[l] += dp
-            flow[l] = slow

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from fem_impact.arrays import Array, Ints
 from fem_impact.fem.elements import lame_constants
 from fem_impact.fem.hexmodes import CORNERS, DUMMY_EDGE, LANES, reference_gradients
-from fem_impact.physics.hardening import Hardening, RateLaw
+from fem_impact.physics.hardening import FlowCurve, HardeningLaw, RateLaw
 from fem_impact.solid.state import State
 from fem_impact.solid.yielding_kernel import ROWS, Blocks, elastic_energy, subtract_nodal, update
 
@@ -30,7 +30,7 @@ class YieldingZone:
     around : nodes (k, 3), starts and entries for `subtract_nodal`
     room : (ROWS * LANES,) work space of the kernels
     G, K : shear and bulk modulus, Pa
-    law : yield stress (Pa), slope and exponent of the hardening law
+    law : the hardening law in the numbers that compiled code reads
     rate : law of the rate factor, or None without rate hardening
     full : plain full integration in place of the mean dilatation
     """
@@ -44,7 +44,7 @@ class YieldingZone:
     room: Array
     G: float
     K: float
-    law: Array
+    law: FlowCurve
     rate: RateLaw | None
     full: bool = False
 
@@ -56,7 +56,7 @@ class YieldingZone:
         points: Array,
         E: float,
         nu: float,
-        law: Hardening,
+        law: HardeningLaw,
         dummy: Ints,
         full: bool = False,
         strength: Array | None = None,
@@ -83,11 +83,10 @@ class YieldingZone:
             work=np.zeros((blocks, LANES)),
             nodal=np.zeros((blocks, 3, 8, LANES)),
         )
-        constants = np.array([law.yield_stress, law.slope, law.exponent])
         room = np.zeros(ROWS * LANES)
         numbers, bulk = np.arange(len(dof)) if cells is None else cells, lame + 2 * G / 3
         around = _around(dof)
-        return cls(body, numbers, len(dof), state, around, room, G, bulk, constants, law.rate, full)
+        return cls(body, numbers, len(dof), state, around, room, G, bulk, law.curve, law.rate, full)
 
     def add(self, state: State) -> None:
         """Advance the blocks and subtract their nodal forces."""

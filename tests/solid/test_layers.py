@@ -198,7 +198,7 @@ def test_rows_of_cells_end_at_the_interfaces():
 def test_each_material_that_yields_has_its_own_zone_and_law():
     model = build(Case.of(scene([("1.2 mm", "steel-4340")], base="lead")))
     zones = [zone for zone in model.zones if zone.body == "barrier"]
-    assert [zone.law[0] for zone in zones] == [STEEL.yield_stress, materials()["lead"].yield_stress]
+    assert [zone.law.yield_stress for zone in zones] == [STEEL.yield_stress, materials()["lead"].yield_stress]
     assert not set(zones[0].cells) & set(zones[1].cells)
     points = model.geometry.barrier.points[model.geometry.barrier.cells]
     assert -points[zones[0].cells][..., 2].min() == pytest.approx(1.2e-3)

@@ -8,7 +8,14 @@ import solid_shapes as shapes
 
 from fem_impact.fem.elements import element_stiffness, lame_constants
 from fem_impact.fem.hexmodes import LANES, dummy_element
-from fem_impact.physics.hardening import CowperSymonds, JohnsonCook, linear_hardening, power_hardening
+from fem_impact.physics.hardening import (
+    CowperSymonds,
+    JohnsonCook,
+    PowerLaw,
+    TabulatedHardening,
+    linear_hardening,
+    power_hardening,
+)
 from fem_impact.solid.plastic_return import RETURN_ROWS, _hardened_increment, return_map
 from fem_impact.solid.yielding import YieldingZone
 
@@ -150,6 +157,13 @@ def _compress(rig, strain, steps):
     return force[np.isclose(points[:, 2], points[:, 2].max()), 2].sum()
 
 
+RATE = JohnsonCook(C=0.05, slowest=2.0)
+FACTORS = {
+    RATE: lambda rate: 1 + 0.05 * np.log(rate / 2.0),
+    CowperSymonds(3200.0, 5.0): lambda rate: 1 + (rate / 3200.0) ** 0.2,
+}
+
+
 @pytest.mark.parametrize("modulus", [0.0, 5e9])
 def test_confined_compression_against_the_closed_form(modulus):
     h, law, e = 1e-3, linear_hardening(300e6, modulus), 0.05
@@ -163,19 +177,41 @@ def test_confined_compression_against_the_closed_form(modulus):
     assert rig.plastic_work() == pytest.approx((300e6 + flow) / 2 * plastic * h**3, rel=1e-4)
 
 
+CORNERED = TabulatedHardening(((0.0, 300e6), (0.01, 301e6), (0.02, 420e6), (0.03, 430e6)))
+
+
+@pytest.mark.parametrize("rate", [None, RATE])
+@pytest.mark.parametrize("strain", [0.012, 0.025, 0.08])
+def test_confined_compression_along_a_table(strain, rate):
+    """However many corners were passed, the flow stress is that of the table at the plastic strain."""
+    h, steps = 1e-3, 400
+    rig = Rig(*shapes.grid((1, 1, 1), h), replace(CORNERED, rate=rate))
+    _compress(rig, strain, steps)
+    plastic = rig.flat("strain")
+    cold = np.interp(plastic, *np.transpose(CORNERED.points))
+    assert rig.flat("flow") == pytest.approx(cold, rel=1e-9)
+    factor = (2 * G * strain / plastic - 3 * G) * plastic / cold
+    dp = plastic / (steps * DT)  # mean rate; on the flat end it is that of the last step too
+    near = 1.0 if rate is None else FACTORS[RATE](dp)
+    assert factor == pytest.approx(near, rel=2e-4 if rate is None else 0.02)
+
+
+def test_a_table_of_one_line_is_linear_hardening():
+    h, law = 1e-3, linear_hardening(300e6, 5e9)
+    line = TabulatedHardening(((0.0, 300e6), (0.5, 300e6 + 0.5 * 5e9), (1.0, 300e6 + 5e9)))
+    forces = []
+    for one in (law, line):
+        rig = Rig(*shapes.grid((1, 1, 1), h), replace(one, rate=RATE))
+        forces.append(_compress(rig, 0.05, 100))
+    assert forces[1] == pytest.approx(forces[0], rel=1e-9)
+
+
 def test_confined_compression_before_yield():
     h = 1e-3
     rig = Rig(*shapes.grid((1, 1, 1), h), linear_hardening(300e6, 5e9))
     assert _compress(rig, 1e-3, 20) == pytest.approx(-(LAME + 2 * G) * 1e-3 * np.exp(1e-3) * h**2, rel=1e-6)
     assert rig.plastic_work() == 0.0
     assert rig.flat("strain").max() == 0.0
-
-
-RATE = JohnsonCook(C=0.05, slowest=2.0)
-FACTORS = {
-    RATE: lambda rate: 1 + 0.05 * np.log(rate / 2.0),
-    CowperSymonds(3200.0, 5.0): lambda rate: 1 + (rate / 3200.0) ** 0.2,
-}
 
 
 @pytest.mark.parametrize("rate", FACTORS)
@@ -216,16 +252,23 @@ LAWS = pytest.mark.parametrize(
 )
 
 
+POWER = PowerLaw(320e6, 640.0, 0.1)
+
+
+def flow_stress(law, strain):
+    return law.yield_stress * (1 + law.slope * strain) ** law.exponent
+
+
 @LAWS
 @pytest.mark.parametrize("over", np.logspace(-9, -1, 17))
 def test_the_increment_obeys_its_law_however_far_the_trial_is_out(over, rate):
     """The stress returned is that of the trial less 3 G dp, and that of the law at the rate dp/dt."""
-    law, flow, dt = np.array([320e6, 640.0, 0.1]), 400e6, 2.5e-8
-    strain = ((flow / law[0]) ** (1 / law[2]) - 1) / law[1]
+    law, flow, dt = POWER, 400e6, 2.5e-8
+    strain = ((flow / law.yield_stress) ** (1 / law.exponent) - 1) / law.slope
     q = flow * (1 + over)
     dp, new, slow = _hardened_increment(q, flow, strain, 3 * G, law, rate, dt)
     assert new == pytest.approx(q - 3 * G * dp, rel=1e-10)
-    assert slow == pytest.approx(law[0] * (1 + law[1] * (strain + dp)) ** law[2], rel=1e-10)
+    assert slow == pytest.approx(flow_stress(law, strain + dp), rel=1e-10)
     assert new == pytest.approx(slow * rate.factor(dp / dt), rel=1e-10)
 
 
@@ -233,8 +276,8 @@ def test_the_increment_obeys_its_law_however_far_the_trial_is_out(over, rate):
 @pytest.mark.parametrize("strain", [0.0, 0.02, 1.0])
 def test_lanes_together_return_like_one_alone(strain, rate):
     """Elastic, slow, usual and far trials side by side; the mean stress does the work of the increment."""
-    law, dt = np.array([320e6, 640.0, 0.1]), 2.5e-8
-    yield_stress = law[0] * (1 + law[1] * strain) ** law[2]
+    law, dt = POWER, 2.5e-8
+    yield_stress = flow_stress(law, strain)
     q = yield_stress * (1 + np.array([-0.5, -1e-12, *np.logspace(-12, 0, LANES - 2)]))
     stress, rotated = np.zeros((6, LANES)), np.zeros((6, LANES))
     stress[3], rotated[3] = q / np.sqrt(3), 0.9 * q / np.sqrt(3)  # shear

@@ -16,6 +16,7 @@ from fem_impact.answers.cost.measure import CostStudy
 from fem_impact.answers.refine.levels import MeshLevel
 from fem_impact.answers.refine.quantities import TARGETED
 from fem_impact.case.case import Case
+from fem_impact.case.effects.plasticity import strength_of
 from fem_impact.case.measured import summary, yardsticks
 from fem_impact.errors import SceneError
 from fem_impact.scene.material import Material
@@ -104,7 +105,7 @@ def _features(case: Case) -> dict[str, float]:
 def _steel(body: str, steel: Material, yields: bool) -> dict[str, float]:
     """Return the features of a body's material; strengths do not count where it stays elastic."""
     strong = yields and steel.yields
-    strength = (steel.yield_stress, steel.ultimate_stress / steel.yield_stress) if strong else (1.0, 1.0)
+    strength = (steel.yield_stress, strength_of(steel) / steel.yield_stress) if strong else (1.0, 1.0)
     values = (steel.E, steel.rho, *strength)
     return {f"{name} of the {body}": log(value) for name, value in zip(STEEL, values, strict=True)}
 

@@ -97,10 +97,10 @@ def known_error(scene: Scene) -> KnownError:
     )
 
 
-def _materials(scene: Scene) -> list[tuple[float, ...]]:
+def _materials(scene: Scene) -> list[tuple[object, ...]]:
     """Return what the reduced model takes of both materials."""
     both = scene.projectile.material, scene.barrier.material
-    return [(m.E, m.nu, m.rho, m.yield_stress, m.ultimate_stress) for m in both]
+    return [(m.E, m.nu, m.rho, m.yield_stress, m.ultimate_stress, m.plastic_modulus, m.flow) for m in both]
 
 
 def stored() -> tuple[str, ...]:

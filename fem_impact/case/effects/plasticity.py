@@ -2,17 +2,26 @@
 
 from __future__ import annotations
 
-from math import atan, sqrt
+from math import atan, inf, sqrt
 from typing import TYPE_CHECKING
 
 from fem_impact.case.effects.slots import Effect, ModelSpec
 from fem_impact.errors import SceneError
 from fem_impact.physics.contact import LIMIT_PRESSURE
+from fem_impact.physics.flow_curves import johnson_cook, ramberg_osgood
+from fem_impact.physics.hardening import (
+    TABOR_STRAIN,
+    HardeningLaw,
+    TabulatedHardening,
+    hardness_hardening,
+    linear_hardening,
+    power_hardening,
+)
+from fem_impact.scene.flow import Flow, RambergOsgoodFlow, TableFlow
 
 if TYPE_CHECKING:
     from fem_impact.case.bodies import Bodies
     from fem_impact.physics.contact import ContactPair
-    from fem_impact.physics.hardening import Hardening
     from fem_impact.scene.material import Material
 
 
@@ -47,12 +56,22 @@ def _peak(pair: ContactPair, other: Material) -> float:
     """Return the peak pressure, Pa, of the elastic contact, or the limit pressure of ``other`` if less."""
     peak = 1.5 * pair.elastic.estimate.pressure
     if pair.compliant:
-        peak = min(peak, LIMIT_PRESSURE * max(other.yield_stress, other.ultimate_stress))
+        peak = min(peak, LIMIT_PRESSURE * strength_of(other))
     return peak
 
 
-def hardening_of(material: Material) -> Hardening:
-    """Return the hardening law of a material: linear by its modulus, or through ultimate stress or hardness.
+def strength_of(material: Material) -> float:
+    """Return the larger of yield and ultimate stress, Pa, infinite of a material that never yields.
+
+    Without an ultimate stress it is the flow stress at the strain of a hardness test.
+    """
+    if not material.yields or material.ultimate_stress < inf:
+        return max(material.yield_stress, material.ultimate_stress)
+    return float(hardening_of(material).flow_stress(TABOR_STRAIN))
+
+
+def hardening_of(material: Material) -> HardeningLaw:
+    """Return the hardening law of a material, by whichever of its values states one.
 
     Raises
     ------
@@ -60,13 +79,13 @@ def hardening_of(material: Material) -> Hardening:
         If the material never yields, no power law reaches the ultimate stress, or the hardness stands for
         less than the yield stress.
     """
-    from fem_impact.physics.hardening import hardness_hardening, linear_hardening, power_hardening
-
     if not material.yields:
         remedy = "Give it, or leave the effect by which the body yields out of effects."
         raise SceneError("is not stated.", key=f"yield_stress of {material.name}", remedy=remedy)
-    if material.hardening is not None:
-        return linear_hardening(material.yield_stress, material.hardening)
+    if material.plastic_modulus is not None:
+        return linear_hardening(material.yield_stress, material.plastic_modulus)
+    if material.flow is not None:
+        return _of_flow(material, material.flow)
     key, value = "ultimate_stress", f"{material.ultimate_stress / 1e6:g} MPa"
     try:
         if material.law == "hardness" and material.hardness is not None:
@@ -75,6 +94,19 @@ def hardening_of(material: Material) -> Hardening:
         return power_hardening(material.E, material.yield_stress, material.ultimate_stress)
     except ValueError as error:
         raise SceneError(str(error), key=f"{key} of {material.name}", value=value) from None
+
+
+def _of_flow(material: Material, flow: Flow) -> HardeningLaw:
+    if isinstance(flow, TableFlow):
+        return TabulatedHardening(flow.points)
+    if isinstance(flow, RambergOsgoodFlow):
+        return ramberg_osgood(material.yield_stress, flow.n)
+    cold = (material.yield_stress, flow.B, flow.n)
+    stated = (material.heat_capacity, flow.m, flow.melting, flow.reference, flow.heat_share)
+    if None in stated:
+        return johnson_cook(*cold)
+    capacity, m, melting, reference, share = (number for number in stated if number is not None)
+    return johnson_cook(*cold, heat=share / (material.rho * capacity), span=melting - reference, m=m)
 
 
 def number(bodies: Bodies) -> float:
@@ -89,7 +121,7 @@ def fill(bodies: Bodies, spec: ModelSpec) -> None:
 
 EFFECT = Effect(
     "rod-plasticity",
-    "The rod's tip yields (J2, hardening through yield and ultimate stress).",
+    "The rod's tip yields (J2, isotropic hardening by its material's law).",
     "The rod stays elastic.",
     "peak pressure over first yield of the rod, (v/v_yield)^0.4",
     1.0,

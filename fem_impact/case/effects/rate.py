@@ -14,7 +14,7 @@ from fem_impact.physics.hardening import rate_gain, rate_law, strain_rate
 
 if TYPE_CHECKING:
     from fem_impact.case.bodies import Bodies
-    from fem_impact.physics.hardening import Hardening
+    from fem_impact.physics.hardening import HardeningLaw
     from fem_impact.scene.material import Material
 
 
@@ -33,7 +33,7 @@ def fill(bodies: Bodies, spec: ModelSpec) -> None:
     spec.under_laws = tuple(_faster(law, metal) for law, (_, metal) in under)
 
 
-def _faster(law: Hardening | None, metal: Material) -> Hardening | None:
+def _faster(law: HardeningLaw | None, metal: Material) -> HardeningLaw | None:
     return replace(law, rate=rate_law(metal)) if law else None
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from fem_impact.case.bodies import Bodies
-    from fem_impact.physics.hardening import Hardening, Skin
+    from fem_impact.physics.hardening import HardeningLaw, Skin
 
 
 @dataclass(slots=True)
@@ -34,9 +34,9 @@ class ModelSpec:
 
     vibrating: bool = False
     friction: float | None = None
-    rod_law: Hardening | None = None
-    barrier_law: Hardening | None = None
-    under_laws: tuple[Hardening | None, ...] = ()
+    rod_law: HardeningLaw | None = None
+    barrier_law: HardeningLaw | None = None
+    under_laws: tuple[HardeningLaw | None, ...] = ()
     skin: Skin | None = None
     meshed_barrier: bool = False
     radiating: bool = False
@@ -48,7 +48,7 @@ class ModelSpec:
     turning_frame: bool = False
 
     @property
-    def barrier_laws(self) -> tuple[Hardening | None, ...]:
+    def barrier_laws(self) -> tuple[HardeningLaw | None, ...]:
         """The laws of all materials of the barrier, from the top down."""
         return (self.barrier_law, *self.under_laws)
 

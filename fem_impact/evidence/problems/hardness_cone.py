@@ -134,7 +134,7 @@ def _vickers(p: Values, friction: float) -> list[Check]:
     checks = []
     for name in STEELS:
         of = material(name)
-        steel_metal = metal_of({"E": of.E, "nu": of.nu, "rho": of.rho}, hardening_of(of))
+        steel_metal = metal_of({"E": of.E, "nu": of.nu, "rho": of.rho}, hardening_of(of).power)
         pressure, _ = _reference(steel_metal, p["angle"], friction, int(p["cells"]) // 2)
         if of.hardness:
             found = FACES * pressure / KGF_PER_MM2

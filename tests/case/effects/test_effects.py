@@ -127,7 +127,7 @@ def test_elastoplastic_block_yields_alone():
 def test_both_bodies_yield_with_their_own_laws():
     made = model("vibration", "rod-plasticity", "barrier-elastoplastic")
     assert [zone.body for zone in made.zones] == ["rod", "barrier"]
-    assert [zone.law[0] for zone in made.zones] == [546e6, 320e6]
+    assert [zone.law.yield_stress for zone in made.zones] == [546e6, 320e6]
 
 
 def test_coasting_leaves_the_rod_alone():
