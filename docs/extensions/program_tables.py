@@ -39,7 +39,12 @@ _PLACES |= {
     "skin": "`[surface]`, for the effect machined-skin",
     "motion": "`[impact]` on a barrier that moves",
 }
-_PLACES |= {law: f'`rate` of a material, with `law = "{law}"`' for law in fields.RATES}
+_LAWS = {"rate": fields.RATES, "flow": fields.FLOWS}
+_PLACES |= {
+    f"{key} {law}": f'`{key}` of a material, with `law = "{law}"`'
+    for key, laws in _LAWS.items()
+    for law in laws
+}
 _OPTIONAL = ("top", "surface")  # a shipped surface brings its friction along
 
 
@@ -47,7 +52,8 @@ def _groups() -> Iterator[tuple[str, tuple[Parameter, ...]]]:
     for name, value in vars(fields).items():
         if _parameters(value):
             yield name.strip("_").lower(), value
-    yield from fields.RATES.items()
+    for key, laws in _LAWS.items():
+        yield from ((f"{key} {law}", numbers) for law, numbers in laws.items() if numbers)
 
 
 def _parameters(value: object) -> bool:
