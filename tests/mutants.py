@@ -339,7 +339,7 @@ MUTANTS = (
     ),
     Mutant(
         "depth in the nose along the barrier's normal",
-        "fem_impact/solid/doubts.py",
+        "fem_impact/solid/fine_zone.py",
         "(points - points[nearest]) * normals[nearest]).sum(axis=1)",
         "(points - points[nearest])[:, 2:] * normals[nearest][:, 2:]).sum(axis=1)",
         "tests/solid/test_skinwork.py::test_the_depth_in_a_round_nose_is_that_under_its_outline",

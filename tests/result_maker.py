@@ -193,6 +193,11 @@ REASONS = {
 }
 
 
+def limited(**sentences):
+    """Limitations as plain JSON, from one sentence a kind."""
+    return [{"kind": kind, "text": text} for kind, text in sentences.items()]
+
+
 def values(**changes):
     """Every key of a whole, valid record."""
     plain = NUMBERS | {
@@ -201,8 +206,10 @@ def values(**changes):
         "versions": {"python": "3.11.7", "numpy": "2.4.6", "fem-impact": "0.1.0"},
         "stopped_because": "The drift of the tip exceeds every later vibration amplitude.",
         "effects": ["vibration", "friction", "rod-plasticity", "barrier-elastoplastic"],
-        "validity": ["The impact speed lies inside the measured range, 1.3 to 6.1 m/s."],
-        "warnings": ["Yield stress is uncertain by a factor up to 1.5 (hardness and tensile data disagree)."],
+        "limitations": limited(
+            range="The impact speed lies inside the measured range, 1.3 to 6.1 m/s.",
+            input="Yield stress is uncertain by a factor up to 1.5 (hardness and tensile data disagree).",
+        ),
         "contacts": contacts(), "E_vib_below_floor": False, "reasons": REASONS,
         "W_damping_over_E_0": None, "steps": 40000,
         "element_steps": 320_000_000, "elements_rod": 5200, "elements_barrier": 2600,

@@ -57,4 +57,4 @@ right.legend(title="length of the rod")
 # Every outcome of the reduced model says how far it is known to lie from finite elements. Where the answer
 # depends on less than that, run the case with ``fidelity="solid"``.
 longest = found.select({"projectile.length": "240 mm", "impact.angle": "45 deg"})[0].outcome
-print("\n".join(longest.validity.assumptions[:3]))
+print("\n".join(one.text for one in longest.validity.limitations[:3]))

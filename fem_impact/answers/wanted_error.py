@@ -25,6 +25,7 @@ from fem_impact.answers.refine.quantities import TARGETED
 from fem_impact.files.lock import directory_lock
 from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import Unknown
+from fem_impact.outcome.limitation import limitations
 from fem_impact.outcome.record import Outcome
 from fem_impact.run import simulate as run
 from fem_impact.scene.types import Scene
@@ -149,14 +150,14 @@ class RefinementPlan:
         meshes, wall_s = loop.done, loop.budget.spent_s
         finest, size = meshes[-1].runs[0], meshes[-1].runs[0].cost.tip_size
         edge = "" if isinstance(size, Unknown) else f"{size * 1e3:.3g} mm"
-        over = [OVER.format(wall_s, self.budget_s)] if wall_s > self.budget_s else []
+        over = OVER.format(wall_s, self.budget_s) if wall_s > self.budget_s else ""
         missed = f"The wanted {100 * self.target:.3g} % is not reached: {_reached(meshes)}. "
-        advice = [] if stop.because == "decided" else [missed + _advice(loop, stop)]
+        advice = "" if stop.because == "decided" else missed + _advice(loop, stop)
         return with_limits(
             finest,
             meshes[-2:],
             accuracy_target=self.target,
-            warnings=(*finest.validity.warnings, *over, *advice),
+            limitations=(*finest.validity.limitations, *limitations("run", over, advice)),
             accuracy_setting=f"{len(meshes)} mesh{'es' * (len(meshes) > 1)} of its own, the finest {edge}",
             expected_error=NOT_MEASURED,
             expected_wall=max(self.budget_s, self.least_s),

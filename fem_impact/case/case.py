@@ -10,14 +10,14 @@ from fem_impact.case.cells import coarse_tip, thin_cells
 from fem_impact.case.choose import Decision, all_effects, choices, decide, neglected, require_approach
 from fem_impact.case.effects.registry import AUTO, EFFECTS, NAMES, check_effects
 from fem_impact.case.effects.slots import ModelSpec
-from fem_impact.case.layers import block_of, layer_warning, require_layers
+from fem_impact.case.layers import block_of, require_layers, thin_layer
 from fem_impact.case.limits import (
     require_own_mesh,
     require_point,
     require_round,
     require_shallow,
     require_still,
-    validity,
+    scene_limitations,
 )
 from fem_impact.case.mesh import require_mesh
 from fem_impact.case.metals import unknowns
@@ -27,6 +27,7 @@ from fem_impact.case.zones import Zones, require_fine_zone, require_layer, zones
 from fem_impact.errors import UsageError, did_you_mean
 from fem_impact.options import FIDELITIES
 from fem_impact.outcome.groups import EffectChoice
+from fem_impact.outcome.limitation import Limitation, limitations
 from fem_impact.physics.contact import ContactEstimate, ContactPair
 from fem_impact.physics.plate import plate_waves
 from fem_impact.scene.types import Scene
@@ -162,25 +163,19 @@ class Case:
         """Each effect with its number, threshold and verdict."""
         return choices(self.scene, self.decision)
 
-    @property
-    def outside(self) -> tuple[str, ...]:
-        """A sentence for each way in which the scene leaves the measured range."""
-        return validity(self.bodies, self.slots.bending is not None)
-
-    @property
-    def unknown(self) -> tuple[str, ...]:
-        """Sentences on what the materials do not state."""
-        return unknowns(self.bodies)
-
-    @property
-    def warnings(self) -> tuple[str, ...]:
-        """Sentences on what the reader should distrust on finite elements."""
+    @cached_property
+    def limitations(self) -> tuple[Limitation, ...]:
+        """What limits trust in any run of the case, before it is run."""
+        of_scene = scene_limitations(self.bodies, self.slots.bending is not None)
+        unstated = limitations("input", *unknowns(self.bodies))
+        if self.fidelity != "solid":
+            return (*of_scene, *unstated)
         return (
-            *neglected(self.choices),
-            *coarse_tip(self.bodies),
-            *layer_warning(self.bodies),
-            *thin_cells(self.scene.projectile),
-            *self.unknown,
+            *of_scene,
+            *limitations("input", *neglected(self.choices)),
+            *limitations("model", thin_layer(self.bodies)),
+            *limitations("resolution", coarse_tip(self.bodies), thin_cells(self.scene.projectile)),
+            *unstated,
         )
 
     @cached_property

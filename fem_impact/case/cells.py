@@ -153,30 +153,30 @@ def widest_tip_size(bodies: Bodies) -> float:
     return float(f"{size_for(bodies, LEAST[kind(bodies)]) / sqrt(2):.1e}")
 
 
-def thin_cells(rod: ProjectileSpec) -> tuple[str, ...]:
-    """Return a sentence when a cell of the user's mesh is so thin that it makes the time step small."""
+def thin_cells(rod: ProjectileSpec) -> str:
+    """Say when a cell of the user's mesh is so thin that it makes the time step small."""
     mesh = rod.own_mesh
     if mesh is None:
-        return ()
+        return ""
     thick = meshes.thicknesses(mesh.half())
     thinnest, median = float(thick.min()), float(np.median(thick))
     if thinnest * THIN > median:
-        return ()
+        return ""
     count, place = int((thick * THIN < median).sum()), mesh.half().points[mesh.half().cells[thick.argmin()]]
     x, y, z = 1e3 * place.mean(axis=0)
     return (
         f"The thinnest cell of the mesh, {thinnest * 1e6:.3g} um about ({x:.4g}, {y:.4g}, {z:.4g}) mm, allows"
         f" {thinnest / median:.1g} of the time step of the median cell, {median * 1e6:.3g} um; {count} "
-        f"{'cell is' if count == 1 else 'cells are'} thinner than a tenth of that.",
+        f"{'cell is' if count == 1 else 'cells are'} thinner than a tenth of that."
     )
 
 
-def coarse_tip(bodies: Bodies) -> tuple[str, ...]:
-    """Return a sentence when the mesh may not resolve the contact."""
+def coarse_tip(bodies: Bodies) -> str:
+    """Say when the mesh may not resolve the contact."""
     if expected_cells(bodies) >= LEAST[kind(bodies)] or bodies.scene.accuracy.target is not None:
-        return ()  # a target chooses its own mesh
+        return ""  # a target chooses its own mesh
     return (
         f"The contact, about {contact_radius(bodies) * 1e3:.2g} mm in radius, may be too narrow for elements "
         f"of {contact_edge(bodies) * 1e3:.2g} mm at the tip: e, mu and all shares then depend on the mesh. "
-        f"{advice(bodies)}.",
+        f"{advice(bodies)}."
     )

@@ -94,12 +94,12 @@ def _too_thin(bodies: Bodies, zones: Zones, share: float) -> SceneError:
     )
 
 
-def layer_warning(bodies: Bodies) -> tuple[str, ...]:
-    """Return a sentence where the first layer is thin for the contact, whose estimates know it alone."""
+def thin_layer(bodies: Bodies) -> str:
+    """Say where the first layer is thin for the contact, whose estimates know it alone."""
     barrier, size = bodies.barrier, bodies.estimate
     if not barrier.layers or barrier.layers[0].thickness > WIDE * max(size.a_t, size.a_b):
-        return ()
+        return ""
     return (
         f"The first layer, {barrier.layers[0].thickness * 1e3:.3g} mm, is thin for a contact of about "
-        f"{1e3 * max(size.a_t, size.a_b):.2g} mm radius; effects and cells are chosen as if it were thick.",
+        f"{1e3 * max(size.a_t, size.a_b):.2g} mm radius; effects and cells are chosen as if it were thick."
     )

@@ -9,6 +9,7 @@ from dataclasses import replace
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.plates import is_wider, thin_plate
 from fem_impact.errors import SceneError
+from fem_impact.outcome.limitation import Limitation, limitations
 from fem_impact.physics.contact import FLAT
 from fem_impact.scene import library
 from fem_impact.scene.barrier import Barrier
@@ -40,20 +41,17 @@ BONDED_LAYERS = (
 TIPS = {("A", 0.007), ("B", 0.003)}
 
 
-def validity(bodies: Bodies, meshed_through: bool) -> tuple[str, ...]:
-    """Return one sentence for each way in which the scene lies outside the measured range.
+def scene_limitations(bodies: Bodies, meshed_through: bool) -> tuple[Limitation, ...]:
+    """Return each way in which the scene leaves the measured range, or its model is idealised.
 
     ``meshed_through`` says whether a plate that bends is meshed through its thickness.
     """
     scene, active = bodies.scene, bodies.effects
     speed = round(math.hypot(scene.relative.v_n, scene.relative.v_t), 3)
-    sentences = (
+    unmeasured = limitations(
+        "range",
         _outside(scene.projectile.length, LENGTHS, "length", "length"),
         _section(scene),
-        ELASTIC_SEGMENTS if scene.projectile.segments else "",
-        FACETS if scene.projectile.own_mesh is not None else "",
-        BONDED_LAYERS if scene.barrier.layers else "",
-        thin_plate(bodies, meshed_through),
         _outside(speed, SPEEDS, "speed", "speed"),
         _outside(scene.impact.angle, ANGLES, "angle", "angle"),
         _fall(scene),
@@ -61,9 +59,16 @@ def validity(bodies: Bodies, meshed_through: bool) -> tuple[str, ...]:
         _steels(scene),
         _barrier(scene),
         _surface(scene, active),
+    )
+    idealised = limitations(
+        "model",
+        ELASTIC_SEGMENTS if scene.projectile.segments else "",
+        FACETS if scene.projectile.own_mesh is not None else "",
+        BONDED_LAYERS if scene.barrier.layers else "",
+        thin_plate(bodies, meshed_through),
         _idealised(active),
     )
-    return tuple(sentence for sentence in sentences if sentence)
+    return (*unmeasured, *idealised)
 
 
 def _outside(value: float, ends: tuple[float, float], name: str, dimension: str) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterable, Iterator
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,8 +12,9 @@ from fem_impact.cli.options import Options
 from fem_impact.cli.parser import CommandParser
 from fem_impact.cli.paths import shown_path
 from fem_impact.cli.scene_options import add_scene, changed_scene, say_kept
-from fem_impact.cli.terminal import headed, print_json, size_text
+from fem_impact.cli.terminal import headed, limitation_lines, print_json, size_text
 from fem_impact.errors import UsageError
+from fem_impact.outcome.limitation import texts
 from fem_impact.progress import clock_text
 from fem_impact.scene.fields import DEFAULTS
 from fem_impact.scene.inputs import STATED, inputs, materials_of
@@ -30,6 +32,7 @@ if TYPE_CHECKING:
 
 
 DRAWINGS = (".png", ".svg")
+INSIDE = "inside the measured range of speed, angle, rod, steels and surfaces"
 LONG = "--long prints every value with its source, flow stresses, and each effect with its share of run time."
 
 
@@ -52,7 +55,7 @@ def check(options: Options) -> int:
     """Print what a scene states and calls for, and run nothing; return the exit code.
 
     That is the projectile's mass, arms and periods, the estimated contact, the effects with the numbers that
-    decide on them, warnings, and size and time of a run with finite elements. ``--long`` prints every value
+    decide on them, size and time of a run with finite elements, limitations. ``--long`` prints every value
     with its source instead, ``--json`` all of it in SI units, ``--drawing`` draws the projectile into a file.
 
     Raises
@@ -128,8 +131,7 @@ def _statement(case: Case) -> dict[str, Any]:
         "flow_stress_Pa": _flow_stresses(case),
         "defaults": [{"key": d.key, "value": d.value, "source": d.source} for d in DEFAULTS],
         "effects": [{key.name: key.of(choice) for key in keys_of(EffectChoice)} for choice in case.choices],
-        "validity": list(case.outside),
-        "warnings": list(case.warnings),
+        "limitations": [asdict(one) for one in case.limitations],
         "size": None if scene.accuracy.target else _size_entry(case.size),
     }
 
@@ -231,18 +233,18 @@ def _long(case: Case, statement: dict[str, Any], place: Path) -> str:
     lines += ["", "Projectile", *_drawing(case), *_wrapped(_body_lines(statement["body"]))]
     lines += ["", "Effects"]
     lines += [line for choice in case.choices for line in _effect_lines(choice)]
-    lines += _wrapped(f"warning: {sentence}" for sentence in statement["warnings"])
-    return "\n".join([*lines, *_size_lines(case), *_end_lines(statement)]) + "\n"
+    return "\n".join([*lines, *_size_lines(case), *_end_lines(case, statement)]) + "\n"
 
 
-def _end_lines(statement: dict[str, Any]) -> list[str]:
-    inside = "inside the measured range of speed, angle, rod, steels and surfaces"
-    validity = _wrapped(statement["validity"] or [inside])
-    return ["", "Validity", *validity, "", "The scene is valid; its digest:", statement["digest"]]
+def _end_lines(case: Case, statement: dict[str, Any]) -> list[str]:
+    limited = limitation_lines(case.limitations, "  ")
+    if not texts(case.limitations, "range", "model"):
+        limited = [*_wrapped([INSIDE]), *limited]
+    return ["", "Limitations", *limited, "", "The scene is valid; its digest:", statement["digest"]]
 
 
 def _short(case: Case, statement: dict[str, Any]) -> str:
-    """Return projectile, barrier and contact, effects with their numbers, size, warnings and validity."""
+    """Return projectile, barrier and contact, effects with their numbers, size and limitations."""
     scene = case.scene
     lines = [headed(scene.id, scene.title), "", "Projectile", *_drawing(case)]
     lines += _wrapped([_material_line(scene), *_body_lines(statement["body"])])
@@ -254,8 +256,7 @@ def _short(case: Case, statement: dict[str, Any]) -> str:
     )
     off = [f"{one.name}{' (forced)' if one.forced else ''}" for one in case.choices if not one.on]
     lines += _wrapped([f"off {', '.join(off)}: not called for, or left out by the scene"])
-    lines += _wrapped(f"warning: {sentence}" for sentence in statement["warnings"])
-    lines += [*_size_lines(case), *_end_lines(statement), ""]
+    lines += [*_size_lines(case), *_end_lines(case, statement), ""]
     return "\n".join([*lines, *wrapped(LONG)]) + "\n"
 
 

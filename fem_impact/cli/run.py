@@ -14,7 +14,7 @@ from fem_impact.cli.options import Options, add_out, add_text, stated_budget
 from fem_impact.cli.parser import CommandParser
 from fem_impact.cli.paths import checked_out, shown_path, told_kept
 from fem_impact.cli.scene_options import add_scene, changed_scene, say_kept
-from fem_impact.cli.terminal import chosen_meter, headed, print_table, size_text
+from fem_impact.cli.terminal import chosen_meter, headed, limitation_lines, print_table, size_text
 from fem_impact.errors import RunError, UsageError
 from fem_impact.files.run_directory import CHECKPOINT
 from fem_impact.jobs.executors import cores
@@ -199,7 +199,7 @@ _IF_ON = ("damping", "contact", "plate", "barrier")
 
 
 def print_outcome(outcome: Outcome, out: Path, own_tests: bool = False) -> None:
-    """Print the motion after impact, where the energy went, and every warning.
+    """Print the motion after impact, where the energy went, and every limitation.
 
     ``own_tests``: the scene names tests of the user's own, with whose arms e is worked out if they state any.
     """
@@ -222,9 +222,7 @@ def print_outcome(outcome: Outcome, out: Path, own_tests: bool = False) -> None:
     lines += _accuracy_lines(outcome)
     motion = {label: KEY_TABLE[name].of(outcome) for label, name, _ in rows}
     lines += _unknown_lines({**motion, **listed, HEATING: outcome.energy.skin})
-    v = outcome.validity
-    notes = (*v.assumptions, *v.outside, *v.warnings, *_again(outcome))
-    lines += ["", *(line for sentence in notes for line in wrapped(f"note: {sentence}"))]
+    lines += ["", *limitation_lines(outcome.validity.limitations)]
     sys.stdout.write("\n".join([*lines, f"results: {out}"]) + "\n")
 
 
@@ -239,17 +237,6 @@ def _motion_rows(outcome: Outcome, own_tests: bool) -> list[tuple[str, str, str]
     if or_none(barrier.Omega_b) is not None:
         rows.append(("Omega of the barrier after", "barrier_Omega_rad_per_s", "rad/s"))
     return rows
-
-
-def _again(outcome: Outcome) -> list[str]:
-    """Return that the rod strikes again later, of a finished run whose velocities are known."""
-    from fem_impact.run.common import strikes_again
-
-    V_n, V_bn = or_none(outcome.motion.V_n), or_none(outcome.barrier.V_bn)
-    if V_n is None or V_bn is None or not outcome.validity.finished:
-        return []
-    sentence = strikes_again(V_n - V_bn).strip()
-    return [sentence] if sentence else []
 
 
 def _listed_shares(outcome: Outcome) -> dict[str, Num]:

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, TextIO
 
 from fem_impact.errors import printable
 from fem_impact.progress import CaseProgress, LineMeter, Notice, NullMeter, Progress, ProgressMeter, describe
+from fem_impact.tables.text import wrapped
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 
     from fem_impact.case.size import RunSize
     from fem_impact.cli.options import Options
+    from fem_impact.outcome.limitation import Limitation
     from fem_impact.tables.table import Table
 
 
@@ -177,6 +179,11 @@ class LiveMeter:
 def headed(scene_id: str, title: str) -> str:
     """Return the line that names a scene; one without a title has its id for it."""
     return scene_id if title == scene_id else f"{scene_id}: {title}"
+
+
+def limitation_lines(limitations: Iterable[Limitation], indent: str = "") -> list[str]:
+    """Return each limitation after its kind, wrapped."""
+    return [line for one in limitations for line in wrapped(f"{one.kind}: {one.text}", indent)]
 
 
 def size_text(size: RunSize) -> str:

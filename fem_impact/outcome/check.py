@@ -13,7 +13,7 @@ from fem_impact.errors import ResultError, did_you_mean
 from fem_impact.options import FIDELITIES
 from fem_impact.outcome.keys import Key, Kind
 
-SCHEMA_VERSION = 7
+SCHEMA_VERSION = 8
 """Raised whenever a key is renamed, removed, added or changes its meaning."""
 
 # JSON Schema of a value by its kind, and the text of the error message
@@ -90,7 +90,7 @@ def _shape(key: Key) -> dict[str, Any]:
         entry = {**_object(key.entries), "additionalProperties": False}
         shape: dict[str, Any] = {"type": "array", "items": entry}
     else:
-        shape = dict(SHAPES[key.kind][0])
+        shape = {**SHAPES[key.kind][0], **({"enum": list(key.choices)} if key.choices else {})}
     return {**shape, "type": [shape["type"], "null"]} if key.nullable else shape
 
 
@@ -115,11 +115,15 @@ def _shape_complaint(key: Key, value: Any, inner: list[str]) -> str:
     if value is None:
         return "must not be null"
     if key.kind != "entries":
-        return SHAPES[key.kind][1]
+        return _demand(key)
     entry = next((entry for entry in key.entries if entry.name in inner), None)
     if entry is None:
         return f"must be a list of entries of exactly {', '.join(entry.name for entry in key.entries)}"
-    return f'has an entry whose "{entry.name}" {SHAPES[entry.kind][1]}'
+    return f'has an entry whose "{entry.name}" {_demand(entry)}'
+
+
+def _demand(key: Key) -> str:
+    return f"must be one of {', '.join(key.choices)}" if key.choices else SHAPES[key.kind][1]
 
 
 def _check_names(values: Mapping[str, Any], table: Mapping[str, Key], source: str) -> None:

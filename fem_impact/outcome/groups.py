@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from fem_impact.outcome.keys import Num, Unknown, group, key, or_none, part
+from fem_impact.outcome.limitation import Limitation
 
 ARMS = ("paper", "edge", "impulse")
 """The three sets of contact arms that every coefficient is given with."""
@@ -54,11 +55,9 @@ class Validity:
         "finished", "", "True when the stop rule ended the run, false when a limit cut it off."
     )
     stopped_because: str = key("stopped_because", "", "Why the run ended, as a sentence.")
-    assumptions: tuple[str, ...] = key(
-        "assumptions", "", "Sentences on what the model leaves out or takes from elsewhere."
+    limitations: tuple[Limitation, ...] = key(
+        "limitations", "", "What limits trust in the record: sentences, each with its kind."
     )
-    outside: tuple[str, ...] = key("validity", "", "Sentences on where the scene leaves the measured range.")
-    warnings: tuple[str, ...] = key("warnings", "", "Sentences on what the reader should distrust.")
     accuracy_target: Num = key("accuracy_target", "-", "Relative error that the scene asked for.")
     accuracy_setting: str | Unknown = key(
         "accuracy_setting", "", "Setting that the measured costs chose for it."

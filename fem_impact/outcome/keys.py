@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, fields, is_dataclass
 from functools import reduce
 from types import UnionType
-from typing import Any, Literal, NoReturn, TypeVar, dataclass_transform, get_args, get_type_hints
+from typing import Any, Literal, NoReturn, TypeVar, dataclass_transform, get_args, get_origin, get_type_hints
 
 from fem_impact.errors import ResultError
 
@@ -95,6 +95,8 @@ class Key:
         Keys of each entry, where the value is a list of entries.
     entry : type
         Class of such an entry.
+    choices : tuple of str
+        The words that a text may be; empty where it is free.
     """
 
     name: str
@@ -106,6 +108,7 @@ class Key:
     path: tuple[str, ...] = ()
     entries: tuple[Key, ...] = ()
     entry: type = object
+    choices: tuple[str, ...] = ()
 
     def of(self, outcome: object) -> Any:
         """Return the value in an outcome."""
@@ -165,9 +168,10 @@ def _key(
 ) -> Key:
     name, unit, meaning, banded = declared
     options = get_args(hint) if isinstance(hint, UnionType) else (hint,)
-    entry = next(iter(get_args(options[0])), object)
+    choices = get_args(options[0]) if get_origin(options[0]) is Literal else ()
+    entry = object if choices else next(iter(get_args(options[0])), object)
     entries = tuple(keys_of(entry)) if is_dataclass(entry) else ()
-    kind = "entries" if entries else KINDS[options[0]]
+    kind = "text" if choices else "entries" if entries else KINDS[options[0]]
     return Key(
         name.replace("{}", group_name),
         kind,
@@ -178,6 +182,7 @@ def _key(
         path=path,
         entries=entries,
         entry=entry,
+        choices=choices,
     )
 
 

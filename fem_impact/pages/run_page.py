@@ -145,7 +145,7 @@ def run_page(folder: Path) -> str:
         html.section("Coefficients and losses", html.details("With three sets of arms", _arms(outcome))),
         sections.effects_section(outcome),
         sections.unknown([outcome]),
-        html.section("Range of validity", html.bullets(outcome.validity.outside)),
+        sections.validity([outcome]),
         html.section("Cost", html.details("Time, memory and elements", costs)),
         html.sources([*outcome.provenance.effects, *(["film"] if sections.has_film(folder) else [])]),
         html.section("Record", _scene_text(folder), sections.all_keys(outcome)),

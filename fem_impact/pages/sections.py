@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -16,6 +16,7 @@ from fem_impact.files.waves import read_waves
 from fem_impact.films.movement import FRAMES, QUICK_FRAMES, STUDY_FRAMES
 from fem_impact.outcome.groups import EffectChoice
 from fem_impact.outcome.keys import Key, Unknown, or_none
+from fem_impact.outcome.limitation import LimitationKind, texts
 from fem_impact.outcome.record import KEYS, Outcome
 from fem_impact.pages import html
 from fem_impact.pages.html import Markup
@@ -61,8 +62,8 @@ def _short_history(outcome: Outcome, folder: Path) -> list[str]:
 
 
 def notices(rows: list[Outcome], more: Sequence[str] = ()) -> Markup:
-    """Return a highlighted block of warnings, nothing when there is none."""
-    warned = sentences(rows, lambda row: row.validity.warnings)
+    """Return a highlighted block of what `validity` does not list, nothing when there is none."""
+    warned = _sentences(rows, "input", "resolution", "result", "run")
     cut = [
         f"{row.provenance.scene_id} was cut off: {row.validity.stopped_because}"
         for row in rows
@@ -70,6 +71,11 @@ def notices(rows: list[Outcome], more: Sequence[str] = ()) -> Markup:
     ]
     listed = html.bullets([*more, *cut, *warned]).text
     return Markup(f'<div class="notice"><strong>To keep in mind</strong>\n{listed}</div>' if listed else "")
+
+
+def validity(rows: Sequence[Outcome]) -> Markup:
+    """Return the section on what the model leaves out and where scenes leave what was measured."""
+    return html.section("Range of validity", html.bullets(_sentences(rows, "range", "model")))
 
 
 def history_figures(outcome: Outcome, folder: Path, again: bool = True) -> Markup:
@@ -181,11 +187,11 @@ def unknown(rows: Sequence[Outcome]) -> Markup:
     return html.section("What is not known", listed if lines else Markup(""))
 
 
-def sentences(rows: Sequence[Outcome], of: Callable[[Outcome], Iterable[str]]) -> list[str]:
-    """Return the distinct sentences of outcomes, such as warnings, each with the ids of its runs."""
+def _sentences(rows: Sequence[Outcome], *kinds: LimitationKind) -> list[str]:
+    """Return the distinct limitations of outcomes of some kinds, each with the ids of its runs."""
     ids: dict[str, list[str]] = {}
     for row in rows:
-        for sentence in of(row):
+        for sentence in texts(row.validity.limitations, *kinds):
             ids.setdefault(sentence, []).append(row.provenance.scene_id)
     if len(rows) == 1:
         return list(ids)

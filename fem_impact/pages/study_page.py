@@ -215,7 +215,6 @@ def study_page(folder: Path, again: bool = True) -> str:
     """
     study, since = read_study(folder), None if again else folder / "study.json"
     rows = list(study.rows)
-    outside = sections.sentences(rows, lambda row: row.validity.outside)
     filmed = any(sections.has_film(folder / row.provenance.scene_id) for row in rows)
     body = (
         findings_section(study, lead=sections.comparison_part(study.comparison, study.folder, since)),
@@ -225,7 +224,7 @@ def study_page(folder: Path, again: bool = True) -> str:
         html.section("Where the energy went", partition_part(study, since)),
         html.section("Over time, run by run", *(_run(row, folder) for row in rows)),
         sections.unknown(rows),
-        html.section("Range of validity", html.bullets(outside)),
+        sections.validity(rows),
         html.section("Cost", html.details("Time, memory and elements", _costs(rows)) if rows else Markup("")),
         html.sources([*study.sources, *(["film"] if filmed else [])]),
     )

@@ -24,6 +24,7 @@ from fem_impact.outcome.groups import (
     Validity,
 )
 from fem_impact.outcome.keys import Num, Unknown
+from fem_impact.outcome.limitation import Limitation, limitations
 from fem_impact.outcome.record import Outcome, installed_versions, utc_now
 from fem_impact.physics.contact import between, fall
 from fem_impact.run.common import (
@@ -37,8 +38,8 @@ from fem_impact.run.common import (
     restitution,
     strikes_again,
 )
-from fem_impact.run.doubts import doubts
 from fem_impact.run.resolution import without, without_end
+from fem_impact.run.unusual import unusual
 from fem_impact.scene.write import digest
 
 NO_TARGET = Unknown("the scene gives a mesh, not the error it allows")
@@ -110,10 +111,8 @@ class Reduction:
         peak_force: Num,
         choices: tuple[EffectChoice, ...] | Unknown,
         unmeshed: str,
+        limited: Iterable[Limitation],
         omitted: Iterable[str] = (),
-        assumptions: Iterable[str] = (),
-        first_warnings: Iterable[str] = (),
-        last_warnings: Iterable[str] = (),
         withheld: str = "",
     ) -> Outcome:
         """Return the outcome; what a failed, cut off or unresolved run does not know is unknown there.
@@ -122,7 +121,8 @@ class Reduction:
         ----------
         choices : of effects, or why there are none; omitted : effects that the fidelity does not know
         unmeshed : why there is no limit of two meshes
-        first_warnings, last_warnings : sentences before and after those on e, mu, E_r and gravity
+        limited : limitations of the fidelity and of this run; those of the case are added, and those that the
+            result shows
         withheld : why the contact counts as not resolved, empty where it does not
         """
         case, end = self.case, self.end
@@ -130,11 +130,12 @@ class Reduction:
         failed = _open_ledger(end.missing) or ruled
         cut = failed or ("" if end.separated else end.reason)
         origin = _provenance(case, choices, omitted)
-        doubted = [] if withheld or cut else doubts(origin, self.motion, self.restitution, energy)
-        warnings = (*first_warnings, *doubted, *gravity, *last_warnings)
+        shown = () if withheld or cut else unusual(origin, self.motion, self.restitution, energy)
+        again = strikes_again(end.leaving) if end.finished and not failed else ""
+        of_result = limitations("result", *shown, gravity, again)
         outcome = Outcome(
             provenance=origin,
-            validity=_validity(case, end, failed, unmeshed, assumptions, warnings),
+            validity=_validity(end, failed, again, unmeshed, (*limited, *case.limitations, *of_result)),
             motion=self.motion,
             barrier=self.barrier,
             restitution=self.restitution,
@@ -168,21 +169,13 @@ def _provenance(
 
 
 def _validity(
-    case: Case,
-    end: ImpactEnd,
-    failed: str,
-    unmeshed: str,
-    assumptions: Iterable[str],
-    warnings: Iterable[str],
+    end: ImpactEnd, failed: str, again: str, unmeshed: str, limited: tuple[Limitation, ...]
 ) -> Validity:
-    """Return how far to trust one run, which may have ``failed`` for a reason."""
-    finished = end.finished and not failed
+    """Return how far to trust one run, which may have ``failed`` for a reason or strike ``again``."""
     return Validity(
-        finished=finished,
-        stopped_because=(failed or end.reason) + (strikes_again(end.leaving) if finished else ""),
-        assumptions=tuple(assumptions),
-        outside=case.outside,
-        warnings=tuple(warnings),
+        finished=end.finished and not failed,
+        stopped_because=f"{failed or end.reason} {again}".rstrip(),
+        limitations=limited,
         accuracy_target=NO_TARGET,
         accuracy_setting=NO_TARGET,
         expected_error=NO_TARGET,
@@ -211,13 +204,13 @@ def _open_ledger(share: float) -> str:
     return f"The energy ledger misses {abs(share):.1e} of E_0, {limit}"
 
 
-def _gravity(case: Case, contacts: Array | None) -> tuple[tuple[str, ...], str]:
-    """Return a warning where gravity acts so long in contact that it moves the result, and why it rules it.
+def _gravity(case: Case, contacts: Array | None) -> tuple[str, str]:
+    """Return a sentence where gravity acts so long in contact that it moves the result, and why it rules it.
 
     Where it rules, the run failed: it was no impact.
     """
     if contacts is None:
-        return (), ""
+        return "", ""
     speed = fall(case.slots.gravity, contacts[-1, 1], contacts[:, :2])
     share = speed * cos(case.scene.impact.angle) / case.contact.approach
     gained = (
@@ -225,8 +218,8 @@ def _gravity(case: Case, contacts: Array | None) -> tuple[tuple[str, ...], str]:
     )
     if share > GRAVITY_RULES:
         remedy = "it is no impact any more. Give a higher speed, or leave out the gravity effect."
-        return (), f"{gained}: {remedy}"
+        return "", f"{gained}: {remedy}"
     if share > GRAVITY_TOLD:
         why = "The contact bears that too, so that V_n, e and E_r come out higher by about as much."
-        return (f"{gained}. {why}",), ""
-    return (), ""
+        return f"{gained}. {why}", ""
+    return "", ""

@@ -45,7 +45,7 @@ def strikes_again(V_n: float) -> str:
     """Return that a mass centre with a normal velocity, m/s, still comes down, nothing if it does not."""
     if not comes_down(V_n):
         return ""
-    return f" The mass centre still comes down at {-V_n:.3g} m/s, so that the rod strikes again later."
+    return f"The mass centre still comes down at {-V_n:.3g} m/s, so that the rod strikes again later."
 
 
 def motion(case: Case, V_n: float, V_t: float, Omega: float, mass: float, k2: float) -> RodMotion:

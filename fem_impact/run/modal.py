@@ -13,6 +13,7 @@ from fem_impact.case.measured import reduced_table
 from fem_impact.modal.impact import ModalResult, solve
 from fem_impact.outcome.groups import Energy, Heat, Markers, RunCost
 from fem_impact.outcome.keys import Num, Unknown, unknown
+from fem_impact.outcome.limitation import limitations
 from fem_impact.outcome.record import Outcome
 from fem_impact.progress import Progress
 from fem_impact.run.assemble import ImpactEnd, Reduction
@@ -74,8 +75,14 @@ def reduce(case: Case, result: ModalResult) -> Outcome:
         choices=CHOICES,
         unmeshed="the reduced model has no second mesh",
         omitted=OMITTED,
-        assumptions=(*ASSUMPTIONS, *_dent(case), *([LEVEL] if turns else []), *beside_solid(case)),
-        last_warnings=(*([tilted] if turned > TILT_TOLD else []), *case.unknown),
+        limited=limitations(
+            "model",
+            *ASSUMPTIONS,
+            *_dent(case),
+            LEVEL if turns else "",
+            *beside_solid(case),
+            tilted if turned > TILT_TOLD else "",
+        ),
     )
 
 
@@ -128,7 +135,7 @@ TILT_TOLD = 0.01  # rad, as for the rod's own rotation
 LEVEL = "A barrier that turns moves the struck point with it, but the surface there keeps its direction."
 ASSUMPTIONS = (
     "Contact force by Hertz' law; where a body yields, by Tabor's hardness of the softer body over the "
-    "furrow that the tip presses into it. The elliptic contact is replaced by a circular one of the radius "
+    "groove that the tip presses into it. The elliptic contact is replaced by a circular one of the radius "
     "sqrt(R1 R2).",
     "The forces of a sliding tip that ploughs and of a contact that yields in shear hold two constants, "
     "found from six other impacts.",

@@ -12,6 +12,7 @@ import rigid
 from fem_impact.case.effects.heating import halves
 from fem_impact.outcome.groups import Energy, Heat, Markers, RodMotion, RunCost
 from fem_impact.outcome.keys import Unknown, known, unknown
+from fem_impact.outcome.limitation import limitations
 from fem_impact.outcome.record import Outcome
 from fem_impact.physics.contact_law import contact_law
 from fem_impact.physics.contact_law import restitution as thornton
@@ -81,8 +82,7 @@ def rigid_outcome(case: Case) -> Outcome:
         choices=Unknown(UNKNOWN),
         unmeshed=UNKNOWN,
         omitted=OMITTED,
-        assumptions=(source, *ASSUMPTIONS, *plate, *heated),
-        last_warnings=case.unknown,
+        limited=limitations("model", source, *ASSUMPTIONS, *plate, *heated),
     )
 
 

@@ -12,6 +12,7 @@ from fem_impact.case.effects.heating import halves
 from fem_impact.errors import RunError
 from fem_impact.outcome.groups import Energy, Heat, RodMotion, RunCost
 from fem_impact.outcome.keys import Num, Unknown, known, unknown
+from fem_impact.outcome.limitation import limitations
 from fem_impact.physics.contact import fall
 from fem_impact.physics.flash import flash
 from fem_impact.run.assemble import ImpactEnd, Reduction
@@ -65,7 +66,6 @@ def reduce(result: SolidResult) -> Outcome:
     )
     reduction = Reduction.of(case, end)
     energy, narrow = _energy(result, reduction.motion), unresolved(result)
-    doubtful = [narrow] if narrow else []
     # measured shares of the run time take the place of expected ones
     choices = (replace(choice, share=result.shares.get(choice.name, choice.share)) for choice in case.choices)
     return reduction.outcome(
@@ -76,34 +76,37 @@ def reduce(result: SolidResult) -> Outcome:
         peak_force=result.peak_force,
         choices=tuple(choices),
         unmeshed=ONE_MESH,
-        first_warnings=(*doubtful, *result.warnings, *_ringing(result), *_untimed(result)),
-        last_warnings=case.warnings,
+        limited=(
+            *limitations("resolution", narrow, _ringing(result)),
+            *result.limitations,
+            *limitations("run", _untimed(result)),
+        ),
         withheld=narrow if case.scene.accuracy.unresolved == "withhold" else "",
     )
 
 
-def _ringing(result: SolidResult) -> list[str]:
+def _ringing(result: SolidResult) -> str:
     """Tell of vibration above the modes where it is not small beside theirs."""
     vibration, E_0 = result.flight.energy, result.E_0
     above = sum(result.vibration_check or (vibration,)) - vibration
     if above <= max(RINGING * vibration, LEAST * E_0):
-        return []
-    return [
+        return ""
+    return (
         f"E_vib lacks {above / E_0:.1e} of E_0 that vibrates above its {len(result.flight.a)} modes and that "
         "E_vib_check holds: fine cells of the tip ring by themselves, or the blow was too short for modes. "
         "Compare twice the accuracy.across, or another accuracy.tip_size or grid_shift."
-    ]
+    )
 
 
-def _untimed(result: SolidResult) -> list[str]:
+def _untimed(result: SolidResult) -> str:
     """Tell which effects' shares of the run time are not known, and why."""
     names = [name for name, share in result.shares.items() if share is None]
     if not names:
-        return []
-    return [
+        return ""
+    return (
         f"The share of the run time of {', '.join(names)} is not known: it was too short for the processor's "
         "clock beside the rest."
-    ]
+    )
 
 
 def _energy(result: SolidResult, moved: RodMotion) -> Energy:

@@ -17,10 +17,11 @@ from fem_impact.fem.flight import FreeVibration, RigidMotion
 from fem_impact.fem.kernels import compiled_before
 from fem_impact.files.run_directory import CHECKPOINT
 from fem_impact.options import RunOptions
+from fem_impact.outcome.limitation import Limitation, limitations
 from fem_impact.progress import Progress, compiling, setting_up
 from fem_impact.solid.build import build
 from fem_impact.solid.checkpoint import Checkpoint
-from fem_impact.solid.doubts import doubts, skin_shares
+from fem_impact.solid.fine_zone import outside_zones, skin_shares
 from fem_impact.solid.frame import mass_centre
 from fem_impact.solid.march import Observer, advance, evaluate, march
 from fem_impact.solid.model import Model
@@ -104,7 +105,7 @@ class SolidResult:
     separated: bool
     reason: str
     cost: LoopCost
-    warnings: tuple[str, ...]
+    limitations: tuple[Limitation, ...]
     heat: HeatWatch | None = None
     shares: dict[str, float | None] = field(default_factory=dict)
 
@@ -214,7 +215,10 @@ def _result(
         separated=stop.separated,
         reason=watchers.reason,
         cost=cost,
-        warnings=tuple(w for f in watchers.frames for w in f.writer.warnings) + doubts(model, watchers.skin),
+        limitations=(
+            *limitations("run", *(w for f in watchers.frames for w in f.writer.warnings)),
+            *limitations("resolution", *outside_zones(model, watchers.skin)),
+        ),
         heat=watchers.heat,
     )
 

@@ -14,7 +14,7 @@ from fem_impact.fem.kernels import COMPILING
 from fem_impact.files.fields_write import FieldWriter
 from fem_impact.physics.beam import horizon
 from fem_impact.solid.checkpoint import Moving
-from fem_impact.solid.doubts import SkinWatch
+from fem_impact.solid.fine_zone import SkinWatch
 from fem_impact.solid.march import Observer
 from fem_impact.solid.model import Model
 from fem_impact.solid.observers import AddedMass, Frames, History, PeakForce, Watch, history_column

@@ -42,7 +42,7 @@ def test_a_run_compiles_its_scene_once(made):
 def test_a_model_is_built_on_one_case_with_one_plan_of_its_mesh(made):
     case = Case.of(replace_all(load("quick"), {"accuracy.tip_size": "1.6 mm", "accuracy.across": 6}))
     build(case)
-    assert case.size.rod > 0 and case.warnings is not None
+    assert case.size.rod > 0 and case.limitations is not None
     assert made["case"] == made["decide"] == made["zones_of"] == 1
     assert made["estimate"] <= 3
 

@@ -9,6 +9,7 @@ from fem_impact.case.layers import block_of
 from fem_impact.case.limits import not_reduced
 from fem_impact.case.plates import half_space_error
 from fem_impact.errors import SceneError
+from fem_impact.outcome.limitation import texts
 from fem_impact.physics.plate import least_span
 from fem_impact.scene.shipped import load, replace_all
 
@@ -28,14 +29,15 @@ def test_a_plate_bends_by_its_mesh_where_the_half_space_is_told_to_be_wrong():
     assert (half_space_error(thin.bodies) > 0.02, half_space_error(thick.bodies) > 0.02) == (True, False)
     assert thin.slots.plate is None and thin.slots.bending > 0 and thin.zones.edges > 0
     assert thick.slots.plate > 0 and thick.slots.bending is None and thick.zones.edges == 0
-    assert about(thin.outside, "its impedance is not added") and not about(thin.outside, "may be off")
-    assert not about(thick.outside, "thickness")
+    assert about(texts(thin.limitations, "model"), "its impedance is not added")
+    assert not about(texts(thin.limitations, "model"), "may be off")
+    assert not about(texts(thick.limitations, "model"), "thickness")
 
 
 def test_the_reduced_model_keeps_the_impedance_and_tells_its_error():
     planned = Case.of(stated("5 mm"), "modal")
     assert planned.slots.plate > 0 and planned.slots.bending is None
-    assert about(planned.outside, "e may be off by some")
+    assert about(texts(planned.limitations, "model"), "e may be off by some")
 
 
 @pytest.mark.parametrize("changes", [{"barrier.support": "backed"}, {"effects": ["auto", "-plate-bending"]}])

@@ -108,7 +108,8 @@ def test_check_as_json_gives_a_scene_that_reads_back(cli):
     statement = json.loads(out)
     scene = read_dict(statement["scene"])
     assert statement["digest"] == digest(scene)
-    assert any("angle 80 deg" in sentence for sentence in statement["validity"])
+    sentences = [one["text"] for one in statement["limitations"] if one["kind"] == "range"]
+    assert any("angle 80 deg" in sentence for sentence in sentences)
     assert {effect["name"] for effect in statement["effects"] if effect["on"]} == set(Case(scene).active)
 
 

@@ -206,12 +206,10 @@ def test_a_body_that_does_not_yield_has_no_residual_stress(cli, stand):
     assert "residual stress in barrier         1.000 %" in out
 
 
-def test_a_rod_that_still_comes_down_is_told(cli, stand):
-    stand.outcome = stand.an_outcome(V_n_m_per_s=-0.3, V_bn_m_per_s=0.1)
-    told = "note: The mass centre still comes down at 0.4 m/s, so that the rod strikes again later."
-    assert told in " ".join(cli("run", "t5b", "--quiet")[1].split())
-    stand.outcome = stand.an_outcome(V_n_m_per_s=0.3, V_bn_m_per_s=0.1)
-    assert "strikes again" not in cli("run", "t5b", "--quiet")[1]
+def test_every_limitation_is_printed_after_its_kind(cli, stand):
+    limited = [{"kind": "range", "text": "Too fast."}, {"kind": "result", "text": "It comes down again."}]
+    stand.outcome = stand.an_outcome(limitations=limited)
+    assert "\n\nrange: Too fast.\nresult: It comes down again.\n" in cli("run", "t5b", "--quiet")[1]
 
 
 def test_vibration_above_the_modes_is_listed_so_that_the_shares_add_up(cli):

@@ -5,6 +5,7 @@ import json
 import pytest
 
 from fem_impact.case.case import Case
+from fem_impact.outcome.limitation import texts
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.write import to_toml
 
@@ -61,7 +62,9 @@ def test_the_outcome_keeps_the_doubt(cli):
     from fem_impact.run.simulate import simulate
 
     scene = replace_all(load("t5b"), {"impact.angle": "30 deg", "impact.v_n": "-1.5024 m/s"})
-    assert any("15 deg beside its axis" in s for s in simulate(scene, "rigid").validity.outside)
+    assert any(
+        "15 deg beside its axis" in s for s in texts(simulate(scene, "rigid").validity.limitations, "range")
+    )
 
 
 @pytest.mark.parametrize("speed", ["-1e-300 m/s", "-1e-7 m/s", "0 m/s"])

@@ -28,7 +28,9 @@ def test_sentences_of_a_scene_fit(cli):
 
 def test_unknown_shares_give_each_reason_once_and_nothing_runs_over(cli, stand):
     known = {"W_friction_over_E_0": 0.3, "residual_over_E_0": -1e-9}
-    stand.outcome = stand.an_outcome(**known, assumptions=["as far as anybody can tell " * 6])
+    stand.outcome = stand.an_outcome(
+        **known, limitations=[{"kind": "model", "text": "as far as anybody can tell " * 6}]
+    )
     out = cli("run", "t5b", "--quiet")[1]
     motion, shares = out.split("of the initial energy")
     sentences = " ".join(shares.split())

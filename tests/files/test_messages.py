@@ -69,7 +69,8 @@ def test_no_control_character_of_a_file_reaches_the_terminal(cli, more):
 
 
 def test_a_forged_record_prints_no_control_character(capsys):
-    notes = {"scene_title": HOSTILE, "warnings": [HOSTILE], "validity": [HOSTILE], "stopped_because": HOSTILE}
+    limited = [{"kind": "run", "text": HOSTILE}] * 2
+    notes = {"scene_title": HOSTILE, "limitations": limited, "stopped_because": HOSTILE}
     with printable_streams():
         print_outcome(outcome_maker.outcome(**notes), Path(HOSTILE))
     out = capsys.readouterr().out

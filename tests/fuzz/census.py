@@ -13,6 +13,7 @@ from fem_impact.case.case import Case
 from fem_impact.case.cells import ADVISED, FINEST, kind, size_for
 from fem_impact.errors import FemImpactError
 from fem_impact.outcome.keys import or_none
+from fem_impact.outcome.limitation import texts
 from fem_impact.outcome.record import Outcome
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.types import Scene
@@ -112,7 +113,7 @@ def restitution(case: RandomCase) -> float | None:
 
 
 def _warnings(case: RandomCase) -> tuple[str, ...]:
-    return case.outcome.validity.warnings if case.outcome else ()
+    return texts(case.outcome.validity.limitations) if case.outcome else ()
 
 
 def told(cases: Iterable[RandomCase]) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from fem_impact.outcome.keys import Unknown, or_none
+from fem_impact.outcome.limitation import texts
 from fem_impact.outcome.record import Outcome
 
 LEDGER = 1e-4  # of E_0
@@ -73,7 +74,7 @@ def shares(outcome: Outcome) -> float:
 def _of_restitution(outcome: Outcome) -> Iterator[str]:
     """A number that no blow on a resting barrier gives by itself is explained on the outcome."""
     e, mu, f = or_none(outcome.restitution.edge.e), or_none(outcome.restitution.mu), outcome.motion.friction
-    rigid, told = or_none(outcome.energy.rigid), {words[:3] for words in outcome.validity.warnings}
+    rigid, told = or_none(outcome.energy.rigid), {words[:3] for words in texts(outcome.validity.limitations)}
     if e is not None and not LOWEST_E <= e <= HIGHEST_E and "e =" not in told:
         yield f"e = {e:.4g} without a word"
     if mu is not None and abs(mu) > 1.2 * f + 0.02 and "mu " not in told:

@@ -13,6 +13,7 @@ from fem_impact.errors import SceneError, UsageError
 from fem_impact.modal.impact import solve as modal_solve
 from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import Unknown
+from fem_impact.outcome.limitation import texts
 from fem_impact.outcome.record import Outcome
 from fem_impact.physics.beam import HORIZON, horizon
 from fem_impact.run.common import NO_PUSH, barrier_motion, motion, restitution
@@ -36,7 +37,7 @@ def test_a_record_is_whole_and_reads_back(fidelity, tmp_path):
     assert (tmp_path / "contacts.csv").exists() == (fidelity == "modal")
     nulls = {name for name, value in outcome.to_dict().items() if value is None}
     assert nulls == set(outcome.reasons) and all(outcome.reasons.values())
-    assert outcome.validity.assumptions
+    assert texts(outcome.validity.limitations, "model")
 
 
 @pytest.mark.parametrize("fidelity", REDUCED)
@@ -151,13 +152,13 @@ def test_the_rigid_fidelity_names_the_source_of_its_restitution():
     law, own = simulate(scene, "rigid"), simulate(replace(scene, restitution=0.5), "rigid")
     elastic = simulate(replace(scene, effects=("vibration", "barrier-elastic")), "rigid")
     assert law.restitution.edge.e == pytest.approx(0.306, abs=0.01)
-    assert "Thornton" in law.validity.assumptions[0]
-    assert (own.restitution.edge.e, own.validity.assumptions[0]) == (
+    assert "Thornton" in texts(law.validity.limitations, "model")[0]
+    assert (own.restitution.edge.e, texts(own.validity.limitations, "model")[0]) == (
         pytest.approx(0.5, abs=0.02),
         "Restitution 0.5 (energetic) is the scene's own.",
     )
     assert elastic.restitution.edge.e == pytest.approx(1)
-    assert "no body of the scene may yield" in elastic.validity.assumptions[0]
+    assert "no body of the scene may yield" in texts(elastic.validity.limitations, "model")[0]
     assert elastic.restitution.mu == elastic.energy.friction == 0.0
 
 
@@ -201,14 +202,14 @@ def test_the_command_takes_a_fidelity(cli):
     code, out, _ = cli("run", "t5b", "--fidelity", "modal")
     assert code == 0
     assert "results: results/t5b-modal" in out
-    assert "note: The forces of a sliding tip that ploughs" in out
+    assert "model: The forces of a sliding tip that ploughs" in out
     code, _, err = cli("run", "t5b", "--fidelity", "none")
     assert code == 2
     assert "--fidelity" in err
 
 
 def test_the_modal_outcome_says_how_far_it_is_from_the_finite_elements():
-    told = " ".join(simulate(load("t5b"), "modal").validity.assumptions)
+    told = " ".join(texts(simulate(load("t5b"), "modal").validity.limitations, "model"))
     modal, solid = map(
         float, re.search(r"On t5b: e \S+ beside \S+, mu (\S+) beside (\S+), Omega", told).groups()
     )
@@ -219,7 +220,7 @@ def test_the_modal_outcome_says_how_far_it_is_from_the_finite_elements():
 @pytest.mark.parametrize("fidelity", ["rigid", "modal"])
 def test_friction_that_is_not_known_for_a_material_is_told_in_every_fidelity(fidelity):
     scene = replace_all(load("t5b"), {"projectile.material": "aluminium-6061-t6"})
-    told = simulate(scene, fidelity).validity.warnings
+    told = texts(simulate(scene, fidelity).validity.limitations)
     assert any("friction" in sentence.lower() and "aluminium-6061-t6" in sentence for sentence in told)
 
 
@@ -234,7 +235,7 @@ SOFT_TIP = {"projectile.material": "copper"}
 def test_the_skin_and_the_dent_are_those_of_the_body_that_flows(changes, where):
     scene = load("t5b") if changes is None else replace_all(load("t5b"), SOFT_TIP | changes)
     outcome = simulate(scene, "modal")
-    energy, told = outcome.energy, " ".join(outcome.validity.assumptions)
+    energy, told = outcome.energy, " ".join(texts(outcome.validity.limitations, "model"))
     assert f"the dent that the first one left in the {where}." in told
     if changes is None:
         assert energy.skin == pytest.approx(energy.friction + energy.skin_barrier)
@@ -247,4 +248,6 @@ def test_the_skin_and_the_dent_are_those_of_the_body_that_flows(changes, where):
 
 
 def test_no_dent_where_nothing_yields():
-    assert "dent" not in " ".join(simulate(load("elastic-frictionless"), "modal").validity.assumptions)
+    assert "dent" not in " ".join(
+        texts(simulate(load("elastic-frictionless"), "modal").validity.limitations, "model")
+    )

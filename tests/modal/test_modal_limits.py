@@ -12,6 +12,7 @@ from fem_impact.modal.impact import solve
 from fem_impact.modal.motion import ROW
 from fem_impact.modal.rod import modal_rod
 from fem_impact.outcome.keys import Unknown
+from fem_impact.outcome.limitation import texts
 from fem_impact.run.modal import reduce
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace_all
@@ -163,7 +164,7 @@ def test_a_negative_restitution_is_explained():
     outcome = outcome_of(replace(scene, effects=("friction", "barrier-rigid")))
     assert outcome.validity.finished
     assert outcome.restitution.edge.e < 0
-    assert "the tip lifts off by friction or turning" in outcome.validity.warnings[0]
+    assert "the tip lifts off by friction or turning" in texts(outcome.validity.limitations, "result")[0]
 
 
 @pytest.mark.parametrize(
@@ -200,8 +201,8 @@ def test_gravity_adds_to_the_rebound_what_the_contact_bears_and_says_so():
     borne = 9.80665 * cos(radians(45)) * contact.duration / 0.03
     assert 0.05 < borne < 0.2
     assert on.restitution.edge.e - off.restitution.edge.e == pytest.approx(borne, rel=0.2)
-    assert "Gravity gives the rod" in on.validity.warnings[0]
-    assert not off.validity.warnings
+    assert "Gravity gives the rod" in texts(on.validity.limitations, "result")[0]
+    assert not texts(off.validity.limitations, "result")
 
 
 def test_what_falls_back_strikes_anew_and_is_not_followed():

@@ -114,7 +114,7 @@ def test_shares_stand_in_the_places_that_list_them():
 def test_file_is_flat_but_for_named_structures(record):
     held = json.loads(Outcome.from_dict(record).to_json())
     nested = {name for name, value in held.items() if isinstance(value, dict | list)}
-    assert nested == {"versions", "effects", "assumptions", "validity", "warnings", "contacts", "reasons"}
+    assert nested == {"versions", "effects", "limitations", "contacts", "reasons"}
 
 
 def test_numpy_values_become_plain():
@@ -144,7 +144,7 @@ def test_a_record_of_an_earlier_version_is_refused_in_one_sentence():
 
     old = {"schema_version": 2, "mu": 0.5, "bands": None}
     text = json.dumps(signed(old))
-    words = r'^old.json: key "schema_version" = 2 is not the version 7 that this program reads; compute'
+    words = r'^old.json: key "schema_version" = 2 is not the version 8 that this program reads; compute'
     with pytest.raises(ResultError, match=words):
         Outcome.from_json(text, "old.json")
 
@@ -159,9 +159,14 @@ def test_a_record_of_an_earlier_version_is_refused_in_one_sentence():
         ({"steps": -1}, r'"steps" = -1 must be a whole number'),
         ({"finished": None}, r'"finished" = None must not be null'),
         ({"fidelity": "liquid"}, r'"fidelity" = liquid must be one of rigid, modal, solid'),
-        ({"schema_version": 99}, r'"schema_version" = 99 is not the version 7'),
+        ({"schema_version": 99}, r'"schema_version" = 99 is not the version 8'),
         ({"muu": 1.0}, r'unknown key "muu". Did you mean mu\?'),
         ({"effects": "friction"}, r'"effects" = friction must be a list of texts'),
+        (
+            {"limitations": [{"kind": "doubt", "text": "x"}]},
+            r'whose "kind" must be one of input, model, range',
+        ),
+        ({"limitations": [{"text": "x"}]}, r"entries of exactly kind, text"),
         ({"contacts": [{"start_s": 0.0}]}, r"entries of exactly start_s, end_s"),
         ({"mesh_limit": {"speed": 1.0}}, r'names "speed", a key that meshes give no limit'),
         ({"mesh_limit": {"steps": 1.0}}, r'names "steps", a key that meshes give no limit'),

@@ -137,8 +137,7 @@ def test_everything_from_outside_is_escaped(run):
     result_maker.write_result(
         run,
         scene_title=evil,
-        warnings=[evil],
-        validity=[evil],
+        limitations=result_maker.limited(run=evil, range=evil),
         stopped_because=evil,
         effects=[evil],
         versions={evil: evil},
@@ -305,10 +304,10 @@ def test_study_without_runs_or_comparison_still_reports(study):
     [
         ({"schema": "other/2"}, '"schema" = "other/2" is not'),
         ({"rows": "none"}, "rows must be array"),
-        ({"rows": [{"schema_version": 7}]}, r"rows\[0\]: key .* is missing"),
+        ({"rows": [{"schema_version": 8}]}, r"rows\[0\]: key .* is missing"),
         (
             {"rows": [{"schema_version": 3}]},
-            r"rows\[0\]: .* is not the version 7 .*; compute the run again",
+            r"rows\[0\]: .* is not the version 8 .*; compute the run again",
         ),
         ({"comparison": [{"set": "t2"}]}, r"comparison\[0\] must contain .*quantity"),
     ],

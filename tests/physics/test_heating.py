@@ -9,6 +9,7 @@ import solid_scenes
 
 from fem_impact.case.case import Case
 from fem_impact.case.effects.heating import halves
+from fem_impact.outcome.limitation import texts
 from fem_impact.physics.flash import (
     Half,
     expected_rise,
@@ -158,7 +159,11 @@ def test_heat_does_not_act_on_the_motion():
     outcome = reduce(plain)
     assert outcome.heat.rise.reason == "the contact-heating effect is off"
     # a list without auto forces off what it does not name, and the outcome says so
-    missed = {words.split()[0] for words in outcome.validity.warnings if "is left out by the scene" in words}
+    missed = {
+        words.split()[0]
+        for words in texts(outcome.validity.limitations)
+        if "is left out by the scene" in words
+    }
     assert missed == {"rod-plasticity", "barrier-elastoplastic", "rate-hardening"}
     # every effect that is on has its share of the run time, and only those
     shares = {choice.name: choice.share for choice in outcome.provenance.effect_choices}
@@ -176,9 +181,9 @@ def test_closed_form_of_the_rigid_fidelity():
     assert 5e-5 < power < 2e-4  # the contact time, s
     assert 100 < found.heat.rise < bound_of(stated)
     assert found.heat.temperature == found.heat.rise + 293.15
-    assert any("Heat by closed form" in words for words in found.validity.assumptions)
+    assert any("Heat by closed form" in words for words in texts(found.validity.limitations, "model"))
     off = simulate(changed(load("t5b"), "effects", ["auto", "-contact-heating"]), "rigid")
-    assert not any("Heat by closed form" in words for words in off.validity.assumptions)
+    assert not any("Heat by closed form" in words for words in texts(off.validity.limitations, "model"))
     assert "above 1700 K, where plate-steel begins to melt" in found.heat.bound.reason
     assert 0.2 < rise_of(stated) / found.heat.rise < 5
 

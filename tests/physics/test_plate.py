@@ -13,6 +13,7 @@ from fem_impact.evidence.references.zener import zener_impact
 from fem_impact.modal.impact import reach
 from fem_impact.modal.march import integrate_impact
 from fem_impact.modal.motion import ALONE, MOST_CONTACTS, RIGID, SUM, Bounds, Start
+from fem_impact.outcome.limitation import texts
 from fem_impact.physics.contact_law import contact_law
 from fem_impact.physics.flow_law import flow_law
 from fem_impact.physics.plate import contact_time, least_span, plate_impedance, zener_number
@@ -62,7 +63,9 @@ def test_a_plate_that_is_not_thick_beside_the_contact_is_told():
 
     def told(thickness):
         planned = Case.of(replace_all(load("plate-10mm"), {"barrier.thickness": thickness}), "modal")
-        found = [sentence for sentence in planned.outside if "half-space" in sentence]
+        found = [
+            sentence for sentence in texts(planned.limitations, "range", "model") if "half-space" in sentence
+        ]
         return planned, found[0] if found else ""
 
     assert told("20 mm")[1] == ""

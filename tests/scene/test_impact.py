@@ -6,6 +6,7 @@ import pytest
 
 from fem_impact.case.case import Case
 from fem_impact.errors import SceneError
+from fem_impact.outcome.limitation import texts
 from fem_impact.scene.impact import Impact
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load, replace, replace_all
@@ -71,7 +72,7 @@ def test_a_measured_drop_at_a_new_angle_falls_as_fast_and_is_no_longer_measured(
     old, new = load("t5b"), replace(load("t5b"), "impact.angle", "80 deg")
     assert new.impact.speed == hypot(old.impact.v_n, old.impact.v_t)
     assert new.measured is None and "impact.angle = 80 deg" in new.title
-    sentences = " ".join(Case.of(new, "rigid").outside)
+    sentences = " ".join(texts(Case.of(new, "rigid").limitations, "range", "model"))
     assert "angle 80 deg, measured 17 deg to 60 deg" in sentences and "beside its axis" not in sentences
 
 

@@ -6,6 +6,7 @@ import pytest
 
 from fem_impact.case.case import Case
 from fem_impact.errors import SceneError
+from fem_impact.outcome.limitation import texts
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load
 from fem_impact.scene.write import digest, to_dict, to_toml
@@ -76,8 +77,8 @@ def test_the_reduced_model_is_refused_and_the_estimates_are_told():
     with pytest.raises(SceneError, match=r"which has one material there\. Use --fidelity solid"):
         layered([PLATE], "modal")
     planned = Case.of(load("layered"))
-    assert any("first layer alone" in sentence for sentence in planned.outside)
-    assert any("is thin for a contact" in sentence for sentence in planned.warnings)
+    assert any("first layer alone" in sentence for sentence in texts(planned.limitations, "model"))
+    assert any("is thin for a contact" in sentence for sentence in texts(planned.limitations, "model"))
     assert Case.of(load("layered"), "rigid").fidelity == "rigid"
 
 

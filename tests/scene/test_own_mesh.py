@@ -9,6 +9,7 @@ from own_bodies import box, taper, write
 
 from fem_impact.case.case import Case
 from fem_impact.errors import SceneError
+from fem_impact.outcome.limitation import texts
 from fem_impact.physics.beam import bending_period, stretching_period
 from fem_impact.scene.impact import Impact
 from fem_impact.scene.own_mesh import OwnMesh
@@ -138,7 +139,7 @@ def test_only_what_the_model_holds_is_planned(scene):
         with pytest.raises(SceneError, match=reason):
             Case.of(changed, fidelity)
     assert Case.of(scene, "rigid").fidelity == "rigid"
-    assert any("flat facets" in sentence for sentence in Case.of(scene).outside)
+    assert any("flat facets" in sentence for sentence in texts(Case.of(scene).limitations, "model"))
 
 
 def test_a_thin_cell_is_told_with_its_place(tmp_path):
@@ -146,7 +147,7 @@ def test_a_thin_cell_is_told_with_its_place(tmp_path):
     layer = np.isclose(points[:, 2], 40e-3)
     points[layer, 2] -= 3.9e-3
     scene = stated(write(tmp_path / "thin.vtu", points, cells))
-    (told,) = [sentence for sentence in Case.of(scene).warnings if "thinnest" in sentence]
+    (told,) = [sentence for sentence in texts(Case.of(scene).limitations) if "thinnest" in sentence]
     assert "100 um" in told
     assert "36.05" in told
     assert "8 cells are thinner" in told

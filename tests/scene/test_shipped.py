@@ -7,6 +7,7 @@ import pytest
 
 from fem_impact.case.case import Case
 from fem_impact.errors import SceneError, UsageError
+from fem_impact.outcome.limitation import texts
 from fem_impact.scene.fields import DEFAULTS
 from fem_impact.scene.impact import Impact
 from fem_impact.scene.inputs import STATED, inputs, materials_of
@@ -88,7 +89,7 @@ def test_a_measured_scene_repeats_the_published_set(name):
 
 @pytest.mark.parametrize("name", MEASURED_SETS)
 def test_a_measured_scene_lies_inside_the_measured_range(name):
-    assert Case.of(load(name)).outside == ()
+    assert Case.of(load(name)).limitations == ()
 
 
 def test_one_friction_interval_serves_every_rod_speed_and_angle():
@@ -161,7 +162,7 @@ def test_the_table_of_defaults_is_what_an_unstated_value_becomes():
 
 def test_a_scene_that_leaves_the_measured_range_says_where():
     changed = replace(replace(load("t5b"), "impact.angle", "80 deg"), "impact.omega", "5 rad/s")
-    sentences = " ".join(Case.of(changed, "rigid").outside)
+    sentences = " ".join(texts(Case.of(changed, "rigid").limitations, "range", "model"))
     assert "angle 80 deg, measured 17 deg to 60 deg" in sentences
     assert "turn" in sentences
 

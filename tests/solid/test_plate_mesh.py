@@ -10,12 +10,13 @@ from fem_impact.case.case import Case
 from fem_impact.errors import SceneError
 from fem_impact.fem.boundary import plate_edges
 from fem_impact.outcome.keys import or_none
+from fem_impact.outcome.limitation import texts
 from fem_impact.physics.plate import zener_number
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.solid.build import build
-from fem_impact.solid.doubts import SkinWatch
 from fem_impact.solid.elastic import Dashpots
+from fem_impact.solid.fine_zone import SkinWatch
 from fem_impact.solid.footing import BendingPlate
 from meshes import OUTER, SKIN
 
@@ -124,7 +125,7 @@ def test_a_plate_that_takes_nearly_all_is_told_with_a_thickness_that_does_not(th
     """The impedance of a plate goes as the square of its thickness."""
     soft = {"accuracy.across": 8, "barrier.material": "aluminium-6061-t6", "projectile.length": "60 mm"}
     planned = Case.of(scene(**soft, **{"barrier.thickness": thickness}))
-    sentence = " ".join(planned.outside)
+    sentence = " ".join(texts(planned.limitations, "range", "model"))
     assert ("the rod hardly leaves the plate" in sentence) == told
     if told:
         enough = re.search(r"A thickness of (\S+ mm)", sentence)[1]

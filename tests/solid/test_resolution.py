@@ -9,6 +9,7 @@ import solid_scenes as scenes
 from fem_impact.case.case import Case
 from fem_impact.errors import SceneError
 from fem_impact.outcome.keys import Unknown
+from fem_impact.outcome.limitation import texts
 from fem_impact.outcome.record import Outcome
 from fem_impact.run.solid import reduce
 from fem_impact.scene import shipped
@@ -40,7 +41,7 @@ def test_a_contact_narrower_than_an_element_has_no_coefficients_and_no_shares(re
     assert {"friction_power_W", "flash_rise_K", "flash_temperature_K", "flash_bound_K"} <= withheld
     assert {"mu", "e_edge", "e_m_edge", "e_impulse", "E_ln_edge_over_E_0", "peak_force_N"} <= withheld
     assert outcome.energy.E_0 > 0 and outcome.energy.residual < 1e-4 and outcome.restitution.edge.d_c > 0
-    assert any("the contact was not resolved" in words for words in outcome.validity.warnings)
+    assert any("the contact was not resolved" in words for words in texts(outcome.validity.limitations))
     assert Outcome.read(outcome.write(tmp_path / "outcome.json")) == outcome
     assert "e=not known, mu=not known" in repr(outcome)
 
@@ -50,14 +51,14 @@ def test_the_scene_may_ask_for_the_numbers_all_the_same(result):
     outcome = reduce(replace(result, case=Case.of(asked)))
     assert outcome.heat.power > 0
     assert 0.0 < outcome.restitution.edge.e < 2.0 and 0.0 < outcome.energy.rigid < 2.0
-    assert any("the contact was not resolved" in words for words in outcome.validity.warnings)
+    assert any("the contact was not resolved" in words for words in texts(outcome.validity.limitations))
 
 
 def test_four_pressed_nodes_resolve_a_contact(result):
     assert isinstance(reduce(replace(result, peak_nodes=3)).restitution.mu, Unknown)
     resolved = reduce(replace(result, peak_nodes=4))
     assert isinstance(resolved.restitution.mu, float)
-    assert not any("not resolved" in words for words in resolved.validity.warnings)
+    assert not any("not resolved" in words for words in texts(resolved.validity.limitations))
 
 
 def test_a_contact_that_loses_energy_by_its_mesh_is_not_resolved(result):
@@ -67,22 +68,22 @@ def test_a_contact_that_loses_energy_by_its_mesh_is_not_resolved(result):
         accounts = {**result.accounts, "closing": lost * result.E_0}
         outcome = reduce(replace(pressed, accounts=accounts))
         assert isinstance(outcome.restitution.edge.e, float) == known
-        assert any("lost 2.1 % of E_0" in words for words in outcome.validity.warnings) != known
+        assert any("lost 2.1 % of E_0" in words for words in texts(outcome.validity.limitations)) != known
 
 
 def test_a_narrow_contact_is_told_before_the_run(result):
-    (told,) = (words for words in result.case.warnings if "too narrow" in words)
+    (told,) = (words for words in texts(result.case.limitations) if "too narrow" in words)
     size = told.partition("accuracy.tip_size = ")[2].partition(" or less")[0]
     assert not [
         w
-        for w in Case.of(shipped.replace(result.case.scene, "accuracy.tip_size", size)).warnings
+        for w in texts(Case.of(shipped.replace(result.case.scene, "accuracy.tip_size", size)).limitations)
         if w == told
     ]
 
 
 @pytest.mark.parametrize("name", [*MEASURED_SETS, "quick", "elastic-frictionless"])
 def test_shipped_scenes_resolve_their_contact(name):
-    assert not [words for words in Case.of(load(name)).warnings if "too narrow" in words]
+    assert not [words for words in texts(Case.of(load(name)).limitations) if "too narrow" in words]
 
 
 def test_a_choice_that_differs_is_written_and_another_refused():
@@ -116,15 +117,15 @@ def test_a_thick_rod_on_coarse_cells_is_not_resolved(thick):
     told = reduce(result)
     assert told.restitution.edge.e > 1.3
     assert told.restitution.mu > 2.5 * 0.07
-    assert any("is above 1" in words for words in told.validity.warnings)
-    assert any("beyond f = 0.07" in words for words in told.validity.warnings)
+    assert any("is above 1" in words for words in texts(told.validity.limitations))
+    assert any("beyond f = 0.07" in words for words in texts(told.validity.limitations))
     withheld = reduce(
         replace(result, case=Case.of(shipped.replace(thick, "accuracy.unresolved", "withhold")))
     )
     for value in (withheld.restitution.mu, withheld.restitution.edge.e, withheld.energy.rigid):
         assert "the contact was not resolved" in value.reason
         assert "Give accuracy.tip_size = 0.11 mm or less" in value.reason
-    assert not any(words.startswith(("e = ", "mu = ")) for words in withheld.validity.warnings)
+    assert not any(words.startswith(("e = ", "mu = ")) for words in texts(withheld.validity.limitations))
 
 
 @pytest.mark.slow

@@ -15,6 +15,7 @@ from fem_impact.fem import body
 from fem_impact.fem.flight import rigid_motion
 from fem_impact.fem.geometry import to_barrier_frame
 from fem_impact.outcome.keys import Unknown
+from fem_impact.outcome.limitation import texts
 from fem_impact.run.simulate import simulate
 from fem_impact.run.solid import reduce
 from fem_impact.scene.shipped import load
@@ -107,10 +108,10 @@ def test_modes_hold_all_but_little_of_the_vibration(which, most, request):
 
 
 def test_vibration_above_the_modes_is_told_where_it_is_not_small(elastic):
-    assert not [words for words in _outcome(elastic).validity.warnings if "E_vib lacks" in words]
+    assert not [words for words in texts(_outcome(elastic).validity.limitations) if "E_vib lacks" in words]
     kinetic, strain = elastic.vibration_check
     ringing = replace(elastic, vibration_check=(kinetic + 8e-3 * elastic.E_0, strain))
-    (words,) = (words for words in _outcome(ringing).validity.warnings if "E_vib lacks" in words)
+    (words,) = (words for words in texts(_outcome(ringing).validity.limitations) if "E_vib lacks" in words)
     assert "lacks 8.0e-03 of E_0 that vibrates above its 40 modes" in words
 
 
@@ -360,7 +361,7 @@ def test_rigid_barrier_has_plane_contact_over_the_whole_skin():
 def test_a_flat_strike_does_not_turn_the_rod_or_is_called_doubtful():
     """The whole face lands: skin beyond the fine zone must touch too, or the run must say it does not."""
     result = scenes.run(*SLIDE, "large-rotation", length=0.08, v_n=-1.0, v_t=0.0, angle=0.0)
-    assert abs(result.motion.Omega) < 0.2 or result.warnings
+    assert abs(result.motion.Omega) < 0.2 or result.limitations
 
 
 def test_nothing_but_the_fine_zone_comes_down_to_the_barrier(yielding):

@@ -9,7 +9,7 @@ import solid_scenes as scenes
 from fem_impact.run.simulate import simulate
 from fem_impact.run.solid import reduce
 from fem_impact.scene.shipped import load, replace_all
-from fem_impact.solid.doubts import DEPTH, depths, skin_shares
+from fem_impact.solid.fine_zone import DEPTH, depths, skin_shares
 from fem_impact.solid.skin import below_outline
 
 CUBE = np.array([(x, y, z) for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))], dtype=float)

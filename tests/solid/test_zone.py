@@ -12,7 +12,7 @@ from fem_impact.fem.geometry import build_geometry
 from fem_impact.run.simulate import simulate
 from fem_impact.run.solid import reduce
 from fem_impact.scene.shipped import load, replace, replace_all
-from fem_impact.solid.doubts import doubts
+from fem_impact.solid.fine_zone import outside_zones
 from fem_impact.solid.run import solve
 
 SCENE = replace(load("t6-17"), "accuracy.tip_size", "0.6 mm")
@@ -134,9 +134,9 @@ def test_nodes_that_leave_the_barriers_zone_are_told_with_what_makes_it_wider():
     scene = load("t5b")
     model, watch = (
         SimpleNamespace(book=SimpleNamespace(outside=9), zones=()),
-        SimpleNamespace(doubt=lambda: ""),
+        SimpleNamespace(below=lambda: ""),
     )
-    (told,) = doubts(model, watch)
+    (told,) = filter(None, outside_zones(model, watch))
     assert told.startswith("9 rod nodes left the fine zone of the barrier")
     width = Case.of(scene).zones.barrier[-1][0]
     size = Case.of(scene).zones.barrier_size

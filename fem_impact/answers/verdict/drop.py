@@ -115,8 +115,8 @@ def _distance(case: RodDropInput, s: MeasuredSet) -> float:
     return math.hypot(*steps)
 
 
-def warnings_of(case: RodDropInput) -> tuple[str, ...]:
-    """Return warnings: few tests on this surface, and quantities outside the measured range."""
+def unmeasured(case: RodDropInput) -> tuple[str, ...]:
+    """Return sentences on few tests on this surface, and on quantities outside the measured range."""
     if case.surface == "machined":
         return outside_of(case)
     sets = sets_of(case.surface)
@@ -131,10 +131,10 @@ def warnings_of(case: RodDropInput) -> tuple[str, ...]:
 def outside_of(case: RodDropInput) -> tuple[str, ...]:
     """Return a sentence on each quantity of the case outside the range measured on its surface."""
     sets = sets_of(case.surface)
-    return (*_rod_warnings(case, sets), *_motion_warnings(case, sets))
+    return (*_of_rod(case, sets), *_of_motion(case, sets))
 
 
-def _rod_warnings(case: RodDropInput, sets: tuple[MeasuredSet, ...]) -> Iterator[str]:
+def _of_rod(case: RodDropInput, sets: tuple[MeasuredSet, ...]) -> Iterator[str]:
     """Compare length, diameter and tip with those of the sets."""
     rod = case.rod
     lengths = sorted({s.length for s in sets})
@@ -149,7 +149,7 @@ def _rod_warnings(case: RodDropInput, sets: tuple[MeasuredSet, ...]) -> Iterator
         yield f"{tip}: measured on {case.surface} surfaces was tip {known}"
 
 
-def _motion_warnings(case: RodDropInput, sets: tuple[MeasuredSet, ...]) -> Iterator[str]:
+def _of_motion(case: RodDropInput, sets: tuple[MeasuredSet, ...]) -> Iterator[str]:
     """Compare angle and speed, each near the other, with the sets of the nearest measured length."""
     length = min((s.length for s in sets), key=lambda x: abs(math.log(case.rod.length / x)))
     same = [s for s in sets if s.length == length]

@@ -10,10 +10,11 @@ from fem_impact.answers.verdict.assess import Verdict
 from fem_impact.answers.verdict.effect import Answer, VibrationEffect
 from fem_impact.answers.verdict.screening import Screening
 from fem_impact.outcome.keys import Unknown, known, or_none
+from fem_impact.outcome.limitation import texts
 from fem_impact.outcome.record import Outcome, installed_versions
 from fem_impact.outcome.shares import SHARES
 from fem_impact.run.common import RESIDUAL_LIMIT
-from fem_impact.run.doubts import ROUND_OFF
+from fem_impact.run.unusual import ROUND_OFF
 from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.shapes import NamedShape
@@ -239,8 +240,7 @@ def _friction(v: Verdict) -> Line:
 
 def not_covered(v: Verdict) -> tuple[str, ...]:
     """Return what the verdict does not cover: limits of the model, and of what was measured."""
-    validity = v.here.free.validity
-    return (*FIRST_ONLY, *validity.outside, *validity.warnings, *validity.assumptions)
+    return (*FIRST_ONLY, *texts(v.here.free.validity.limitations))
 
 
 def lines_of(titled: Iterable[Sequence[str]], indent: str) -> list[str]:

@@ -23,8 +23,8 @@ LABELS = {
 
 
 def transfer_text(document: Document) -> str:
-    """Return the document of `transfer` as text, warnings before the results."""
-    parts = (_case, _warnings, _losses, _worst, _heat, _limits)
+    """Return the document of `transfer` as text, limitations before the results."""
+    parts = (_case, _limitations, _losses, _worst, _heat, _limits)
     return "\n".join(line for part in parts for line in part(document)) + "\n"
 
 
@@ -43,12 +43,12 @@ def _case(d: Document) -> Iterator[str]:
     yield f"{c['mass_kg']:.3f} kg at {speed:.2f} m/s: E_0 = {c['E_0_J']:.3g} J"
 
 
-def _warnings(d: Document) -> Iterator[str]:
+def _limitations(d: Document) -> Iterator[str]:
     yield ""
-    if not d["warnings"]:
+    if not d["limitations"]:
         yield "Inside what was measured."
-    for sentence in d["warnings"]:
-        yield from _wrap(f"WARNING: {sentence}", "")
+    for one in d["limitations"]:
+        yield from _wrap(f"{one['kind']}: {one['text']}", "")
 
 
 def _losses(d: Document) -> Iterator[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,8 @@ from fem_impact.answers.verdict.bounds import (
     upper_bound_loss,
     worst_losses,
 )
-from fem_impact.answers.verdict.drop import RodDropInput, outside_of, warnings_of, weights_of
+from fem_impact.answers.verdict.drop import RodDropInput, outside_of, unmeasured, weights_of
+from fem_impact.outcome.limitation import limitations
 from rigid import LIMIT, LIMIT_MM, Errors, behaves_rigidly, in_millimetres
 from rigid.arrays import Floats
 
@@ -62,7 +64,7 @@ def transfer(case: RodDropInput) -> dict[str, Any]:
     -------
     dict
         Plain JSON: case, basis, losses with intervals, worst case, friction heat with assumptions, the share
-        that cannot be attributed, slenderness, warnings.
+        that cannot be attributed, slenderness, limitations.
     """
     tests = measured_on(case.surface)
     weights = weights_of(case)
@@ -92,7 +94,7 @@ def transfer(case: RodDropInput) -> dict[str, Any]:
             "sentence": NOT_ATTRIBUTED,
         },
         "slenderness": _slenderness(case),
-        "warnings": list(warnings_of(case)),
+        "limitations": [asdict(one) for one in limitations("range", *unmeasured(case))],
     }
 
 

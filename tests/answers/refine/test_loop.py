@@ -32,6 +32,7 @@ from fem_impact.cli.run import print_outcome
 from fem_impact.errors import RunError, SceneError, UsageError
 from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import Unknown
+from fem_impact.outcome.limitation import texts
 from fem_impact.progress import NullMeter
 from fem_impact.scene.shipped import load, replace, replace_all
 
@@ -137,7 +138,7 @@ def test_a_budget_below_two_meshes_is_told_before_the_coarsest_runs_once(on_plan
     assert "error stays unknown" in chosen.sentence and '--budget "' in chosen.sentence
     chosen, places, outcome = asked(monkeypatch, 0.9 * (both - one))
     assert len(places) == 1 and "exceeds" not in chosen.sentence
-    assert outcome.validity.warnings[-1] == (
+    assert texts(outcome.validity.limitations)[-1] == (
         "The wanted 20 % is not reached: one mesh alone cannot estimate its own error. One mesh finer takes "
         f'about {both - one:.0f} s more: for that give --budget "{LONGER * (both - one):.0f} s".'
     )
@@ -150,7 +151,7 @@ def test_a_budget_below_two_places_of_two_meshes_takes_one_place_each(on_plan, m
     assert {place for _, place in places} == {0.0} and len(places) >= 2
     assert outcome.validity.achieved_error > 0
     assert f"planned to take {float(f'{both:.2g}'):.0f} s" in chosen.sentence
-    assert not [text for text in outcome.validity.warnings if "more than the budget" in text]
+    assert not [text for text in texts(outcome.validity.limitations) if "more than the budget" in text]
     two_places = [(size, place) for size, _ in places[:2] for place in (0.0, 0.5)]
     assert asked(monkeypatch, 10 * both)[1] == two_places
 
@@ -163,7 +164,7 @@ def test_what_the_first_run_took_decides_how_far_the_ladder_climbs(on_plan, monk
     _, places, outcome = asked(monkeypatch, 0.5 * whole)
     assert [place for _, place in places] == [0.0, 0.5, 0.0, 0.5]
     assert outcome.validity.achieved_error <= FAR.accuracy.target
-    assert not [text for text in outcome.validity.warnings if "not reached" in text]
+    assert not [text for text in texts(outcome.validity.limitations) if "not reached" in text]
 
 
 @pytest.fixture
@@ -182,7 +183,7 @@ def test_other_places_run_where_only_the_scatter_is_in_the_way(on_plan, scattere
     assert places == [(size, at) for half in ((0.0, 0.5), (0.25, 0.75)) for size in sizes for at in half]
     assert outcome.validity.achieved_error < 0.8 * scattered
     assert outcome.validity.accuracy_setting.startswith("2 meshes")
-    assert not [text for text in outcome.validity.warnings if "not reached" in text]
+    assert not [text for text in texts(outcome.validity.limitations) if "not reached" in text]
     monkeypatch.setitem(globals(), "FAR", replace(FAR, "accuracy.target", f"{10 * scattered} %"))
     assert len({size for size, _ in asked(monkeypatch, 1e9)[1]}) > 2  # no number of places would do
 
@@ -208,16 +209,16 @@ def test_an_error_that_is_not_reached_tells_what_more_would_cost(on_plan, monkey
         for n in (2, 3)
     )
     outcome = asked(monkeypatch, 1.01 * two)[2]
-    (told,) = [text for text in outcome.validity.warnings if "not reached" in text]
+    (told,) = [text for text in texts(outcome.validity.limitations) if "not reached" in text]
     assert re.search(r"e is known to [\d.]+ % and E_vib is known to [\d.]+ %", told)
     assert f"One mesh finer takes about {float(f'{three - two:.2g}'):.0f} s more" in told
     single = asked(monkeypatch, 0.9 * two)[2].validity
-    (told,) = [text for text in single.warnings if "not reached" in text]
+    (told,) = [text for text in texts(single.limitations) if "not reached" in text]
     assert f"These meshes and one finer at two places take about {float(f'{three:.2g}'):.0f} s" in told
     assert f'give --budget "{float(f"{LONGER * three:.2g}"):.0f} s"' in told
     assert single.accuracy_setting.startswith("2 meshes")
     whole = asked(monkeypatch, 1e9)[2].validity
-    assert whole.warnings[-1].endswith("No finer mesh of this family can be made.")
+    assert texts(whole.limitations)[-1].endswith("No finer mesh of this family can be made.")
 
 
 def test_a_finer_mesh_that_fails_leaves_what_the_coarser_ones_say(on_plan, monkeypatch):
@@ -231,13 +232,13 @@ def test_a_finer_mesh_that_fails_leaves_what_the_coarser_ones_say(on_plan, monke
     monkeypatch.setattr(fem_impact.run.simulate, "simulate", cut)
     stated = to_target.simulate(FAR, budget_s=1e9).validity
     assert stated.accuracy_setting.startswith("1 mesh of its own")
-    assert "Further runs gave no result: t5b: the tail." in stated.warnings[-1]
+    assert "Further runs gave no result: t5b: the tail." in texts(stated.limitations)[-1]
 
 
 def test_runs_that_exceed_the_budget_say_so(fake, monkeypatch):
     seconds = iter(range(0, 10000, 40))
     monkeypatch.setattr(budgets, "perf_counter", lambda: float(next(seconds)))
-    over, _ = to_target.simulate(FAR, budget_s=1.0).validity.warnings[-2:]
+    over, _ = texts(to_target.simulate(FAR, budget_s=1.0).validity.limitations)[-2:]
     assert over == "The runs for the wanted error took 40 s, more than the budget of 1 s."
 
 

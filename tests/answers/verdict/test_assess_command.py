@@ -125,12 +125,11 @@ def test_the_worst_case_for_ignition_is_not_that_of_the_total_loss():
 
 def test_outside_what_was_measured_every_restitution_is_searched():
     inside, outside = transfer(short_rod()), transfer(short_rod(degrees=70.0))
-    assert inside["warnings"] == []
+    assert inside["limitations"] == []
     assert outside["range"]["e"] == [0.0, 1.0]
     assert inside["range"]["e"][1] < 0.85
-    assert outside["warnings"] == [
-        "angle 70 degrees: the 80 mm rod was measured at 17 to 60 degrees at about this speed"
-    ]
+    angle = "angle 70 degrees: the 80 mm rod was measured at 17 to 60 degrees at about this speed"
+    assert outside["limitations"] == [{"kind": "range", "text": angle}]
 
 
 @pytest.mark.parametrize(
@@ -147,8 +146,8 @@ def test_outside_what_was_measured_every_restitution_is_searched():
         ({"surface": "contaminated", "length": 0.08}, "contaminated surfaces were rods of 240 mm"),
     ],
 )  # fmt: skip
-def test_warnings(change, words):
-    assert any(words in sentence for sentence in transfer(short_rod(**change))["warnings"])
+def test_what_was_not_measured_is_told(change, words):
+    assert any(words in one["text"] for one in transfer(short_rod(**change))["limitations"])
 
 
 def test_a_case_between_two_sets_weighs_both():
@@ -208,7 +207,7 @@ def test_the_published_drop_as_a_command(cli):
     assert (code, err) == (0, "")
     assert out.startswith("May rigid theory be used here?")
     for words in (
-        "WARNING: contaminated surfaces",
+        "range: contaminated surfaces",
         "of t2 (",
         "tangential loss (for ignition)",
         "Not attributed",

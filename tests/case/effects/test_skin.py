@@ -29,7 +29,7 @@ def test_it_is_off_unless_a_scene_states_a_layer():
     assert "machined-skin" in Case(stated).active
     assert Case.of(stated).slots.skin == Skin(pytest.approx(1.1e-4), 1.5)
     assert (stated.surface.state, stated.measured) == ("machined", "t5b")
-    assert Case.of(stated).outside == Case.of(T5B).outside
+    assert Case.of(stated).limitations == Case.of(T5B).limitations
     assert read_dict(to_dict(stated)) == stated
     assert digest(stated) != digest(T5B)
     without = replace_all(stated, {"effects": ["auto", "-machined-skin"]})

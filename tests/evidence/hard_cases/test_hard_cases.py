@@ -16,6 +16,7 @@ from fem_impact.evidence.hard_cases.scenes import CASES
 from fem_impact.evidence.hard_cases.study import HardCaseJob, HardCaseResult, conclude, model_of
 from fem_impact.jobs.job import Failure
 from fem_impact.options import RunOptions
+from fem_impact.outcome.limitation import texts
 from fem_impact.outcome.record import Outcome
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.solid.build import build
@@ -83,7 +84,7 @@ def test_the_start_and_the_step_of_a_case_are_its_own():
 def test_a_face_that_lies_flat_is_meshed_as_a_whole(tmp_path):
     run_case("upright-edge", tmp_path)
     outcome = Outcome.read(tmp_path / "upright-edge" / "outcome.json")
-    assert not [words for words in outcome.validity.warnings if "outside its fine zone" in words]
+    assert not [words for words in texts(outcome.validity.limitations) if "outside its fine zone" in words]
     upright, tilted = (replace(CASES[name].scene(), id="x") for name in ("upright-edge", "angle-17"))
     assert face_reach(Case.of(upright).bodies) == pytest.approx((13e-3, 6.5e-3))
     assert face_reach(Case.of(tilted).bodies) == (0.0, 0.0)

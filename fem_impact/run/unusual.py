@@ -12,10 +12,12 @@ LEAST_RATIO = 0.01  # mu allowed where f is 0
 CONFIRM = " Confirm it with half the accuracy.tip_size."
 
 
-def doubts(provenance: Provenance, motion: RodMotion, restitution: Restitution, energy: Energy) -> list[str]:
-    """Return a sentence on each of e, mu and E_r that is out of the range of a plain impact."""
+def unusual(
+    provenance: Provenance, motion: RodMotion, restitution: Restitution, energy: Energy
+) -> tuple[str, ...]:
+    """Return a sentence on each of e, mu and E_r, empty where it is in the range of a plain impact."""
     of_e, of_mu = (of(provenance, motion, restitution) for of in (_on_restitution, _on_ratio))
-    return [sentence for sentence in (of_e, of_mu, _on_rigid(energy)) if sentence]
+    return of_e, of_mu, _on_rigid(energy)
 
 
 def _on_restitution(provenance: Provenance, motion: RodMotion, restitution: Restitution) -> str:

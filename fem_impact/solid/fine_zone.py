@@ -1,4 +1,4 @@
-"""Warnings of a run (skin outside the contact, yielding at a zone's edge), plastic work at the surface.
+"""What left the fine zones of a run (skin, yielding), and plastic work at the surface of a body.
 
 Plastic work in the uppermost layer of a body is hard to separate from friction: under a sticking tip the
 softer body shears in a layer whose thickness follows from the mesh, as the material law has no length scale.
@@ -128,8 +128,8 @@ class SkinWatch:
         nodes, cells = self.top
         return np.asarray(n - LinearNDInterpolator(cells, x[nodes[:, 2]], fill_value=0.0)(t, np.abs(b)))
 
-    def doubt(self) -> str:
-        """Return a warning if skin went below the barrier's surface, else an empty string."""
+    def below(self) -> str:
+        """Say that skin went below the barrier's surface, an empty string where none did."""
         if self.lowest >= 0:
             return ""
         return (
@@ -147,16 +147,15 @@ def _top(model: Model) -> tuple[Ints, Delaunay]:
     return nodes, Delaunay(x[nodes[:, :2]])
 
 
-def doubts(model: Model, watch: SkinWatch) -> tuple[str, ...]:
-    """Return warnings on contact and yielding that left the fine zones."""
-    warnings = [watch.doubt(), *(_at_border(model, zone) for zone in model.zones)]
-    if model.book.outside:
-        warnings.append(
-            f"{model.book.outside} rod nodes left the fine zone of the barrier while below its surface: "
-            'friction and indentation there are missing. accuracy.fine_zone = "even" makes it wider, as does '
-            "a larger accuracy.barrier_size."
-        )
-    return tuple(warning for warning in warnings if warning)
+def outside_zones(model: Model, watch: SkinWatch) -> tuple[str, ...]:
+    """Return sentences on contact and yielding that left the fine zones; empty ones where they did not."""
+    nodes = model.book.outside
+    left = (
+        f"{nodes} rod nodes left the fine zone of the barrier while below its surface: "
+        'friction and indentation there are missing. accuracy.fine_zone = "even" makes it wider, as does '
+        "a larger accuracy.barrier_size."
+    )
+    return (watch.below(), *(_at_border(model, zone) for zone in model.zones), left if nodes else "")
 
 
 def border_strain(model: Model, zone: YieldingZone) -> float:
@@ -169,7 +168,7 @@ def border_strain(model: Model, zone: YieldingZone) -> float:
 
 
 def _at_border(model: Model, zone: YieldingZone) -> str:
-    """Return a warning if yielding reached the edge of the fine zone, else an empty string."""
+    """Say that yielding reached the edge of the fine zone, an empty string where it did not."""
     strain = border_strain(model, zone)
     if strain <= PROOF_STRAIN:
         return ""

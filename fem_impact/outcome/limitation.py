@@ -1,0 +1,43 @@
+"""What limits trust in a record: sentences, each with the kind of its cause."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Literal
+
+from fem_impact.outcome.keys import group, key
+
+LimitationKind = Literal["input", "model", "range", "resolution", "result", "run"]
+
+
+@group
+class Limitation:
+    """A sentence that limits how far a record may be trusted, with the kind of its cause.
+
+    ========== ==================================================================================
+    input      What scene and materials do not state, or leave out although its number matters
+    model      What the model leaves out, idealises or takes from elsewhere
+    range      Where the scene leaves what was measured
+    resolution What elements, fine zones and modes do not resolve, or hardly
+    result     A number that an impact on a resting barrier does not give by itself, and its cause
+    run        What the computation did not do: write a frame, time an effect, reach a wanted error
+    ========== ==================================================================================
+    """
+
+    kind: LimitationKind = key(
+        "kind",
+        "",
+        "Its cause: input (not stated), model (left out, idealised, taken from elsewhere), range (not "
+        "measured), resolution (of elements and modes), result (an unusual number), run (not done).",
+    )
+    text: str = key("text", "", "The limitation, as a sentence.")
+
+
+def limitations(kind: LimitationKind, *texts: str) -> tuple[Limitation, ...]:
+    """Return the limitations of one kind that sentences state; an empty one states none."""
+    return tuple(Limitation(kind=kind, text=text) for text in texts if text)
+
+
+def texts(of: Iterable[Limitation], *kinds: LimitationKind) -> tuple[str, ...]:
+    """Return the sentences of limitations, of some ``kinds`` or, where none is named, of all."""
+    return tuple(one.text for one in of if not kinds or one.kind in kinds)
