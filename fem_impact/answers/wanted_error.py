@@ -22,6 +22,7 @@ from fem_impact.answers.refine.extrapolate import ALONE, ONE_RUN, MeshRuns, mesh
 from fem_impact.answers.refine.levels import FEW_OFFSETS, at_offsets
 from fem_impact.answers.refine.loop import Level, RefinementLoop, Stop, levels_at_offsets
 from fem_impact.answers.refine.quantities import TARGETED
+from fem_impact.case.case import Case
 from fem_impact.files.lock import directory_lock
 from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import Unknown
@@ -234,6 +235,7 @@ def simulate(
     workers: int = 1,
     budget_s: float | None = None,
     chosen: ChosenSetting | RefinementPlan | None = None,
+    case: Case | None = None,
 ) -> Outcome:
     """Compute an impact: on the mesh that its scene gives, or as measured costs choose for a stated error.
 
@@ -242,7 +244,7 @@ def simulate(
     ``validity``. Files of the other runs stand below ``options.out``. With two or more ``workers`` a second
     process does half of the runs. Where no stored setting serves, meshes of the scene's own are run for about
     ``budget_s``, s (`BUDGET` unless stated), and the outcome says what they reached. ``chosen`` is what
-    `settle` returned for this scene, where the caller has asked already.
+    `settle` returned for this scene, ``case`` that of a scene that gives a mesh, where the caller has them.
 
     Raises
     ------
@@ -250,7 +252,7 @@ def simulate(
         As `fem_impact.run.simulate.simulate` and `settle`.
     """
     if scene.accuracy.target is None:
-        return run.simulate(scene, fidelity or "solid", options)
+        return run.simulate(scene, fidelity or "solid", options, case)
     chosen = chosen or settle(scene, fidelity, workers, budget_s)
     with nullcontext() if options.out is None else directory_lock(options.out):
         if isinstance(chosen, RefinementPlan):

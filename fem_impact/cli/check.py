@@ -291,7 +291,7 @@ def _contact_lines(case: Case) -> Iterator[str]:
         f"the contact, estimated: {1e3 * size.a_t:.2g} mm x {1e3 * size.a_b:.2g} mm in radius, "
         f"{1e3 * size.depth:.2g} mm deep, for {1e6 * size.duration:.3g} us"
     )
-    yield f"{screening(scene).sentence}. The verdict: `fem-impact assess`"
+    yield f"{screening(case.bodies).sentence}. The verdict: `fem-impact assess`"
 
 
 def _size_lines(case: Case) -> list[str]:

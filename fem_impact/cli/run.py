@@ -31,6 +31,8 @@ from fem_impact.tables.text import wrapped
 if TYPE_CHECKING:
     from fem_impact.answers.cost.stored import ChosenSetting
     from fem_impact.answers.wanted_error import RefinementPlan
+    from fem_impact.case.case import Case
+    from fem_impact.case.size import RunSize
     from fem_impact.outcome.groups import Energy
 
 
@@ -79,22 +81,25 @@ def _seconds(text: str) -> float:
 
 def run(options: Options) -> int:
     """Compute one scene, write its results and print them."""
+    from fem_impact.answers.wanted_error import simulate
+    from fem_impact.case.case import Case
+
     scene = changed_scene(options.scene, options.changes)
     if options.resume and options.fidelity in ("rigid", "modal"):
         problem = f"is for finite elements only: a {options.fidelity} run takes seconds."
         raise UsageError(problem, key="--resume", remedy="Leave it out.")
     say_kept(scene, options)
     chosen = _setting(scene, options)
-    _say_plan(scene, chosen.sentence if chosen else "", options)
+    case = Case(scene) if chosen else Case.of(scene, options.fidelity or "solid")
+    _say_plan(case, chosen.sentence if chosen else "", options)
     out = checked_out(options.out or Path("results") / _usual_name(scene, options))
     if options.resume and scene.accuracy.target is None and not (out / CHECKPOINT).exists():
         sys.stderr.write(f"fem-impact: {out} holds no checkpoint: the run starts at the beginning\n")
-    from fem_impact.answers.wanted_error import simulate
-
     try:
         with told_kept(out, options), closing(chosen_meter(options)) as meter:
             run_options = RunOptions(out, meter, options.resume, options.checkpoint)
-            outcome = simulate(scene, options.fidelity or None, run_options, cores(), chosen=chosen)
+            fidelity = options.fidelity or None
+            outcome = simulate(scene, fidelity, run_options, cores(), chosen=chosen, case=case)
     except KeyboardInterrupt:
         way = (
             "--resume goes on from the last checkpoint."
@@ -107,7 +112,7 @@ def run(options: Options) -> int:
     else:
         print_outcome(outcome, out, own_tests=(scene.measured or "").endswith(OWN))
         _say_comparison(scene, outcome, options)
-        _say_screening(scene, options)
+        _say_screening(case, options)
     if outcome.validity.finished:
         return 0
     cause = outcome.validity.stopped_because
@@ -130,18 +135,22 @@ def _say_comparison(scene: Scene, outcome: Outcome, options: Options) -> None:
         for row in compare(outcome, tests)
         if row["measured_mean"] is not None and row["model"] is not None
     ]
-    sys.stdout.write(f"beside {count(tests)} measured tests ({shown_path(str(scene.measured))}):\n")
-    print_table(Table.of(head, rows, left=(0, 4)), options, indent="  ")
+    measured = f"beside {count(tests)} measured tests ({shown_path(str(scene.measured))})"
+    if rows:
+        sys.stdout.write(f"{measured}:\n")
+        print_table(Table.of(head, rows, left=(0, 4)), options, indent="  ")
+    else:
+        sys.stdout.write(f"{measured}: no number that was measured is known of this run\n")
     sys.stdout.writelines(f"{line}\n" for one in doubtful_tests(scene) for line in wrapped(f"warning: {one}"))
 
 
-def _say_screening(scene: Scene, options: Options) -> None:
-    """Print the closed-form screening of the scene and the command of its verdict."""
+def _say_screening(case: Case, options: Options) -> None:
+    """Print the closed-form screening of a case and the command of its verdict."""
     from fem_impact.answers.verdict.screening import screening
     from fem_impact.answers.verdict.sentences import lines_of, screening_lines
 
     changes = [word for change in options.changes for word in ("--set", change)]
-    titled = screening_lines(screening(scene), shlex.join([options.scene, *changes]))
+    titled = screening_lines(screening(case.bodies), shlex.join([options.scene, *changes]))
     lines = lines_of(titled, indent="")
     sys.stdout.write("\n".join(lines) + "\n")
 
@@ -160,17 +169,14 @@ def _setting(scene: Scene, options: Options) -> ChosenSetting | RefinementPlan |
     return settle(scene, options.fidelity or None, cores(), budget)
 
 
-def _say_plan(scene: Scene, chosen: str, options: Options) -> None:
+def _say_plan(case: Case, chosen: str, options: Options) -> None:
     """Print the setting chosen for the scene's target error, or without one the time of a long run."""
-    sentence = chosen or ("" if options.fidelity in ("rigid", "modal") else _long_run(scene))
+    sentence = chosen or (_long_run(case.size) if case.fidelity == "solid" else "")
     if sentence and not options.quiet:
         sys.stderr.write(f"{sentence}\n")
 
 
-def _long_run(scene: Scene) -> str:
-    from fem_impact.case.case import Case
-
-    size = Case.of(scene).size
+def _long_run(size: RunSize) -> str:
     if size.time <= LONG:
         return ""
     return f"This run takes about {clock_text(size.time)} ({size_text(size)}); a larger tip_size is quicker."

@@ -13,6 +13,7 @@ from fem_impact.answers.verdict.assess import Verdict
 from fem_impact.answers.verdict.chart import chart
 from fem_impact.answers.verdict.screening import screening
 from fem_impact.answers.verdict.sentences import Line, screening_lines
+from fem_impact.case.case import Case
 from fem_impact.errors import ResultError, RunError, SceneError, UsageError
 from fem_impact.figures.runs import partition_picture
 from fem_impact.figures.still import draw
@@ -48,7 +49,7 @@ def screening_box(scene: Scene, name: str) -> Markup:
 
     ``name`` is what the command takes: the id of a shipped scene, or the path of its file.
     """
-    return verdict_box(screening_lines(screening(scene), name))
+    return verdict_box(screening_lines(screening(Case(scene).bodies), name))
 
 
 def write_verdict(verdict: Verdict, document: dict[str, Any], out: Path) -> Path:

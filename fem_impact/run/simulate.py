@@ -16,7 +16,9 @@ if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
 
 
-def simulate(scene: Scene, fidelity: str = "solid", options: RunOptions = RunOptions()) -> Outcome:
+def simulate(
+    scene: Scene, fidelity: str = "solid", options: RunOptions = RunOptions(), case: Case | None = None
+) -> Outcome:
     """Compute an impact on the mesh that its scene gives.
 
     Parameters
@@ -29,6 +31,7 @@ def simulate(scene: Scene, fidelity: str = "solid", options: RunOptions = RunOpt
         history.csv except of the rigid and fields.vtkhdf of the solid one; none is written without ``out``.
         Their digests stand in files.sha256. What an older run left there is moved to a directory
         ``earlier-...`` within
+    case : that of this scene and fidelity, where the caller has compiled it
 
     Raises
     ------
@@ -52,7 +55,7 @@ def simulate(scene: Scene, fidelity: str = "solid", options: RunOptions = RunOpt
         raise SceneError(
             "is an error, not a mesh.", key="accuracy", value=scene.accuracy.target, remedy=remedy
         )
-    case = Case.of(scene, fidelity)
+    case = case or Case.of(scene, fidelity)
     tests_of(scene)  # own tests that cannot be read are refused before any work
     if options.out is None:
         return _compute(case, replace(options, resume=False))

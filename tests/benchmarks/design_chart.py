@@ -18,6 +18,7 @@ from pathlib import Path
 from fem_impact.answers.verdict.chart import COLUMNS, TABLE
 from fem_impact.answers.verdict.effect import modal_pair, unfinished
 from fem_impact.answers.verdict.screening import screening
+from fem_impact.case.case import Case
 from fem_impact.errors import SceneError
 from fem_impact.evidence.studies.rods import BODY, TIP, length_of
 from fem_impact.files.atomic import write_text
@@ -86,7 +87,8 @@ def rows() -> Iterator[tuple[object, ...]]:
         if not unfinished(pair):
             free, stiff = pair
             change = known(free.restitution.edge.e) - known(stiff.restitution.edge.e)
-            numbers = screening(scene).ratio, known(free.restitution.mu), change, known(free.energy.vibration)
+            ratio = screening(Case(scene).bodies).ratio
+            numbers = ratio, known(free.restitution.mu), change, known(free.energy.vibration)
             yield (*name, *(float(f"{number:.5g}") for number in numbers))
 
 

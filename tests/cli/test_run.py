@@ -9,6 +9,8 @@ from pathlib import Path
 import pytest
 
 from fem_impact.answers.report import Request
+from fem_impact.case.case import Case
+from fem_impact.errors import RunError
 from fem_impact.scene.shipped import load
 from fem_impact.scene.write import digest, to_toml
 
@@ -204,6 +206,17 @@ def test_a_body_that_does_not_yield_has_no_residual_stress(cli, stand):
     out = cli("run", "t5b", "--quiet")[1]
     assert "elastic energy left in rod         0.004 %" in out
     assert "residual stress in barrier         1.000 %" in out
+
+
+@pytest.mark.parametrize("fidelity", ["rigid", "solid"])
+def test_the_command_compiles_its_scene_once(cli, monkeypatch, fidelity):
+    """For the time that it may take, the run, and the screening at its end."""
+    made, compiled = [], Case.__init__
+    monkeypatch.setattr(Case, "__init__", lambda *case: made.append(case) or compiled(*case))
+    code, out, _ = cli("run", "quick", "--fidelity", fidelity, "--quiet", "--set", "accuracy.max_time=20 us")
+    assert code == (0 if fidelity == "rigid" else RunError.exit_code) and "T1/tau" in out
+    assert ("no number that was measured is known" in out) == bool(code)  # cut off before the separation
+    assert len(made) == 1
 
 
 def test_every_limitation_is_printed_after_its_kind(cli, stand):

@@ -67,10 +67,10 @@ def test_only_a_thin_wall_has_more_cells_unless_they_are_stated():
 
 def test_it_counts_for_the_effect_of_vibration_and_is_told():
     scene, slender = ring(), load("tube")
-    share = ovalling_period(scene.projectile) / screening(scene).duration
+    share = ovalling_period(scene.projectile) / screening(Case(scene).bodies).duration
     assert number(Case(scene).bodies) == pytest.approx(share)
-    assert "ovals more slowly than the body bends" in screening(scene).sentence
-    assert "ovals" not in screening(slender).sentence
+    assert "ovals more slowly than the body bends" in screening(Case(scene).bodies).sentence
+    assert "ovals" not in screening(Case(slender).bodies).sentence
 
 
 @pytest.mark.parametrize(("bore", "share"), [("24 mm", 0.065), ("20 mm", 0.011)])

@@ -160,7 +160,7 @@ def assess(
         scene,
         tolerance,
         used,
-        screening(scene),
+        screening(bodies),
         here,
         others,
         not_known,

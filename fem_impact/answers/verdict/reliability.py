@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 from fem_impact.answers.verdict.screening import screening
 from fem_impact.answers.verdict.twins import twins
+from fem_impact.case.case import Case
 from fem_impact.case.measured import summary
 from fem_impact.outcome.keys import known, or_none
 from fem_impact.run.simulate import simulate
@@ -82,9 +83,9 @@ class KnownError:
 
 def known_error(scene: Scene) -> KnownError:
     """Return how far the reduced model may be off for a scene."""
-    ratio = screening(scene).ratio
+    ratio = screening(Case(scene).bodies).ratio
     same = [name for name in stored() if _materials(_stored(name)) == _materials(scene)]
-    near = [name for name in same if abs(log(screening(_stored(name)).ratio / ratio)) <= LIKE]
+    near = [name for name in same if abs(log(screening(Case(_stored(name)).bodies).ratio / ratio)) <= LIKE]
     counted = [discrepancy(name) for name in near or stored()]
     return KnownError(
         max(abs(one.modal - one.solid) for one in counted),

@@ -5,12 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from fem_impact.case.case import Case
 from fem_impact.tables.text import plain
 from rigid import LIMIT, behaves_rigidly
 
 if TYPE_CHECKING:
-    from fem_impact.scene.types import Scene
+    from fem_impact.case.bodies import Bodies
 
 
 ROUND = (
@@ -69,9 +68,8 @@ class Screening:
         )
 
 
-def screening(scene: Scene) -> Screening:
-    """Return the closed-form estimates of a scene with the effects that it calls for."""
-    bodies = Case(scene).bodies
+def screening(bodies: Bodies) -> Screening:
+    """Return the closed-form estimates of bodies with the effects in force."""
     return Screening(
         bodies.bending_period,
         float(bodies.estimate.duration),
