@@ -16,7 +16,6 @@ from fem_impact.answers.refine.budget import (
     below,
     longest_s,
     side_by_side,
-    wall_seconds,
 )
 from fem_impact.answers.refine.extrapolate import ALONE, ONE_RUN, MeshRuns, mesh_limits, target_limits
 from fem_impact.answers.refine.levels import FEW_OFFSETS, at_offsets
@@ -281,5 +280,5 @@ def _simulate_chosen(scene: Scene, chosen: ChosenSetting, options: RunOptions, w
         accuracy_setting=chosen.setting.name,
         expected_error=chosen.expected_error,
         expected_wall=chosen.expected_wall_s,
-        achieved_wall=longest_s([wall_seconds(outcome) for outcome in done], workers),
+        achieved_wall=longest_s([outcome.cost.whole_wall for outcome in done], workers),
     )

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 from fem_impact.case.case import Case
 from fem_impact.errors import FemImpactError, ResultError, SceneError
 from fem_impact.options import RunOptions
-from fem_impact.outcome.keys import or_none
 from fem_impact.run import simulate as run
 from fem_impact.run.program import source_digest
 from fem_impact.scene.write import digest
@@ -149,7 +148,7 @@ class Job:
 
     def cpu_s(self, result: Outcome) -> float:
         """Return the processor time, s, of steps and set-up of an outcome."""
-        return result.cost.cpu + (or_none(result.cost.setup_cpu) or 0.0)
+        return result.cost.whole_cpu
 
 
 @cache

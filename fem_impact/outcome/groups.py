@@ -380,3 +380,13 @@ class RunCost:
     mass_scaling: Num = key(
         "mass_scaling", "-", "Square of the step over that with true masses; 1: masses are true."
     )
+
+    @property
+    def whole_wall(self) -> float:
+        """Wall time of time loop and set-up, s; a set-up that is not known counts nothing."""
+        return self.wall + (or_none(self.setup_wall) or 0.0)
+
+    @property
+    def whole_cpu(self) -> float:
+        """Processor time of time loop and set-up, s; a set-up that is not known counts nothing."""
+        return self.cpu + (or_none(self.setup_cpu) or 0.0)

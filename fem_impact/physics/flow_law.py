@@ -39,7 +39,7 @@ class FlowLaw(NamedTuple):
     yield_stress, slope, exponent : of the flow curve, see `fem_impact.physics.hardening.Hardening`
     skin : k, Pa
     friction : Coulomb's f
-    ploughs : whether the barrier takes the furrow; otherwise the tip is flattened
+    ploughs : whether the barrier takes the groove; otherwise the tip is flattened
     yields : whether this law holds; otherwise nothing flows
     """
 

@@ -6,7 +6,7 @@ from cost_fakes import Here, run
 import fem_impact.run.simulate
 from fem_impact.answers import wanted_error as to_target
 from fem_impact.answers.cost import stored
-from fem_impact.answers.cost.judge import Judged, cpu_seconds
+from fem_impact.answers.cost.judge import Judged
 from fem_impact.answers.cost.measure import measure
 from fem_impact.answers.cost.stored import NEARNESS, SUMMARY, choose_setting, nearest, summarise
 from fem_impact.answers.refine.extrapolate import pair_limit
@@ -233,7 +233,7 @@ def test_the_expected_time_is_that_of_the_runs_that_are_done(costs, monkeypatch,
     done = []
 
     def kept(*scene):
-        done.append(cpu_seconds(run(*scene)))
+        done.append(run(*scene).cost.whole_cpu)
         return run(*scene)
 
     monkeypatch.setattr(fem_impact.run.simulate, "simulate", kept)

@@ -10,7 +10,7 @@ from math import exp, log
 from pathlib import Path
 from statistics import fmean
 
-from fem_impact.answers.refine.budget import calibration_factor, cpu_seconds, planned_s
+from fem_impact.answers.refine.budget import calibration_factor, planned_s
 from fem_impact.answers.refine.levels import MESH_LEVELS, at_offsets
 from fem_impact.outcome.record import Outcome
 from fem_impact.scene.shipped import load
@@ -19,7 +19,7 @@ from fem_impact.scene.types import MEASURED_SETS
 
 def timed(run: Outcome) -> Outcome:
     """Return an outcome whose wall time is its processor time: other programs do not count."""
-    return replace(run, cost=replace(run.cost, wall=cpu_seconds(run), setup_wall=0.0))
+    return replace(run, cost=replace(run.cost, wall=run.cost.whole_cpu, setup_wall=0.0))
 
 
 def main(folder: Path) -> None:
@@ -40,7 +40,7 @@ def main(folder: Path) -> None:
             ]
             if len(runs) < len(scenes):
                 continue
-            planned, took = planned_s(scenes, 1), sum(map(cpu_seconds, runs))
+            planned, took = planned_s(scenes, 1), sum(run.cost.whole_cpu for run in runs)
             edge = f"{mesh.sizes(scenes[0])[0] * 1e3:.3g} mm"
             line = f"{name:16} {edge}: planned {planned:.1f} s, took {took:.1f} s"
             if last:

@@ -50,7 +50,7 @@ STEEP = {
 
 
 @pytest.mark.parametrize("mass", ["0.7 kg", "1e9 kg"])
-def test_a_tip_that_leaves_a_steep_furrow_is_held_down_by_its_flank(mass):
+def test_a_tip_that_leaves_a_steep_groove_is_held_down_by_its_flank(mass):
     """Friction there points down and the normal force falls below zero: the contact is not over."""
     result = solve(Case.of(replace_all(load("t5b"), STEEP | {"barrier.mass": mass}), "modal"), recorded=True)
     assert result.finished

@@ -9,7 +9,7 @@ from statistics import fmean
 from typing import Any
 
 from fem_impact.answers.cost.settings import ONE_OFFSET, Setting
-from fem_impact.answers.refine.budget import cpu_seconds, longest_s, wall_seconds
+from fem_impact.answers.refine.budget import longest_s
 from fem_impact.answers.refine.extrapolate import (
     ExtrapolatedValue,
     MeshRuns,
@@ -109,9 +109,9 @@ def judge(
         error={name: _error(number, limits.get(name), bands.get(name)) for name, number in value.items()},
         scatter={name: number / limits[name].scale for name, number in scatter.items()},
         band={name: limit.uncertainty / limits[name].scale for name, limit in bands.items()},
-        wall_s=sum(map(wall_seconds, outcomes)),
-        cpu_s=sum(map(cpu_seconds, outcomes)),
-        two_cores_s=longest_s([cpu_seconds(outcome) for outcome in outcomes], 2),
+        wall_s=sum(outcome.cost.whole_wall for outcome in outcomes),
+        cpu_s=sum(outcome.cost.whole_cpu for outcome in outcomes),
+        two_cores_s=longest_s([outcome.cost.whole_cpu for outcome in outcomes], 2),
         element_steps=sum(or_none(outcome.cost.element_steps) or 0 for outcome in outcomes) or None,
         peak_memory_MB=max((or_none(o.cost.peak_memory) or 0.0 for o in outcomes), default=0.0) or None,
     )

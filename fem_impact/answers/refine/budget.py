@@ -96,16 +96,6 @@ def longest_s(times: Sequence[float], workers: int) -> float:
     return max(map(sum, by_worker(times, workers)))
 
 
-def wall_seconds(run: Outcome) -> float:
-    """Return the wall time of a run with that of its set-up, s."""
-    return run.cost.wall + (or_none(run.cost.setup_wall) or 0.0)
-
-
-def cpu_seconds(run: Outcome) -> float:
-    """Return the processor time of a run with that of its set-up, s."""
-    return run.cost.cpu + (or_none(run.cost.setup_cpu) or 0.0)
-
-
 def planned_s(scenes: Iterable[Scene], workers: int) -> float:
     """Return the wall time, s, that runs side by side take by the plan, where none of them has run."""
     return longest_s([Case.of(scene).size.time for scene in scenes], workers)
@@ -124,7 +114,7 @@ def calibration_factor(scenes: Sequence[Scene], runs: Sequence[Outcome], workers
         else scene
         for scene, run in zip(scenes, runs, strict=True)
     ]
-    return longest_s([wall_seconds(run) for run in runs], workers) / planned_s(reached, workers)
+    return longest_s([run.cost.whole_wall for run in runs], workers) / planned_s(reached, workers)
 
 
 def about_s(time: float) -> str:
