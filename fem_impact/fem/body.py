@@ -301,13 +301,13 @@ class MeshedBodies:
 
     @cached_property
     def mass(self) -> Array:
-        """Return the lumped masses (size,), kg, and the inertia of a turning barrier's footing, kg m2."""
+        """Return the lumped masses (size,), kg, and the inertia of a turning barrier's foundation, kg m2."""
         mass = assemble_masses(self.bodies, self.layout)
         if not self.spec.vibrating:
             mass[self.layout.rod[-POINTS:]] = self.rest_mass / POINTS
         if self.scene.barrier.mass is not None:
             rest = self.rest_of_barrier
-            mass[self.layout.footing], mass[self.layout.turn] = rest.mass, rest.inertia
+            mass[self.layout.foundation], mass[self.layout.turn] = rest.mass, rest.inertia
         return mass
 
     @cached_property
@@ -321,7 +321,7 @@ class MeshedBodies:
     def inverse_mass(self) -> Array:
         """Return the inverse lumped masses (size,), 1/kg, 0 where an unknown is fixed."""
         inverse = invert(self.mass, self.bodies)
-        inverse[self.layout.footing[1:2]] = 0.0  # symmetry
+        inverse[self.layout.foundation[1:2]] = 0.0  # symmetry
         if self.barrier and self.scene.barrier.boundary == "fixed":
             inverse[self.barrier.places[np.unique(self.barrier.mesh.faces_with(OUTER))]] = 0.0
         return inverse

@@ -19,8 +19,8 @@ class DofLayout:
     """Indices of all degrees of freedom in one flat vector.
 
     Order: rod slices as (component, section node, layer) so that a layer's neighbours are contiguous,
-    free nose nodes, free barrier nodes, hanging nodes, the footing, its angle, one dummy element that fills
-    up blocks.
+    free nose nodes, free barrier nodes, hanging nodes, the foundation, its angle, one dummy element that
+    fills up blocks.
 
     Attributes
     ----------
@@ -29,7 +29,7 @@ class DofLayout:
     body_shape : number of rows (3 * section nodes) and of layers of the slices
     rod_size, free_size, size : ends of the rod's free part, of all free parts, of the vector
     dummy : (8, 3) int64, indices of the dummy element's unknowns
-    footing : (3,) int64, indices of the barrier's motion as a whole; (0,) where it is massive
+    foundation : (3,) int64, indices of the barrier's motion as a whole; (0,) where it is massive
     turn : (1,) int64, index of the barrier's angle, rad, from n towards t; (0,) where it does not turn
     """
 
@@ -40,7 +40,7 @@ class DofLayout:
     free_size: int
     size: int
     dummy: Ints
-    footing: Ints
+    foundation: Ints
     turn: Ints
 
     @property
@@ -49,8 +49,8 @@ class DofLayout:
         return slice(self.rod_size, self.free_size)
 
     def ends(self, places: Ints) -> Ints:
-        """Return the unknown of the footing in the direction of each unknown of the barrier's free nodes."""
-        return np.asarray(self.footing[(places - self.rod_size) % 3])
+        """Return the unknown of the foundation in the direction of each unknown of the barrier's nodes."""
+        return np.asarray(self.foundation[(places - self.rod_size) % 3])
 
     def slices_of(self, vector: Array) -> Array:
         """Return the slices' part of a vector, a view of shape ``body_shape``."""
@@ -63,10 +63,10 @@ def _triples(start: int, count: int) -> Ints:
     return start + np.arange(3 * count, dtype=np.int64).reshape(count, 3)
 
 
-def number(rod: RodMesh, barrier: HexMesh | None, footing: bool = False, turns: bool = False) -> DofLayout:
+def number(rod: RodMesh, barrier: HexMesh | None, foundation: bool = False, turns: bool = False) -> DofLayout:
     """Return the numbering of a rod and, if meshed, its barrier.
 
-    A ``footing`` lets the barrier move as a whole; it may have an angle, too, if it ``turns``.
+    A ``foundation`` lets the barrier move as a whole; it may have an angle, too, if it ``turns``.
     """
     n_section, n_layers = rod.body_nodes.shape
     places = np.full((len(rod.mesh.points), 3), -1, dtype=np.int64)
@@ -83,7 +83,7 @@ def number(rod: RodMesh, barrier: HexMesh | None, footing: bool = False, turns: 
     places[rod.mesh.is_hanging] = _triples(free_size, n_hanging)
     block[hanging_barrier] = _triples(free_size + 3 * n_hanging, int(hanging_barrier.sum()))
     end = free_size + 3 * (n_hanging + int(hanging_barrier.sum()))
-    whole = end + np.arange(3 * footing, dtype=np.int64)
+    whole = end + np.arange(3 * foundation, dtype=np.int64)
     turn = end + len(whole) + np.arange(turns, dtype=np.int64)
     end, shape = end + len(whole) + len(turn), (3 * n_section, n_layers)
     return DofLayout(places, block, shape, rod_size, free_size, end + 24, _triples(end, 8), whole, turn)

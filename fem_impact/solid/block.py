@@ -85,7 +85,7 @@ def _dashpots(damping: Array, layout: DofLayout, inverse_mass: Array) -> Dashpot
     place = layout.barrier_slice
     places = place.start + np.flatnonzero(damping)
     places = places[inverse_mass[places] > 0]
-    ends = layout.ends(places) if len(layout.footing) else places[:0]
+    ends = layout.ends(places) if len(layout.foundation) else places[:0]
     return Dashpots(
         places, damping[places - place.start], inverse_mass[places], ends, inverse_mass[ends].copy()
     )

@@ -39,7 +39,7 @@ from rigid import Faceted
 if TYPE_CHECKING:
     from fem_impact.solid.block import ElasticBlockParts
     from fem_impact.solid.elastic import ModalDamping
-    from fem_impact.solid.footing import FootingSprings
+    from fem_impact.solid.foundation import FoundationSprings
     from fem_impact.solid.rigid_rest import ElasticNose, RigidRest
     from fem_impact.solid.yielding import YieldingZone
 
@@ -179,27 +179,27 @@ class Builder:
     def turning_block(
         self, pots: list[Dashpots], step: float
     ) -> tuple[list[Force], list[Impulse], dict[str, float]]:
-        """Return the items of a block on a footing that turns, from those of one that stands still."""
-        from fem_impact.solid.turning import TurningBlock, TurningDashpots, footing_step
+        """Return the items of a block on a foundation that turns, from those of one that stands still."""
+        from fem_impact.solid.turning import TurningBlock, TurningDashpots, foundation_step
 
         block, ground, layout = self.block_parts, self.ground, self.meshed.layout
         inverse, place, x = self.meshed.inverse_mass, layout.barrier_slice, self.meshed.x
-        moves = inverse[[*layout.footing[[0, 2]], *layout.turn]]
+        moves = inverse[[*layout.foundation[[0, 2]], *layout.turn]]
         springs = block.springs.diagonal()
-        step = footing_step(step, self.scene.accuracy.step, springs, ground, moves, x[place])
+        step = foundation_step(step, self.scene.accuracy.step, springs, ground, moves, x[place])
         linear = TurningBlock.of(block.linear.stiffness, place, ground, block.linear.effect)
         turning = [TurningDashpots.of(p.places, p.damping, inverse, ground, place.start) for p in pots]
         return [linear], [*turning], {"barrier": step}
 
     @cached_property
-    def footing(self) -> list[FootingSprings]:
-        """Return the springs between a block and a footing that does not turn, if there are both."""
+    def foundation(self) -> list[FoundationSprings]:
+        """Return the springs between a block and a foundation that does not turn, if there are both."""
         if self.meshed.barrier is None or self.scene.barrier.mass is None or self.ground.turns:
             return []
-        from fem_impact.solid.footing import FootingSprings
+        from fem_impact.solid.foundation import FoundationSprings
 
         stiffness, effect = self.block_parts.springs.diagonal(), self.block_parts.linear.effect
-        return [FootingSprings.of(stiffness, self.meshed.layout, self.meshed.x, effect)]
+        return [FoundationSprings.of(stiffness, self.meshed.layout, self.meshed.x, effect)]
 
     @cached_property
     def steps(self) -> dict[str, float]:
@@ -285,7 +285,7 @@ class Builder:
         """Return the items that add forces, in their order."""
         (linear, _), (block, _, _), gravity = self.elastic_rod, self.block, self.spec.gravity
         weight = [] if gravity is None else [self.weight(gravity)]
-        return [linear, *weight, *block, *self.footing, *self.zones]
+        return [linear, *weight, *block, *self.foundation, *self.zones]
 
     def impulses(self) -> list[Impulse]:
         """Return the items that change velocities, in their order, which ends with the contact."""
@@ -298,9 +298,9 @@ class Builder:
         """Return the contact, within the frame of a plate that bends."""
         if self.spec.plate is None or isinstance(self.contact, MovingPlane):
             return [self.contact]
-        from fem_impact.solid.footing import on_plate
+        from fem_impact.solid.foundation import on_plate
 
-        return on_plate(self.contact, int(self.meshed.layout.footing[2]), self.spec.plate)
+        return on_plate(self.contact, int(self.meshed.layout.foundation[2]), self.spec.plate)
 
     def model(self) -> Model:
         """Return the model."""

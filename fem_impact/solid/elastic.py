@@ -77,8 +77,8 @@ class Dashpots:
     """Viscous boundary that absorbs outgoing waves; implicit in time, so it does not limit the step.
 
     ``places`` (k,) are the damped unknowns, ``damping`` (k,), N s/m, ``inverse_mass`` (k,), 1/kg. On a free
-    barrier ``ends`` (k,) are the unknowns of its footing that hold the other ends, ``footing_inverse`` (k,),
-    1/kg, its inverse masses; both are empty else. ``effect`` and ``accounts`` are those of the waves.
+    barrier ``ends`` (k,) are the unknowns of its foundation that hold the other ends, ``foundation_inverse``
+    (k,), 1/kg, its inverse masses; both are empty else. ``effect`` and ``accounts`` are those of the waves.
     """
 
     every: ClassVar[int] = 1
@@ -87,7 +87,7 @@ class Dashpots:
     damping: Array
     inverse_mass: Array
     ends: Ints = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
-    footing_inverse: Array = field(default_factory=lambda: np.zeros(0))
+    foundation_inverse: Array = field(default_factory=lambda: np.zeros(0))
     effect: str = "radiation"
     accounts: tuple[str, ...] = ("radiated",)
     radiated: float = 0.0
@@ -106,14 +106,14 @@ class Dashpots:
         state.v[self.places] = new
 
     def _resolve_free(self, state: State) -> None:
-        """Damp the velocities relative to the footing, which takes the opposite impulses."""
+        """Damp the velocities relative to the foundation, which takes the opposite impulses."""
         seen = state.v[self.places] - state.v[self.ends]
         pushed = state.kick * self.inverse_mass * state.force[self.places]
-        dragged = state.kick * self.footing_inverse * state.force[self.ends]
+        dragged = state.kick * self.foundation_inverse * state.force[self.ends]
         old, share = seen - pushed + dragged, 0.5 * state.kick * self.inverse_mass * self.damping
         impulse = ((seen - share * old) / (1 + share) - seen) / self.inverse_mass
         state.v[self.places] += self.inverse_mass * impulse
-        np.add.at(state.v, self.ends, -self.footing_inverse * impulse)
+        np.add.at(state.v, self.ends, -self.foundation_inverse * impulse)
         new = state.v[self.places] - state.v[self.ends]
         self.radiated -= 0.5 * float(impulse @ (old + new))
 

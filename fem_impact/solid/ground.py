@@ -12,23 +12,23 @@ from fem_impact.fem.layout import DofLayout
 
 @dataclass(frozen=True, slots=True)
 class Ground:
-    """The motion of a barrier as a whole: that of its footing.
+    """The motion of a barrier as a whole: that of its foundation.
 
     Attributes
     ----------
-    footing : (3,) unknowns of its displacement, m; (0,) where the barrier is massive
+    foundation : (3,) unknowns of its displacement, m; (0,) where the barrier is massive
     turn : (1,) unknown of its angle, rad, from n towards t; (0,) where it does not turn
-    centre : (2,) of the footing's mass centre along t and n at the start, m, where it turns
+    centre : (2,) of the foundation's mass centre along t and n at the start, m, where it turns
     """
 
-    footing: Ints
+    foundation: Ints
     turn: Ints
     centre: Array
 
     @classmethod
     def of(cls, layout: DofLayout, centre: Array) -> Ground:
-        """Return the motion of a barrier whose footing has its mass ``centre`` (2,), m."""
-        return cls(layout.footing, layout.turn, centre)
+        """Return the motion of a barrier whose foundation has its mass ``centre`` (2,), m."""
+        return cls(layout.foundation, layout.turn, centre)
 
     @property
     def turns(self) -> bool:
@@ -37,19 +37,23 @@ class Ground:
 
     def risen(self, x: Array) -> float:
         """Return by how much, m, the barrier as a whole has moved along n; 0 for a massive one."""
-        return float(x[self.footing[2]]) if len(self.footing) else 0.0
+        return float(x[self.foundation[2]]) if len(self.foundation) else 0.0
 
     def speed(self, v: Array) -> tuple[float, float]:
         """Return the velocity along n and t, m/s, of the barrier as a whole; 0 for a massive one."""
-        return (float(v[self.footing[2]]), float(v[self.footing[0]])) if len(self.footing) else (0.0, 0.0)
+        return (
+            (float(v[self.foundation[2]]), float(v[self.foundation[0]]))
+            if len(self.foundation)
+            else (0.0, 0.0)
+        )
 
     def spin(self, v: Array) -> float:
         """Return the angular velocity, rad/s, from n towards t; 0 of a barrier that does not turn."""
         return float(v[self.turn[0]]) if self.turns else 0.0
 
     def place(self, x: Array) -> Array:
-        """Return where the footing's mass centre is, (2,) along t and n, m."""
-        return np.asarray(self.centre + x[self.footing[[0, 2]]])
+        """Return where the foundation's mass centre is, (2,) along t and n, m."""
+        return np.asarray(self.centre + x[self.foundation[[0, 2]]])
 
     def rate(self, v: Array, x: Array, nodes: Ints) -> float | Array:
         """Return the velocity along n, m/s, of the barrier as a whole at its ``nodes`` (k, 3)."""

@@ -83,7 +83,7 @@ class Model:
     @property
     def in_plate_frame(self) -> bool:
         """Return whether the barrier's positions are those seen from a plate that bends."""
-        return bool(len(self.layout.footing)) and not self.mass[self.layout.footing].any()
+        return bool(len(self.layout.foundation)) and not self.mass[self.layout.foundation].any()
 
     def nodes(self, vector: Array) -> Array:
         """Return displacements or velocities of the nodes from those of the mass points, both (size,)."""

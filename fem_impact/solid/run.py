@@ -229,18 +229,18 @@ def _base(case: Case, model: Model, state: State) -> tuple[float, float]:
     if whole is None:
         return 0.0, 0.0
     momentum = (model.mass[block] * state.v[block]).reshape(-1, 3).sum(axis=0)
-    momentum += model.mass[model.layout.footing] * state.v[model.layout.footing]
+    momentum += model.mass[model.layout.foundation] * state.v[model.layout.foundation]
     return 2 * float(momentum[2]) / whole, 2 * float(momentum[0]) / whole
 
 
 def _turned(case: Case, model: Model, state: State) -> BarrierTurn:
-    """Return how a free barrier turns at ``state``; block and footing have its angular momentum."""
+    """Return how a free barrier turns at ``state``; block and foundation have its angular momentum."""
     start, whole, inertia = model.start, case.scene.barrier.mass or 1.0, case.scene.barrier.inertia or 1.0
     block = np.arange(model.layout.barrier_slice.start, model.layout.barrier_slice.stop).reshape(-1, 3)
     rod = model.layout.rod[~model.geometry.rod.mesh.is_hanging]
 
     def centre(x: Array) -> Array:
-        moment = model.mass[model.layout.footing[0]] * model.ground.place(x)
+        moment = model.mass[model.layout.foundation[0]] * model.ground.place(x)
         return np.asarray(2 * (model.mass[block[:, 0]] @ x[block][:, [0, 2]] + moment) / whole)
 
     def apart(x: Array) -> tuple[float, float]:
@@ -250,8 +250,8 @@ def _turned(case: Case, model: Model, state: State) -> BarrierTurn:
     middle = centre(state.x)
     nodes = [(model.mass[block[:, 0]], state.x[block] - [middle[0], 0.0, middle[1]], state.v[block])]
     t, n = model.ground.place(state.x) - middle
-    at, v = np.array([[t, 0.0, n]]), state.v[model.layout.footing][None]
-    nodes.append((model.mass[model.layout.footing[:1]], at, v))
+    at, v = np.array([[t, 0.0, n]]), state.v[model.layout.foundation][None]
+    nodes.append((model.mass[model.layout.foundation[:1]], at, v))
     spun = sum(float(m @ (r[:, 2] * v[:, 0] - r[:, 0] * v[:, 2])) for m, r, v in nodes)
     spun += float(model.mass[model.layout.turn[0]]) * model.ground.spin(state.v)
     return BarrierTurn(2 * spun / inertia, apart(start[0]), apart(state.x))

@@ -1,9 +1,9 @@
-"""The block of a free barrier that turns, and the dashpots around it, on a footing with an angle.
+"""The block of a free barrier that turns, and the dashpots around it, on a foundation with an angle.
 
-The footing is a rigid body with a displacement and the angle theta from n towards t. Seen from it, a point at
-x stands at l = R^T (x - c), with c the footing's mass centre, and the block with the springs around it has
-the potential U = d . K d / 2, d = l - X. The forces are the full gradient of U, so linear and angular
-momentum and energy are conserved for any angle: -R y on the block and R y on the footing, y = K d, and the
+The foundation is a rigid body with a displacement and the angle theta from n towards t. Seen from it, a point
+at x stands at l = R^T (x - c), with c the foundation's mass centre, and the block with the springs around it
+has the potential U = d . K d / 2, d = l - X. The forces are the full gradient of U, so linear and angular
+momentum and energy are conserved for any angle: -R y on the block and R y on the foundation, y = K d, and the
 torque sum(y_t l_n - y_n l_t) on its angle.
 """
 
@@ -23,13 +23,13 @@ from fem_impact.solid.state import State
 
 @dataclass(slots=True)
 class TurningBlock:
-    """The linear part of a meshed barrier on a footing that turns, and the springs between both.
+    """The linear part of a meshed barrier on a foundation that turns, and the springs between both.
 
     Attributes
     ----------
-    stiffness : of block and springs, about the footing's mass centre
-    place : of the block in the flat vectors; seen : (k, 3) its nodes as the footing sees them, m
-    pulled : (k, 3) forces on them as the footing sees them, N
+    stiffness : of block and springs, about the foundation's mass centre
+    place : of the block in the flat vectors; seen : (k, 3) its nodes as the foundation sees them, m
+    pulled : (k, 3) forces on them as the foundation sees them, N
     """
 
     body: ClassVar[str] = "barrier"
@@ -50,8 +50,8 @@ class TurningBlock:
         return cls(stiffness, place, ground, seen, pulled, effect)
 
     def add(self, state: State) -> None:
-        """Add the forces on the block and on its footing."""
-        (t, _, n), (turn,), x = self.ground.footing, self.ground.turn, state.x
+        """Add the forces on the block and on its foundation."""
+        (t, _, n), (turn,), x = self.ground.foundation, self.ground.turn, state.x
         c, s, (c_t, c_n) = np.cos(x[turn]), np.sin(x[turn]), self.ground.place(x)
         _seen(x[self.place].reshape(-1, 3), c_t, c_n, c, s, self.seen)
         self.stiffness.multiply(self.seen.ravel())
@@ -91,13 +91,13 @@ def _pull(seen, y, c, s, force):  # type: ignore[no-untyped-def]
     return pull_t, pull_n, torque
 
 
-def footing_step(
+def foundation_step(
     block: float, share: float, springs: Array, ground: Ground, inverse: Array, x: Array
 ) -> float:
-    """Return the stable step, s, of a block on springs with a footing; that of the block alone is ``block``.
+    """Return the stable step, s, of a block on springs with a foundation; ``block`` is its own, held fast.
 
     ``share`` is that of both steps, ``springs`` (3 k,), N/m, stand between the block's unknowns at ``x``
-    (3 k,), m, and the footing; ``inverse`` (3,) are its inverse mass along t and n, 1/kg, and inertia.
+    (3 k,), m, and the foundation; ``inverse`` (3,) are its inverse mass along t and n, 1/kg, and inertia.
     The largest eigenvalue of the whole is at most the sum of those of its two parts.
     """
     k_t, _, k_n = springs.reshape(-1, 3).T
@@ -111,16 +111,17 @@ def footing_step(
 
 @dataclass(slots=True)
 class TurningDashpots:
-    """Viscous boundary between a block and a footing that turns; implicit for the block.
+    """Viscous boundary between a block and a foundation that turns; implicit for the block.
 
-    Each dashpot's impulses on block and footing act at the same place, so they keep angular momentum.
+    Each dashpot's impulses on block and foundation act at the same place, so they keep angular momentum.
 
     Attributes
     ----------
     places : (k,) damped unknowns; damping : (k,), N s/m; inverse_mass : (size,), 1/kg
-    ends : (k,) unknowns of the footing in their directions
-    beside, across : (k,) unknowns of block and footing along which lie their levers about the footing's mass
-        centre; start : (k,) its place there at the start, m; sign : (k,) 1 along t, -1 along n, 0 along b
+    ends : (k,) unknowns of the foundation in their directions
+    beside, across : (k,) unknowns of block and foundation along which lie their levers about the mass centre
+        of the foundation; start : (k,) its place there at the start, m
+    sign : (k,) 1 along t, -1 along n, 0 along b
     radiated : energy of the half model taken so far, J
     """
 
@@ -145,12 +146,14 @@ class TurningDashpots:
     ) -> TurningDashpots:
         """Build for unknowns of a block that begins at the index ``first``."""
         along, (c_t, c_n) = (places - first) % 3, ground.centre
-        beside, across = places + np.array([2, 0, -2])[along], ground.footing[2 - along]
+        beside, across = places + np.array([2, 0, -2])[along], ground.foundation[2 - along]
         start, sign = np.array([c_n, 0.0, c_t])[along], np.array([1.0, 0.0, -1.0])[along]
-        return cls(places, damping, inverse_mass, ground, ground.footing[along], beside, across, start, sign)
+        return cls(
+            places, damping, inverse_mass, ground, ground.foundation[along], beside, across, start, sign
+        )
 
     def resolve(self, state: State) -> None:
-        """Damp the velocities relative to the footing, which takes the opposite impulses."""
+        """Damp the velocities relative to the foundation, which takes the opposite impulses."""
         (turn,), inverse, v = self.ground.turn, self.inverse_mass, state.v
         lever = self.sign * (state.x[self.beside] - state.x[self.across] - self.start)
 

@@ -97,7 +97,7 @@ def spin_and_momentum(model, state):
         m, x, v = model.mass[nodes[:, 0]], state.x[nodes], state.v[nodes]
         total += m @ (x[:, 2] * v[:, 0] - x[:, 0] * v[:, 2])
         moved += m @ v[:, [0, 2]]
-    (t, n), v, m = model.ground.place(state.x), state.v[layout.footing], model.mass[layout.footing[0]]
+    (t, n), v, m = model.ground.place(state.x), state.v[layout.foundation], model.mass[layout.foundation[0]]
     total += m * (n * v[0] - t * v[2]) + model.mass[layout.turn[0]] * model.ground.spin(state.v)
     return np.array([total, *(moved + m * v[[0, 2]])])
 
@@ -107,8 +107,10 @@ def test_block_springs_and_dashpots_keep_angular_momentum(effects):
     _, model, state = turning_model(effects)
     block = model.layout.barrier_slice
     m, place = model.mass[block].reshape(-1, 3), model.start[0][block].reshape(-1, 3)
-    whole = m[:, 0].sum() + model.mass[model.layout.footing[0]]
-    middle = (m[:, 0] @ place + model.mass[model.layout.footing[0]] * model.ground.centre[[0, 0, 1]]) / whole
+    whole = m[:, 0].sum() + model.mass[model.layout.foundation[0]]
+    middle = (
+        m[:, 0] @ place + model.mass[model.layout.foundation[0]] * model.ground.centre[[0, 0, 1]]
+    ) / whole
     assert 2 * whole == pytest.approx(M, rel=1e-12)
     assert middle[[0, 2]] == pytest.approx([OFFSET, -DEPTH], rel=1e-12)
     random = np.random.default_rng(1).normal(size=block.stop - block.start)
@@ -121,7 +123,7 @@ def test_block_springs_and_dashpots_keep_angular_momentum(effects):
     assert spin_and_momentum(model, state) == pytest.approx(before, abs=1e-12 * np.abs(before).max())
 
 
-def test_a_block_that_turns_with_its_footing_is_not_strained():
+def test_a_block_that_turns_with_its_foundation_is_not_strained():
     """The centrifugal pull alone is left, rho (omega r)^2 / E; its film shows no stress after 0.1 rad."""
     scene, model, state = turning_model(BLOCK)
     ground, block, spin = model.ground, model.layout.barrier_slice, -500.0  # away from the rod
@@ -176,6 +178,8 @@ def test_a_surface_that_has_moved_and_turned():
         local + np.array([0.021, -0.028]), abs=1e-15
     )
     step = 1e-7
-    rate = ground.rate(v, x, np.array([[0, 1, 2]]))  # of the point that stands where the footing's shift is
+    rate = ground.rate(
+        v, x, np.array([[0, 1, 2]])
+    )  # of the point that stands where the foundation's shift is
     moved = ground.turned_on(np.array([x[:3]]), x, 50.0 * step)[0] + step * v[:3]
     assert rate == pytest.approx((moved - x[:3])[2] / step, rel=1e-4)

@@ -17,7 +17,7 @@ from fem_impact.scene.shipped import load, replace_all
 from fem_impact.solid.build import build
 from fem_impact.solid.elastic import Dashpots
 from fem_impact.solid.fine_zone import SkinWatch
-from fem_impact.solid.footing import BendingPlate
+from fem_impact.solid.foundation import BendingPlate
 from meshes import OUTER, SKIN
 
 E, NU, RHO, SPEED = 206e9, 0.29, 7850.0, 600.0

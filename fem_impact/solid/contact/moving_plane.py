@@ -21,7 +21,7 @@ from fem_impact.solid.state import State
 
 @dataclass(slots=True)
 class MovingPlane:
-    """Unilateral contact with Coulomb friction ``f`` on a plane that is a free barrier's footing.
+    """Unilateral contact with Coulomb friction ``f`` on a plane that is a free barrier's foundation.
 
     Every impulse changes the velocity of the plane, so the nodes are solved together.
 
@@ -51,10 +51,10 @@ class MovingPlane:
         motion = PointState(state.x, state.v, state.force, self.inverse_mass, state.kick, state.dt_next)
         c = self.points
         if self.ground.turns:
-            turning = self.ground.footing, self.ground.turn[0], self.ground.centre
+            turning = self.ground.foundation, self.ground.turn[0], self.ground.centre
             count = over_turning_plane(self.nodes, *turning, motion, c)
         else:
-            count = over_plane(self.nodes, self.ground.footing, motion, c)
+            count = over_plane(self.nodes, self.ground.foundation, motion, c)
         settle(count, motion, c, self.f, self.book, state.time)
 
     def clearance(self, x: Array) -> float:

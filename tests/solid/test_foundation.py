@@ -59,26 +59,28 @@ def test_a_free_barrier_takes_the_momentum_that_the_rod_loses(effects):
     assert outcome.energy.barrier == pytest.approx(energy, rel=1e-12) and energy > 0.1
 
 
-def test_a_block_on_a_footing_shares_its_momentum_without_loss():
-    """Springs and dashpots between block and footing pass on what they take."""
+def test_a_block_on_a_foundation_shares_its_momentum_without_loss():
+    """Springs and dashpots between block and foundation pass on what they take."""
     scene = replace_all(load("t5b"), {**COARSE, "effects": BLOCK, "barrier.mass": "0.5 kg"})
     model = build(Case.of(scene))
     state, mass = model.initial_state(), model.mass
-    block, footing, rod = model.layout.barrier_slice, model.layout.footing, model.layout.rod
-    assert 2 * (mass[block].sum() / 3 + mass[footing[2]]) == pytest.approx(0.5, rel=1e-12)
+    block, foundation, rod = model.layout.barrier_slice, model.layout.foundation, model.layout.rod
+    assert 2 * (mass[block].sum() / 3 + mass[foundation[2]]) == pytest.approx(0.5, rel=1e-12)
     state.v[block] = np.random.default_rng(1).normal(size=block.stop - block.start) * (
         model.inverse_mass[block] > 0
     )
 
     def momentum():
-        moved = (mass[block] * state.v[block]).reshape(-1, 3).sum(axis=0) + mass[footing] * state.v[footing]
+        moved = (mass[block] * state.v[block]).reshape(-1, 3).sum(axis=0) + mass[foundation] * state.v[
+            foundation
+        ]
         return (moved + (mass[rod] * state.v[rod]).sum(axis=0))[[0, 2]]
 
     before = momentum()
     for _ in range(30):
         evaluate(model, state)
         advance(model, state)
-    assert np.abs(state.v[footing[[0, 2]]]).min() > 0
+    assert np.abs(state.v[foundation[[0, 2]]]).min() > 0
     assert momentum() == pytest.approx(before, abs=1e-12 * float(mass[rod].sum()))
 
 

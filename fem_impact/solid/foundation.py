@@ -1,8 +1,8 @@
 """What moves the barrier as a whole: springs on a free mass that does not turn, or a plate that bends.
 
-It has the unknowns of one node, the footing. On a free barrier the springs and dashpots around a meshed
-block, which stand for the rest of the barrier, act between block and footing, and a rigid plane is the
-footing: so the barrier has the momentum that the rod loses. A plate has its inertia in its impedance: its
+It has the unknowns of one node, the foundation. On a free barrier the springs and dashpots around a meshed
+block, which stand for the rest of the barrier, act between block and foundation, and a rigid plane is the
+foundation: so the barrier has the momentum that the rod loses. A plate has its inertia in its impedance: its
 block or plane stays at rest in a frame that moves with the plate.
 """
 
@@ -23,13 +23,13 @@ from fem_impact.solid.state import State
 
 
 @dataclass(slots=True)
-class FootingSprings:
-    """What the springs around a block do to its footing, beside their part in the block's own stiffness.
+class FoundationSprings:
+    """What the springs around a block do to its foundation, beside their part in the block's own stiffness.
 
     Attributes
     ----------
     places : (k,) unknowns of the block with springs; stiffness : (k,) N/m; origin : (k,) positions, m
-    ends : (k,) unknowns of the footing that hold their other ends
+    ends : (k,) unknowns of the foundation that hold their other ends
     """
 
     body: ClassVar[str] = "barrier"
@@ -43,15 +43,15 @@ class FootingSprings:
     energy: float = 0.0
 
     @classmethod
-    def of(cls, springs: Array, layout: DofLayout, x: Array, effect: str) -> FootingSprings:
-        """Build from the ``springs``, N/m, of all unknowns of a block; those along b move no footing."""
+    def of(cls, springs: Array, layout: DofLayout, x: Array, effect: str) -> FoundationSprings:
+        """Build from the ``springs``, N/m, of all unknowns of a block; those along b move no foundation."""
         first, held = layout.barrier_slice.start, np.flatnonzero(springs)
-        held = held[layout.ends(first + held) != layout.footing[1]]
+        held = held[layout.ends(first + held) != layout.foundation[1]]
         places = first + held
         return cls(places, springs[held], x[places].copy(), layout.ends(places), effect)
 
     def add(self, state: State) -> None:
-        """Add the forces by the motion of the footing, and those on it."""
+        """Add the forces by the motion of the foundation, and those on it."""
         moved = state.x[self.ends]
         pulled = self.stiffness * moved
         stretched = self.stiffness * (state.x[self.places] - self.origin) - pulled
@@ -73,7 +73,7 @@ class BendingPlate:
 
     Attributes
     ----------
-    place : unknown of the footing along n; rows : (k,) those of the rod's nodes that may touch
+    place : unknown of the foundation along n; rows : (k,) those of the rod's nodes that may touch
     impedance : of the half model, N s/m; book : of the contact
     speed, later : velocity in this step and in the next, m/s
     taken : energy of the half model that bending waves carry away so far, J
