@@ -94,7 +94,7 @@ def _pull(seen, y, c, s, force):  # type: ignore[no-untyped-def]
 def foundation_step(
     block: float, share: float, springs: Array, ground: Ground, inverse: Array, x: Array
 ) -> float:
-    """Return the stable step, s, of a block on springs with a foundation; ``block`` is its own, held fast.
+    """Return the stable step, s, of a block on springs with a foundation; ``block`` is that without one.
 
     ``share`` is that of both steps, ``springs`` (3 k,), N/m, stand between the block's unknowns at ``x``
     (3 k,), m, and the foundation; ``inverse`` (3,) are its inverse mass along t and n, 1/kg, and inertia.

@@ -74,7 +74,7 @@ def test_an_estimate_measures_a_few_jobs_and_keeps_them(tmp_path):
     assert len(engine.names) == 8
     assert (found.jobs, found.stored) == (40, 8)
     took = record(jobs[0].scene).cost
-    assert found.work_s == pytest.approx(32 * (took.cpu + took.setup_cpu))
+    assert found.work_s == pytest.approx(32 * took.whole_cpu)
     assert found.wall_s[1] == pytest.approx(found.work_s)
     assert found.wall_s[10] == pytest.approx(4 * found.longest_s)
     assert found.wall_s[1000] == pytest.approx(found.longest_s)
@@ -94,7 +94,7 @@ def test_samples_are_cheap_and_each_group_tells_its_times(tmp_path):
     assert len(engine.names) == 8
     assert max(planned[name] for name in engine.names) <= median(planned.values())  # of the cheaper half
     took = record(jobs[0].scene).cost
-    pace = median((took.cpu + took.setup_cpu) / planned[name] for name in engine.names)
+    pace = median(took.whole_cpu / planned[name] for name in engine.names)
     left = [pace * time for name, time in planned.items() if name not in engine.names]
     assert found.work_s == pytest.approx(sum(left)) and found.longest_s == pytest.approx(max(left))
     assert sum(group.jobs for group in found.groups) == 32
