@@ -116,7 +116,7 @@ def test_skin_outside_the_contact_is_held_against_the_plate_where_it_has_gone(
     state.x[model.layout.rod[:, 2]] += rod
     state.x[model.layout.barrier[:, 2]] += plate
     assert watch.observe(state) == stops
-    assert bool(watch.doubt()) == stops
+    assert bool(watch.below()) == stops
     assert watch.reason.startswith("The rod came down on the barrier outside") == stops
 
 
