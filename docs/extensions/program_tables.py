@@ -4,6 +4,7 @@ A page holds ``{from-program} NAME``; NAME is a function of `PARTS`, which retur
 """
 
 import argparse
+import math
 from collections.abc import Iterator
 from typing import get_args
 
@@ -17,6 +18,7 @@ from fem_impact.evidence.problems.catalogue import PROBLEMS, problem
 from fem_impact.outcome.keys import markdown_table
 from fem_impact.outcome.record import KEYS
 from fem_impact.scene import fields, library
+from fem_impact.scene.family import FAMILIES
 from fem_impact.scene.parameter import Parameter
 from fem_impact.scene.units import DIMENSIONS
 from fem_impact.tables.table import Table
@@ -78,7 +80,8 @@ def scene_choices() -> str:
         "accuracy.unresolved": fields.Unresolved,
     }
     rows = [(f"`{key}`", ", ".join(f"`{word}`" for word in get_args(kind))) for key, kind in choices.items()]
-    rows += [("`surface.state`", ", ".join(f"`{word}`" for word in [*library.surfaces(), "custom"]))]
+    rows += [("`family of a material`", ", ".join(f"`{word}`" for word in FAMILIES))]
+    rows += [("`surface.state`", ", ".join(f"`{word}`" for word in [*library.surfaces(), "pair", "custom"]))]
     return Table.of(("key", "one of"), rows, left=range(2)).markdown()
 
 
@@ -92,20 +95,45 @@ def scene_units() -> str:
 
 
 def materials() -> str:
-    """Shipped materials with their values."""
+    """Shipped materials with their values, other names and states."""
     rows = [
         (
             f"`{name}`",
+            ", ".join(library.aliases_of(name)),
             f"{m.E / 1e9:.4g}",
-            m.nu,
-            m.rho,
-            f"{m.yield_stress / 1e6:.4g}",
-            f"{m.ultimate_stress / 1e6:.4g}",
+            f"{m.nu:g}",
+            f"{m.rho:g}",
+            _strength(m.yield_stress),
+            _strength(m.ultimate_stress),
+            library.about(name),
         )
         for name, m in library.materials().items()
     ]
-    head = ("name", "E, GPa", "nu", "rho, kg/m3", "yield stress, MPa", "ultimate stress, MPa")
-    return Table.of(head, rows).markdown()
+    strengths = ("yield stress, MPa", "ultimate stress, MPa")
+    head = ("name", "also", "E, GPa", "nu", "rho, kg/m3", *strengths, "state")
+    return Table.of(head, rows, left=(0, 1, 7)).markdown()
+
+
+def _strength(stress: float) -> str:
+    return f"{stress / 1e6:.4g}" if stress < math.inf else "none"
+
+
+def material_sources() -> str:
+    """Every value of every shipped material, its interval where one is known, and where it was read."""
+    head = ("key", "value", "interval", "source")
+    tables = {
+        name: Table.of(head, library.sourced_values(name), left=range(4)) for name in library.materials()
+    }
+    return "\n\n".join(f"### {name}\n\n{table.markdown()}" for name, table in tables.items())
+
+
+def friction_pairs() -> str:
+    """Dry pairs of materials with the interval of their friction and its source."""
+    rows = [
+        (" on ".join(pair["families"]), f"{pair['low']:g} to {pair['high']:g}", pair["source"])
+        for pair in library.friction_pairs()
+    ]
+    return Table.of(("pair", "f", "source"), rows, left=range(3)).markdown()
 
 
 def surfaces() -> str:
@@ -169,7 +197,8 @@ def exit_codes() -> str:
 PARTS = {
     make.__name__.replace("_", "-"): make
     for make in (
-        *(scene_numbers, scene_choices, scene_units, materials, surfaces, effects, problems),
+        *(scene_numbers, scene_choices, scene_units, materials, material_sources, friction_pairs),
+        *(surfaces, effects, problems),
         *(outcome_keys, commands, studies, exit_codes),
     )
 }

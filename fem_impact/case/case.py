@@ -10,6 +10,7 @@ from fem_impact.case.cells import coarse_tip, thin_cells
 from fem_impact.case.choose import Decision, all_effects, choices, decide, neglected, require_approach
 from fem_impact.case.effects.registry import AUTO, EFFECTS, NAMES, check_effects
 from fem_impact.case.effects.slots import ModelSpec
+from fem_impact.case.elastic_only import require_crushing_named
 from fem_impact.case.layers import block_of, require_layers, thin_layer
 from fem_impact.case.limits import (
     require_own_mesh,
@@ -65,6 +66,7 @@ class Case:
             hint = did_you_mean(fidelity, FIDELITIES, f"Use one of {', '.join(FIDELITIES)}.")
             raise UsageError("is not a fidelity.", key="fidelity", value=fidelity, remedy=hint)
         case = cls(scene, fidelity)
+        require_crushing_named(scene)
         require_still(scene.barrier, fidelity)
         require_own_mesh(case.bodies, fidelity)
         require_round(case.bodies, fidelity)

@@ -6,7 +6,10 @@ from typing import TYPE_CHECKING
 
 from fem_impact.case.effects.heating import thermal
 from fem_impact.case.effects.plasticity import hardening_of
+from fem_impact.case.elastic_only import left_out
 from fem_impact.physics.hardening import TABOR_STRAIN, rate_gain, rate_law
+from fem_impact.scene.library import family_of
+from fem_impact.scene.pairs import known_pair
 
 if TYPE_CHECKING:
     from fem_impact.case.bodies import Bodies
@@ -14,7 +17,6 @@ if TYPE_CHECKING:
 
 
 RATES = (1e2, 1e3, 1e4)  # 1/s, at which flow stresses are told
-STEELS = ("rod-steel", "plate-steel", "steel-4340")  # of the pair that the shipped frictions were read for
 YIELDS = {"rod": "rod-plasticity", "barrier": "barrier-elastoplastic"}
 
 
@@ -43,10 +45,7 @@ def _metals(bodies: Bodies) -> dict[str, Material]:
 def _body(body: str, metal: Material, bodies: Bodies) -> str:
     used, effects = body == "rod" or bodies.contact.compliant, bodies.scene.effects
     if used and not metal.yields:
-        return (
-            f"The {body} ({metal.name}) has no yield stress and stays elastic. A ceramic or a glass cracks "
-            "instead of yielding; cracks are not followed, nor the energy that they take."
-        )
+        return f"The {body} ({metal.name}) has no yield stress and stays elastic. {left_out(metal)}"
     rate_wanted = "rate-hardening" in effects or ("auto" in effects and "-rate-hardening" not in effects)
     if YIELDS[body] in bodies.effects and rate_wanted and rate_law(metal) is None:
         return (
@@ -57,14 +56,28 @@ def _body(body: str, metal: Material, bodies: Bodies) -> str:
 
 
 def _friction(bodies: Bodies) -> str:
-    """Return that a shipped friction is that of steel on steel, where a body is of another material."""
-    surface = bodies.scene.surface
-    others = [metal.name for metal in _metals(bodies).values() if metal.name.split(" (")[0] not in STEELS]
-    if not others or "friction" not in bodies.effects or surface.state == "custom":
+    """Return where a friction comes from that the scene does not state, or is of another pair."""
+    surface, metals = bodies.scene.surface, _metals(bodies)
+    if "friction" not in bodies.effects or surface.state == "custom":
         return ""
+    low, high = surface.friction_low, surface.friction_high
+    if surface.state == "pair":
+        return (
+            f"No friction is stated: f = {surface.friction:g} is the middle of {low:g} to {high:g} "
+            f"({surface.source}). State surface.friction with its source."
+        )
+    others = [metal.name for metal in metals.values() if "steel" != family_of(metal)]
+    if not others:
+        return ""
+    pair = known_pair(metals["rod"], metals["barrier"])
+    known = (
+        f' surface.state = "pair" takes {pair.friction_low:g} to {pair.friction_high:g} ({pair.source}).'
+        if pair
+        else ""
+    )
     return (
-        f"Friction f = {surface.friction:g} is that of steel on steel; it is not known for "
-        f"{' and '.join(dict.fromkeys(others))}. State surface.friction with its source."
+        f"Friction f = {surface.friction:g} is that of steel on steel, not of "
+        f"{' and '.join(dict.fromkeys(others))}. State surface.friction with its source.{known}"
     )
 
 

@@ -114,6 +114,7 @@ def _draw(case: Case, path: Path) -> None:
 
 def _statement(case: Case) -> dict[str, Any]:
     """Return the document of ``--json``, from which the texts are made; SI units."""
+    from fem_impact.case.laws import laws
     from fem_impact.outcome.groups import EffectChoice
     from fem_impact.outcome.keys import keys_of
 
@@ -128,6 +129,7 @@ def _statement(case: Case) -> dict[str, Any]:
             for place, metal in materials_of(scene).items()
             for key, interval in intervals_of(metal.name).items()
         },
+        "laws": laws(case.bodies),
         "flow_stress_Pa": _flow_stresses(case),
         "defaults": [{"key": d.key, "value": d.value, "source": d.source} for d in DEFAULTS],
         "effects": [{key.name: key.of(choice) for key in keys_of(EffectChoice)} for choice in case.choices],
@@ -227,6 +229,7 @@ def _long(case: Case, statement: dict[str, Any], place: Path) -> str:
     lines += _wrapped(
         f"{key}: interval {low:g} to {high:g}" for key, (low, high) in statement["intervals"].items()
     )
+    lines += ["", "Laws in force", *_wrapped(f"{key} {law}" for key, law in statement["laws"].items())]
     lines += _flow_lines(statement)
     lines += ["", "Values used where a scene does not state them"]
     lines += _wrapped(f"{d['key']} = {d['value']}: {d['source']}" for d in statement["defaults"])
@@ -248,7 +251,8 @@ def _short(case: Case, statement: dict[str, Any]) -> str:
     scene = case.scene
     lines = [headed(scene.id, scene.title), "", "Projectile", *_drawing(case)]
     lines += _wrapped([_material_line(scene), *_body_lines(statement["body"])])
-    lines += ["", "Barrier and contact", *_wrapped(_contact_lines(case)), "", "Effects"]
+    lines += ["", "Barrier and contact", *_wrapped(_contact_lines(case))]
+    lines += ["", "Laws in force", *_wrapped(statement["laws"].values()), "", "Effects"]
     lines += _wrapped(
         f"on  {one.name}{' (forced)' if one.forced else ''}: {_decided(one)}"
         for one in case.choices

@@ -31,6 +31,7 @@ class Options(argparse.Namespace):
     only: str = ""
     parameters: bool = False
     materials: bool = False
+    friction: bool = False
     page: str = ""
     quick: bool = False
     workers: int | None = None

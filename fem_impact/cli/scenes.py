@@ -1,28 +1,51 @@
-"""The command ``scenes``: the shipped scenes and materials."""
+"""The command ``scenes``: the shipped scenes, the shipped materials and the known pairs of friction."""
 
 from __future__ import annotations
 
 import math
+import sys
+from collections.abc import Iterator
+from typing import Any
 
 from fem_impact.cli.options import Options
 from fem_impact.cli.parser import CommandParser
 from fem_impact.cli.terminal import print_json, print_table
-from fem_impact.scene.library import materials, shipped
+from fem_impact.scene.library import (
+    about,
+    aliases_of,
+    family_of,
+    friction_pairs,
+    intervals_of,
+    material,
+    materials,
+    shipped,
+    sourced_values,
+    sources_of,
+)
 from fem_impact.scene.shipped import load
 from fem_impact.scene.write import digest
 from fem_impact.tables.table import Table
+from fem_impact.tables.text import wrapped
 
 
 def add_options(parser: CommandParser) -> None:
     """State the command and its options."""
-    parser.state(scenes, "fem-impact scenes", "fem-impact scenes --materials")
-    parser.add_argument("--materials", action="store_true", help="list the shipped materials instead")
+    parser.state(scenes, "fem-impact scenes", "fem-impact scenes --materials", "fem-impact scenes --friction")
+    kinds = parser.add_mutually_exclusive_group()
+    kinds.add_argument(
+        "--materials", action="store_true", help="list the shipped materials instead, with every source"
+    )
+    kinds.add_argument(
+        "--friction", action="store_true", help="list the dry pairs of materials of which friction is known"
+    )
 
 
 def scenes(options: Options) -> int:
-    """List the shipped scenes, or the shipped materials."""
+    """List the shipped scenes, the shipped materials, or the pairs whose friction is known."""
     if options.materials:
         return _materials(options)
+    if options.friction:
+        return _friction(options)
     rows = [
         {
             "id": scene.id,
@@ -43,16 +66,53 @@ def scenes(options: Options) -> int:
     return 0
 
 
+HEAD = ("material", "E_Pa", "nu", "rho_kg_per_m3", "yield_stress_Pa", "ultimate_stress_Pa")
+
+
 def _materials(options: Options) -> int:
-    """List the shipped materials with their values."""
-    head = ("material", "E_Pa", "nu", "rho_kg_per_m3", "yield_stress_Pa", "ultimate_stress_Pa")
+    """List the shipped materials with their values, then the source of each value."""
+    known = materials()
     rows = [
         (name, m.E, m.nu, m.rho, *(x if x < math.inf else None for x in (m.yield_stress, m.ultimate_stress)))
-        for name, m in materials().items()
+        for name, m in known.items()
     ]
     if options.json:
-        print_json({"materials": [dict(zip(head, row, strict=True)) for row in rows]})
-    else:
-        texts = [(row[0], *("none" if x is None else f"{x:.4g}" for x in row[1:])) for row in rows]
-        print_table(Table.of(head, texts), options)
+        tables = (dict(zip(HEAD, row, strict=True)) for row in rows)
+        beside = map(_beside, known)
+        print_json({"materials": [one | more for one, more in zip(tables, beside, strict=True)]})
+        return 0
+    texts = [(row[0], *("none" if x is None else f"{x:.4g}" for x in row[1:])) for row in rows]
+    print_table(Table.of(HEAD, texts), options)
+    sys.stdout.write("".join(f"{line}\n" for name in known for line in _lines(name)))
+    return 0
+
+
+def _beside(name: str) -> dict[str, Any]:
+    """Return what stands beside the values of a shipped material."""
+    return {
+        "aliases": list(aliases_of(name)),
+        "family": family_of(material(name)),
+        "about": about(name),
+        "intervals": intervals_of(name),
+        "sources": sources_of(name),
+    }
+
+
+def _lines(name: str) -> Iterator[str]:
+    """Return name, aliases and state of a shipped material, and each value with its source."""
+    other = ", ".join(aliases_of(name))
+    yield from ("", *wrapped(f"{name}{f' ({other})' if other else ''}: {about(name)}"))
+    for key, value, interval, source in sourced_values(name):
+        spread = f" ({interval})" if interval else ""
+        yield from wrapped(f"{' '.join(filter(None, (key, value)))}{spread}: {source}", "  ")
+
+
+def _friction(options: Options) -> int:
+    """List the dry pairs of materials of which friction is known."""
+    pairs = friction_pairs()
+    if options.json:
+        print_json({"pairs": pairs})
+        return 0
+    rows = [(" on ".join(pair["families"]), pair["low"], pair["high"], pair["source"]) for pair in pairs]
+    print_table(Table.of(("pair, dry", "f from", "to", "source"), rows, left=(0, 3)), options)
     return 0

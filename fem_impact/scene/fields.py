@@ -42,6 +42,14 @@ MATERIAL = (
         derived="none: the plastic modulus, hardening, is stated, or another law",
     ),
     Parameter("hardness", "Vickers hardness number HV", "", 1.0, 1e4, derived="none"),
+    Parameter(
+        "loss_factor",
+        "ratio of loss to storage modulus at the pace of the contact",
+        "",
+        0.0,
+        1.5,
+        derived="none: the contact loses nothing by viscosity",
+    ),
     Parameter("conductivity", "conductivity of heat", "conductivity", 1e-3, 1e5, derived="unknown"),
     Parameter("heat_capacity", "heat capacity of a mass", "heat capacity", 1e-3, 1e5, derived="unknown"),
 )

@@ -11,6 +11,7 @@ from fem_impact.scene.write import to_dict
 from fem_impact.tables.table import Table
 
 STATED = "the scene, or its default"
+WORDS = ("name", "law", "family")  # of a material
 MOST_POINTS = 6  # of a profile or a bore that is written out; longer ones stand in the scene
 
 
@@ -55,9 +56,10 @@ def _rows(key: str, value: Any, source: str = STATED) -> list[tuple[str, str, st
     if isinstance(value, dict) and key.endswith((".rate", ".flow")):
         return [(key, ", ".join(f"{name} {part}" for name, part in value.items()), source)]
     if isinstance(value, dict):
-        # a section with a density is a material, whose name and law have no source
+        # a section with a density is a material, of which only the numbers have a source
+        sourced = "rho" in value
         sources = {
-            name: source_of(value["name"], name) if "rho" in value and name not in ("name", "law") else STATED
+            name: source_of(value["name"], name) if sourced and name not in WORDS else STATED
             for name in value
         }
         return [row for name, part in value.items() for row in _rows(f"{key}.{name}", part, sources[name])]

@@ -10,6 +10,8 @@ from typing import Any
 
 from fem_impact.errors import SceneError, did_you_mean
 from fem_impact.plugins import added, wrong
+from fem_impact.scene import fields
+from fem_impact.scene.family import family_by_words
 from fem_impact.scene.material import Material
 from fem_impact.scene.material_tables import material_of
 from fem_impact.scene.tables import Table, needed
@@ -18,7 +20,7 @@ from fem_impact.scene.units import parse_quantity
 
 CHANGED = " (changed)"
 """End of the name of a shipped material of which a scene changes a value."""
-BESIDE = ("melting", "intervals", "sources")
+BESIDE = ("melting", "intervals", "sources", "aliases", "about")
 """Keys of a shipped material that are no values of it."""
 _DATA = files("fem_impact.scene").joinpath("data")
 
@@ -47,15 +49,36 @@ def materials() -> dict[str, Material]:
 
 
 def material(name: str) -> Material:
-    """Return one shipped material, or refuse the name with a suggestion."""
-    known = materials()
+    """Return one shipped material by its name or an alias of it, or refuse the name with a suggestion."""
+    known, plain = materials(), _plain(name)
     for group in _table("not_modelled.toml").values():
-        if name in group["names"]:
+        if plain in map(_plain, group["names"]):
             raise SceneError(group["reason"], value=name, remedy=group["remedy"])
-    if name not in known:
+    own = next((one for one in known if plain in map(_plain, (one, *aliases_of(one)))), "")
+    if not own:
         remedy = _nearest_material(name, known)
         raise SceneError("is not a shipped material.", value=name, remedy=remedy)
-    return known[name]
+    return known[own]
+
+
+def aliases_of(name: str) -> tuple[str, ...]:
+    """Return other names of a shipped material, of standards and of trade."""
+    return tuple(_table("materials.toml")[name].get("aliases", ()))
+
+
+def about(name: str) -> str:
+    """Return which product a shipped material is, its state and temperature; empty if it is not told."""
+    return str(_table("materials.toml")[name].get("about", ""))
+
+
+def sources_of(name: str) -> dict[str, str]:
+    """Return where each value of a shipped material comes from."""
+    return dict(_table("materials.toml")[name].get("sources", {}))
+
+
+def _plain(name: str) -> str:
+    """Return a name in small letters and digits alone: ``AISI 316L``, ``aisi-316l`` are one."""
+    return "".join(letter for letter in name.lower() if letter.isalnum())
 
 
 def read_material(table: Table | str) -> Material:
@@ -87,6 +110,21 @@ def _nearest_material(name: str, known: Collection[str]) -> str:
     return f"Did you mean {family[0]}?" if family else did_you_mean(part, known, ALL_MATERIALS)
 
 
+def family_of(metal: Material) -> str:
+    """Return the family of a material: stated, of the shipped material of its name, or by a word of its name.
+
+    It is empty where none is known.
+    """
+    name = metal.name.removesuffix(CHANGED)
+    shipped_family = _table("materials.toml").get(name, {}).get("family", "")
+    return metal.family or str(shipped_family) or family_by_words(name)
+
+
+def friction_pairs() -> list[dict[str, Any]]:
+    """Return the table of dry pairs: their families, ends of the interval of f, and where they were read."""
+    return list(_table("friction_pairs.toml")["pair"])
+
+
 def surfaces() -> dict[str, Surface]:
     """Return the shipped surface states by name, each with its interval of f and its source."""
     keys = ("friction", "friction_low", "friction_high", "source")
@@ -97,7 +135,7 @@ def surface(state: str) -> Surface:
     """Return one shipped surface state, or refuse the word."""
     known = surfaces()
     if not isinstance(state, str) or state not in known:
-        choices = ", ".join(f'"{s}"' for s in [*known, "custom"])
+        choices = ", ".join(f'"{s}"' for s in [*known, "pair", "custom"])
         raise SceneError("is not a surface state.", key="state", value=state, remedy=f"Use one of {choices}.")
     return known[state]
 
@@ -117,9 +155,32 @@ def melting_of(name: str) -> float | None:
 
 
 def intervals_of(name: str) -> dict[str, tuple[float, float]]:
-    """Return the intervals of a shipped material; ``rate_factor`` is the rate factor at 1000 per second."""
+    """Return the intervals of a shipped material, SI; ``rate_factor`` is that at 1000 per second."""
+    dimensions = {parameter.key: parameter.dimension for parameter in fields.MATERIAL}
+
+    def number(key: str, end: Any) -> float:
+        return parse_quantity(end, dimensions[key], key) if isinstance(end, str) else float(end)
+
     table = _table("materials.toml").get(name, {}).get("intervals", {})
-    return {key: (float(low), float(high)) for key, (low, high) in table.items()}
+    return {key: (number(key, low), number(key, high)) for key, (low, high) in table.items()}
+
+
+def sourced_values(name: str) -> list[tuple[str, str, str, str]]:
+    """Return key, value, interval and source of each value of a shipped material, as texts or empty."""
+    metal, spread, melting = material(name), intervals_of(name), melting_of(name)
+    numbers = {f.key: f for f in fields.MATERIAL if getattr(metal, f.key) is not None}
+    values = {key: str(one.write(getattr(metal, key))) for key, one in numbers.items()}
+    values |= {} if melting is None else {"melting": f"{melting:g} K"}
+
+    def ends(key: str) -> str:
+        return " to ".join(
+            str(numbers[key].write(end)) if key in numbers else f"{end:g}" for end in spread[key]
+        )
+
+    return [
+        (key, values.get(key, ""), ends(key) if key in spread else "", source)
+        for key, source in sources_of(name).items()
+    ]
 
 
 def nearest_scene(name: str) -> str:
@@ -130,7 +191,12 @@ def nearest_scene(name: str) -> str:
 @cache
 def _material(name: str) -> Material:
     """Return a material of the table, read once."""
-    return material_of(name, _table("materials.toml")[name], BESIDE)
+    return material_of(name, _values(_table("materials.toml")[name]))
+
+
+def _values(table: dict[str, Any]) -> dict[str, Any]:
+    """Return the values of a shipped material without what stands beside them; its family stays there too."""
+    return {key: value for key, value in table.items() if key not in (*BESIDE, "family")}
 
 
 @cache
@@ -144,7 +210,7 @@ def _added_materials(ours: dict[str, Any]) -> dict[str, Any]:
     tables = added("materials", ours)
     for name, table in tables.items():
         try:
-            material_of(name, table, BESIDE)
+            material_of(name, _values(table))
         except (SceneError, TypeError, ValueError, AttributeError) as error:
             raise wrong(name, "materials", f"is no table of a material ({error}).") from None
     return tables

@@ -9,6 +9,7 @@ from typing import ClassVar, get_args
 from fem_impact.errors import SceneError
 from fem_impact.scene import fields
 from fem_impact.scene.checks import check_choice, check_numbers, check_text
+from fem_impact.scene.family import FAMILIES
 from fem_impact.scene.flow import Flow, JohnsonCookFlow, TableFlow
 
 MOST_STRAIN = 0.1
@@ -61,7 +62,9 @@ class Material:
         yield stress and what ``law`` names
     hardness : Vickers' number HV, kgf/mm2 of the pyramid's faces
     law : ``tensile``, through the ultimate stress, or ``hardness``, through the flow stress of the hardness
+    loss_factor : E'' / E' at the pace of the contact; None: it loses nothing by viscosity
     conductivity, heat_capacity : W/(m K), J/(kg K); None: not known
+    family : by which friction is looked up and what an elastic body leaves out is told; empty: by its name
     rate : how flow stress grows with the strain rate; None: no data, no effect
     """
 
@@ -79,10 +82,13 @@ class Material:
     rate: Rate | None = None
     tangent_modulus: float | None = None
     flow: Flow | None = None
+    family: str = ""
+    loss_factor: float | None = None
 
     def __post_init__(self) -> None:
         check_text(self.name, "name", 60)
         check_choice(self.law, get_args(fields.FlowLaw), "law")
+        check_choice(self.family, ("", *FAMILIES), "family")
         # a material that never yields has no strengths
         absent = [key for key in ("yield_stress", "ultimate_stress") if getattr(self, key) == inf]
         check_numbers(self, tuple(p for p in fields.MATERIAL if p.key not in absent))

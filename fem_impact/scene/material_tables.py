@@ -22,12 +22,11 @@ def material_of(name: Any, table: Table, others: Iterable[str] = ()) -> Material
     SceneError
         A key is unknown, a value is missing or refused, or values contradict each other.
     """
-    numbers = numbers_of(table, fields.MATERIAL, ("law", "rate", "flow", *others))
+    numbers = numbers_of(table, fields.MATERIAL, ("law", "rate", "flow", "family", *others))
     stated: dict[str, Any] = {
         f.key: f.checked(numbers[f.key]) for f in fields.MATERIAL if numbers[f.key] is not None
     }
-    if "law" in table:
-        stated["law"] = table["law"]
+    stated |= {key: table[key] for key in ("law", "family") if key in table}
     for key, read in (("rate", _rate), ("flow", _flow)):
         if key in table:
             stated[key] = within(table, key, read)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
 from math import inf, isclose
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,7 @@ from fem_impact.scene.checks import check_names, check_text
 from fem_impact.scene.impact import WAYS, Impact, the_way
 from fem_impact.scene.library import read_material
 from fem_impact.scene.own_mesh import OwnMesh
+from fem_impact.scene.pairs import pair_surface
 from fem_impact.scene.projectile import ProjectileSpec, Segment
 from fem_impact.scene.shapes import (
     HEIGHT,
@@ -147,14 +149,19 @@ def read_scene(data: Table) -> Scene:
         "id": lambda: needed(data, "id", '"my-rod", a name for the scene'),
         "projectile": lambda: within(data, "projectile", _projectile),
         "barrier": lambda: within(data, "barrier", _barrier),
-        "surface": lambda: within(data, "surface", _surface) if "surface" in data or rubs else SMOOTH,
+        "surface": lambda: within(data, "surface", _surface) if "surface" in data else None,
         "impact": lambda: within(data, "impact", _impact),
         "accuracy": lambda: within(data, "accuracy", _accuracy, {}),
         "save": lambda: within(data, "save", lambda t: Save(**numbers_of(t, fields.SAVE)), {}),
         "heating": lambda: within(data, "heating", lambda t: Heating(**numbers_of(t, fields.HEATING)), {}),
     }
+    read = _all_read(parts)
+    if read["surface"] is None:
+        pair = read["projectile"].material, read["barrier"].struck
+        of_pair = partial(_of_known, lambda: pair_surface(*pair))
+        read["surface"] = within(data, "surface", of_pair, {}) if rubs or "surface" in data else SMOOTH
     scene = Scene(
-        **_all_read(parts),
+        **read,
         title=data.get("title", data.get("id")),
         effects=effects,
         measured=data.get("measured"),
@@ -346,19 +353,25 @@ def _accuracy(table: Table | str) -> Accuracy:
     return Accuracy(**numbers, target=parse_share(table["target"], "target"))
 
 
-def _surface(table: Table) -> Surface:
-    skin = [f.key for f in fields.SKIN] + [f.si_key for f in fields.SKIN if f.si_key]
+def _surface(table: Table) -> Surface | None:
+    """Read a surface; that of the pair, which is None, follows from both materials."""
+    skin = [key for f in fields.SKIN for key in (f.key, f.si_key) if key]
     check_keys(table, ("state", "source", *(f.key for f in fields.SURFACE), *skin))
     state = needed(table, "state")
     if state == "custom":
         return _custom_surface(table)
-    known = library.surface(state)
+    return None if state == "pair" else _of_known(partial(library.surface, state), table)
+
+
+def _of_known(surface: Callable[[], Surface], table: Table) -> Surface:
+    """Return a surface of known friction with the layer of its table, which may repeat what is known."""
+    known, skin = surface(), [key for f in fields.SKIN for key in (f.key, f.si_key)]
     for key, value in table.items():
         if key in skin:
             continue
         if value != getattr(known, key):
             raise SceneError(
-                f"is not the value of a {state} surface ({getattr(known, key)}).",
+                f"is not the value of a {known.state} surface ({getattr(known, key)}).",
                 key=key,
                 value=value,
                 remedy='Leave it out, or write state = "custom" with your own friction and its source.',

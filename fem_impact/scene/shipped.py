@@ -72,6 +72,7 @@ def _shipped(name: str) -> Scene:
 
 LENGTH = {"projectile.length", "projectile.length_m"}
 BODIES = ("projectile", "impact", "barrier")
+PAIR = ("friction", "friction_low", "friction_high", "source")
 _CHANGED = ", changed: "
 _LONGEST = 300  # characters of a title
 # longest first: "_rad_per_s" before "_s"
@@ -114,6 +115,9 @@ def _changed(scene: Scene, changes: Mapping[str, Any]) -> dict[str, Any]:
         measured = data.pop("measured", "")
         if "title" not in changes:
             data["title"] = _title(data["title"], measured, other)
+    if data.get("surface", {}).get("state") == "pair" and any(".material" in key for key in changes):
+        for key in PAIR:
+            data["surface"].pop(key)  # it follows from both materials
     if new := moved(changes):
         data["impact"] = restated(scene.impact, data["impact"], new)
     if any(key.startswith("projectile.") for key in changes) and "projectile.segments" not in changes:
@@ -251,5 +255,5 @@ def _rename(table: dict[str, Any], path: list[str], last: str) -> None:
         if last == "friction":
             table |= {"friction_low": table["friction"], "friction_high": table["friction"]}
     elif path == ["surface"] and last == "state":
-        for key in ("friction", "friction_low", "friction_high", "source", "skin_depth", "skin_factor"):
+        for key in (*PAIR, "skin_depth", "skin_factor"):
             table.pop(key, None)

@@ -30,11 +30,12 @@ OWN = ".csv"
 class Surface:
     """State of the two surfaces: Coulomb f that goes in, its interval and where they come from.
 
+    ``pair`` is that of a table of dry pairs of materials, for a scene that states no surface.
     ``skin_depth``, m, and ``skin_factor`` are those of the layer that cutting has hardened, of freshly cut
     surfaces alone; None: no layer is known.
     """
 
-    state: Literal["machined", "contaminated", "cleaned", "custom"]
+    state: Literal["machined", "contaminated", "cleaned", "pair", "custom"]
     friction: float
     friction_low: float
     friction_high: float
@@ -43,7 +44,7 @@ class Surface:
     skin_factor: float | None = None
 
     def __post_init__(self) -> None:
-        check_choice(self.state, ("machined", "contaminated", "cleaned", "custom"), "state")
+        check_choice(self.state, ("machined", "contaminated", "cleaned", "pair", "custom"), "state")
         check_numbers(self, fields.SURFACE)
         check_numbers(self, fields.SKIN)
         check_text(self.source, "source", 1000)

@@ -122,7 +122,8 @@ def _material(material: Material) -> dict[str, Any]:
     rate = material.rate
     rates = {"rate": {"law": rate.law, **_written(rate, fields.RATES[rate.law])}} if rate else {}
     flow = {"flow": _flow(material.flow)} if material.flow else {}
-    return {"name": material.name, **_written(material, fields.MATERIAL), **law, **flow, **rates}
+    words = {"family": material.family} if material.family else {}
+    return {"name": material.name, **words, **_written(material, fields.MATERIAL), **law, **flow, **rates}
 
 
 def _flow(flow: Flow) -> dict[str, Any]:

@@ -134,9 +134,27 @@ def test_check_answers_at_both_ends_of_the_angle(cli):
 def test_scenes_lists_every_shipped_material(cli):
     code, out, _ = cli("scenes", "--materials")
     assert code == 0
-    assert [line.split()[0] for line in out.splitlines()[1:]] == list(materials())
+    table, sources = out.split("\n\n", 1)
+    assert [line.split()[0] for line in table.splitlines()[1:]] == list(materials())
+    assert "stainless-316l (316L, AISI 316L, 1.4404" in sources
+    assert "yield_stress 190 MPa (190 MPa to 235 MPa): S: makeitfrom.com" in " ".join(sources.split())
     rows = json.loads(cli("scenes", "--materials", "--json")[1])["materials"]
     assert {row["material"]: row["E_Pa"] for row in rows} == {name: m.E for name, m in materials().items()}
+    assert all(row["sources"]["E"] for row in rows)
+
+
+def test_the_pairs_of_known_friction_are_listed_with_sources(cli):
+    code, out, _ = cli("scenes", "--friction")
+    assert code == 0
+    assert "steel on brass" in out
+    pairs = json.loads(cli("scenes", "--friction", "--json")[1])["pairs"]
+    assert {"families", "low", "high", "source"} == set(pairs[0])
+
+
+def test_check_tells_the_laws_in_force(cli):
+    assert "rod-steel: yields at 546 MPa, power law through" in " ".join(cli("check", "t5b")[1].split())
+    assert "barrier.material plate-steel: yields" in " ".join(cli("check", "t5b", "--long")[1].split())
+    assert json.loads(cli("check", "t5b", "--json")[1])["laws"]["barrier.material"].startswith("plate-steel")
 
 
 def test_a_thickness_without_support_is_said_to_change_nothing(cli):

@@ -180,5 +180,7 @@ def test_no_surface_is_needed_without_friction():
     assert load("elastic-frictionless").surface.friction == 0.0
     data = to_dict(load("t4"))
     del data["surface"]
-    with pytest.raises(SceneError, match=r"surface: is missing"):
+    assert read_dict(data).surface.state == "pair"
+    data["projectile"]["material"] = "titanium-6al-4v"
+    with pytest.raises(SceneError, match=r"surface\.friction: is missing"):
         read_dict(data)

@@ -1,0 +1,71 @@
+"""What an elastic answer leaves out of a material that states no yield stress, and when it must be named."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from fem_impact.case.effects.registry import AUTO
+from fem_impact.errors import SceneError
+from fem_impact.scene.family import kind_of
+from fem_impact.scene.library import family_of
+
+if TYPE_CHECKING:
+    from fem_impact.scene.material import Material
+    from fem_impact.scene.types import Scene
+
+
+UPPER = "so that e is an upper bound"
+LEFT_OUT = {
+    "metal": f"A metal flows: that work is left out, {UPPER}. State yield_stress and how it hardens.",
+    "brittle": "A ceramic or a glass cracks instead of yielding; cracks are not followed, nor the energy "
+    "that they take.",
+    "ground": f"Concrete, rock and soil are crushed and crack; neither is followed, {UPPER}.",
+    "plastic": "A plastic is viscous, and flows where it is pressed hard: the energy that this takes is "
+    f"left out, {UPPER}.",
+    "rubber": "Rubber does not crack: it is viscous, and its stiffness changes with strain and rate. What "
+    f"it loses inside is left out, {UPPER}.",
+    "wood": "Wood is viscous, and another material along the grain than across; here it is the same in all "
+    f"directions. What it loses inside is left out, {UPPER}.",
+}
+SOFT = (1e8, 2e10)  # Pa: E up to which a body is as soft as a rubber, or as a plastic or a wood
+UNSORTED = (
+    "A body so soft is viscous, as rubbers and foams are, and does not crack: what it loses inside is left "
+    f"out, {UPPER}.",
+    "So soft are plastics, woods and weak concretes: they are viscous, or are crushed. What that takes is "
+    f"left out, {UPPER}.",
+    "A metal flows, a ceramic, a glass or a rock cracks: neither is followed, nor the energy that it "
+    f"takes, {UPPER}.",
+)
+CRUSHED = (
+    "crushes and cracks under a contact, and no law of that is known here. An elastic answer leaves out "
+    f"crushing, cracks and spall with the energy that they take, {UPPER} and forces are too high."
+)
+
+
+def left_out(material: Material) -> str:
+    """Return what an elastic answer leaves out of a material, by its family, or by how soft it is."""
+    kind = kind_of(family_of(material))
+    return LEFT_OUT[kind] if kind else UNSORTED[sum(material.E > limit for limit in SOFT)]
+
+
+def require_crushing_named(scene: Scene) -> None:
+    """Refuse concrete, rock and soil without a law where the scene does not name the elastic answer.
+
+    Raises
+    ------
+    SceneError
+        A body is of such a family, has no yield stress, and `auto` would choose that it is elastic.
+    """
+    effects, rod = scene.effects, scene.projectile
+    named = AUTO not in effects or any(name in effects for name in ("barrier-elastic", "barrier-rigid"))
+    for _, material in scene.barrier.strata:
+        _refuse_crushed("barrier", material, named, '"barrier-elastic"')
+    for material in [part.material for part in rod.segments] or [rod.material]:
+        elastic = AUTO not in effects or "-rod-plasticity" in effects
+        _refuse_crushed("projectile", material, elastic, '"-rod-plasticity"')
+
+
+def _refuse_crushed(section: str, material: Material, named: bool, effect: str) -> None:
+    if kind_of(family_of(material)) == "ground" and not material.yields and not named:
+        remedy = f"Add {effect} to effects for that answer, or state the yield_stress of a law of your own."
+        raise SceneError(CRUSHED, key=f"{section}.material", value=material.name, remedy=remedy)

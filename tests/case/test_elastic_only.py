@@ -1,0 +1,120 @@
+"""What an elastic answer leaves out of a material, and the grounds that must be named as elastic."""
+
+import pytest
+
+from fem_impact.case.case import Case
+from fem_impact.case.elastic_only import LEFT_OUT, UNSORTED, left_out
+from fem_impact.case.laws import laws
+from fem_impact.errors import SceneError
+from fem_impact.run.simulate import simulate
+from fem_impact.scene.material import Material
+from fem_impact.scene.read import read_dict
+from fem_impact.scene.shipped import load, replace, replace_all
+
+CONCRETE = {"name": "C30/37 concrete", "E": "33 GPa", "nu": 0.2, "rho": "2400 kg/m3"}
+
+
+def drop(material, rod="s235", **more):
+    """A steel ball on a half-space."""
+    return {
+        "id": "drop",
+        "projectile": {"shape": "ball", "diameter": "20 mm", "material": rod},
+        "barrier": {"material": material},
+        "surface": {"state": "custom", "friction": 0.3, "source": "a test"},
+        "impact": {"angle": "0 deg", "speed": "2 m/s"},
+        **more,
+    }
+
+
+@pytest.mark.parametrize(
+    ("name", "E", "kind"),
+    [
+        ("rubber", 4.485e6, "rubber"),
+        ("alumina ball", 4e11, "brittle"),
+        ("nylon 12", 2e9, "plastic"),
+        ("white oak", 1.2e10, "wood"),
+        ("some steel", 2e11, "metal"),
+        ("granite", 5e10, "ground"),
+    ],
+)
+def test_the_mechanism_is_that_of_the_family(name, E, kind):
+    assert left_out(Material(name, E, 0.3, 2000.0)) == LEFT_OUT[kind]
+
+
+@pytest.mark.parametrize(
+    ("E", "words"), [(4e6, "viscous, as rubbers"), (3e9, "plastics"), (2e11, "flows, a ceramic")]
+)
+def test_without_a_family_it_is_told_by_the_stiffness(E, words):
+    assert words in left_out(Material("thing", E, 0.3, 2000.0))
+    assert left_out(Material("thing", E, 0.3, 2000.0)) in UNSORTED
+
+
+def test_a_rubber_ball_is_not_warned_of_cracks():
+    rubber = {"name": "rubber", "E": "4.485 MPa", "nu": 0.49, "rho": "1150 kg/m3"}
+    told = " ".join(Case.of(read_dict(drop("plate-steel", rubber))).unknown)
+    assert "Rubber does not crack: it is viscous" in told
+    assert "ceramic" not in told
+
+
+@pytest.mark.parametrize("material", ["granite", CONCRETE, CONCRETE | {"name": "x", "family": "soil"}])
+@pytest.mark.parametrize("fidelity", ["rigid", "modal", "solid"])
+def test_a_ground_is_refused_until_the_elastic_answer_is_named(material, fidelity):
+    scene = read_dict(drop(material))
+    with pytest.raises(
+        SceneError, match=r"barrier\.material.*crushes and cracks.*upper bound.*barrier-elastic"
+    ):
+        Case.of(scene, fidelity)
+    named = replace(scene, "effects", ["auto", "barrier-elastic"])
+    case = Case.of(named, fidelity)
+    assert any("crushed and crack; neither is followed" in one for one in case.unknown)
+
+
+def test_a_projectile_of_rock_is_refused_alike():
+    scene = read_dict(drop("plate-steel", "granite"))
+    with pytest.raises(SceneError, match=r'projectile\.material.*"-rod-plasticity"'):
+        Case.of(scene)
+    assert simulate(replace(scene, "effects", ["auto", "-rod-plasticity"]), "rigid").validity.finished
+
+
+def test_a_ground_with_a_flow_law_of_its_own_is_computed():
+    own = CONCRETE | {"yield_stress": "30 MPa", "hardening": "0 MPa"}
+    assert "barrier-elastoplastic" in Case.of(read_dict(drop(own))).active
+
+
+def test_the_laws_in_force_are_told_by_place():
+    t5b = load("t5b")
+    told = laws(Case(t5b).bodies)
+    assert told["projectile.material"].startswith(
+        "rod-steel: yields at 546 MPa, power law through the ultimate"
+    )
+    assert told["projectile.material"].endswith("rate factor with C 0.0134")
+    elastic = replace(t5b, "effects", ["auto", "-rod-plasticity", "-rate-hardening"])
+    told = laws(Case(elastic).bodies)
+    assert told["projectile.material"] == "rod-steel: elastic: the effect rod-plasticity is off"
+    assert told["barrier.material"].endswith("at any strain rate")
+    rigid = laws(Case(replace(t5b, "effects", ["auto", "barrier-rigid"])).bodies)
+    assert rigid["barrier.material"] == "plate-steel: rigid, the effect barrier-rigid is on"
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"tangent_modulus": "1 GPa"}, "hardens by 1005 MPa a unit of plastic strain (bilinear)"),
+        ({"hardening": "0 MPa"}, "perfectly plastic"),
+        ({"law": "hardness"}, "flow stress of HV 163 at 8 %"),
+        ({"flow.law": "ramberg-osgood", "flow.n": 9}, "Ramberg and Osgood with n 9"),
+        (
+            {"flow.law": "johnson-cook", "flow.B": "300 MPa", "flow.n": 0.3},
+            "B 300 MPa, n 0.3, without temperature",
+        ),
+        ({"rate.law": "cowper-symonds", "rate.D": "40 /s", "rate.q": 5}, "with D 40 /s, q 5"),
+    ],
+)
+def test_each_law_has_its_words(changes, words):
+    scene = replace_all(load("t5b"), {f"barrier.material.{key}": value for key, value in changes.items()})
+    assert words in laws(Case(scene).bodies)["barrier.material"]
+
+
+def test_only_the_first_segment_flows():
+    told = laws(Case(load("heavy-tail")).bodies)
+    assert told["projectile.segments[2].material"].endswith("only the first segment may yield")
