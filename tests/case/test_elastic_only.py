@@ -5,6 +5,7 @@ import pytest
 from fem_impact.case.case import Case
 from fem_impact.case.elastic_only import LEFT_OUT, UNSORTED, left_out
 from fem_impact.case.laws import laws
+from fem_impact.case.metals import unknowns
 from fem_impact.errors import SceneError
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.material import Material
@@ -51,7 +52,7 @@ def test_without_a_family_it_is_told_by_the_stiffness(E, words):
 
 def test_a_rubber_ball_is_not_warned_of_cracks():
     rubber = {"name": "rubber", "E": "4.485 MPa", "nu": 0.49, "rho": "1150 kg/m3"}
-    told = " ".join(Case.of(read_dict(drop("plate-steel", rubber))).unknown)
+    told = " ".join(unknowns(Case.of(read_dict(drop("plate-steel", rubber))).bodies))
     assert "Rubber does not crack: it is viscous" in told
     assert "ceramic" not in told
 
@@ -66,7 +67,7 @@ def test_a_ground_is_refused_until_the_elastic_answer_is_named(material, fidelit
         Case.of(scene, fidelity)
     named = replace(scene, "effects", ["auto", "barrier-elastic"])
     case = Case.of(named, fidelity)
-    assert any("crushed and crack; neither is followed" in one for one in case.unknown)
+    assert any("crushed and crack; neither is followed" in one for one in unknowns(case.bodies))
 
 
 def test_a_projectile_of_rock_is_refused_alike():
