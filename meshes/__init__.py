@@ -9,36 +9,42 @@ from meshes.block import (
     with_thin_skin,
 )
 from meshes.cut import without_slices
-from meshes.errors import ClosedEndError, MeshError
+from meshes.errors import ClosedEndError, MeshError, MissingReaderError
 from meshes.files import MeshFile, read, write
 from meshes.hexmesh import OUTER, SKIN, SYMMETRY, HexMesh
 from meshes.moments import CellMoments, cell_moments
-from meshes.own import own_half, read_own
+from meshes.own import TIPS, OwnBody, Stated, own_body, read_own
 from meshes.quality import Quality, edge_lengths, quality, thicknesses, volume
 from meshes.refine import refine
 from meshes.rod import RodMesh, rod
 from meshes.sphere import pole_edge, sphere
+from meshes.symmetry import PARTS
 from meshes.turned import contact_radius, turned
 from meshes.zone import Zone
 
 __all__ = [
     "OUTER",
+    "PARTS",
     "SKIN",
     "SYMMETRY",
+    "TIPS",
     "CellMoments",
     "ClosedEndError",
     "HexMesh",
     "MeshError",
     "MeshFile",
+    "MissingReaderError",
+    "OwnBody",
     "Quality",
     "RodMesh",
+    "Stated",
     "Zone",
     "block",
     "cell_moments",
     "contact_radius",
     "drawn_depths",
     "edge_lengths",
-    "own_half",
+    "own_body",
     "pole_edge",
     "quality",
     "read",

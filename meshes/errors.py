@@ -1,10 +1,20 @@
 """Errors of the mesh package."""
 
-__all__ = ["ClosedEndError", "MeshError"]
+__all__ = ["ClosedEndError", "MeshError", "MissingReaderError"]
 
 
 class MeshError(ValueError):
     """A mesh cannot be built or is not usable; the message names the place and the remedy."""
+
+
+class MissingReaderError(MeshError):
+    """A format whose library is not installed."""
+
+    def __init__(self, library: str, ending: str) -> None:
+        super().__init__(
+            f"a file {ending} is read by the library {library}, which is not installed. Install it, or write "
+            "the mesh in another format, such as .vtu."
+        )
 
 
 class ClosedEndError(MeshError):

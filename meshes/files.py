@@ -1,9 +1,8 @@
-"""Mesh files, written and read by meshio."""
+"""Mesh files of the program's own, written and read by meshio."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 from uuid import uuid4
 
 import numpy as np
@@ -11,8 +10,9 @@ import numpy.typing as npt
 
 from meshes.errors import MeshError
 from meshes.hexmesh import HexMesh
+from meshes.reading.by_meshio import parsed
 
-__all__ = ["MeshFile", "read", "stored_cells", "write"]
+__all__ = ["MeshFile", "read", "write"]
 
 Data = Mapping[str, npt.NDArray[np.generic]]
 
@@ -92,7 +92,7 @@ def read(path: str | Path) -> MeshFile:
     if not source.is_file():
         raise MeshError(f"{source}: no such file; give the path of a written mesh")
     try:
-        stored = _parsed(source, kind)
+        stored = parsed(source, kind)
     except Exception as error:
         # meshio passes on whatever its parsers raise on a broken file: XML, struct and index errors.
         raise MeshError(f"{source}: not a readable {kind} file ({error}); write it again") from error
@@ -103,43 +103,6 @@ def read(path: str | Path) -> MeshFile:
     }
     cells = stored.cells_dict["hexahedron"].astype(np.int64)
     return MeshFile(stored.points.astype(np.float64), cells, dict(stored.point_data), named)
-
-
-def stored_cells(path: str | Path) -> tuple[npt.NDArray[np.float64], dict[str, npt.NDArray[np.int64]]]:
-    """Return the points, in the file's unit, and the cells by meshio's names of their types, of any format.
-
-    Raises
-    ------
-    MeshError
-        If the file is missing or broken, or of a format that meshio does not read.
-    """
-    import meshio
-
-    source, kinds = Path(path), meshio.extension_to_filetypes
-    endings = [ending for ending in kinds if source.name.lower().endswith(ending)]
-    if not endings:
-        raise MeshError(
-            f"ends in {source.suffix!r}, which no format of meshio has. Use .vtu, .msh, .inp or .bdf."
-        )
-    if not source.is_file():
-        raise MeshError("there is no such file.")
-    refused = []
-    for kind in kinds[endings[-1]]:
-        try:
-            stored = _parsed(source, kind)
-        except Exception as error:
-            # meshio passes on whatever its parsers raise on a broken file: XML, struct and index errors
-            refused.append(f"{kind}: {' '.join(str(error).split())[:80] or type(error).__name__}")
-        else:
-            return stored.points, stored.cells_dict
-    raise MeshError(f"is not readable ({'; '.join(refused)}). Write it again, as .vtu for example.")
-
-
-def _parsed(path: Path, kind: str) -> Any:
-    """Return meshio's mesh of a file; not by `meshio.read`, which ends the process on a broken file."""
-    import meshio
-
-    return getattr(meshio, kind.replace("-", "_")).read(path)
 
 
 def _format(path: Path) -> str:

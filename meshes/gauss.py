@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from meshes.arrays import FloatArray
+from meshes.arrays import FloatArray, IntArray
 from meshes.hexmesh import HexMesh
 from meshes.topology import CORNERS
 
-__all__ = ["GRADIENTS", "SHAPES", "jacobians"]
+__all__ = ["GRADIENTS", "SHAPES", "jacobians", "jacobians_of"]
 
 _SIGNS = 2.0 * CORNERS - 1.0
 _POINTS = _SIGNS / np.sqrt(3.0)
@@ -23,4 +23,9 @@ SHAPES: FloatArray = _FACTORS.prod(axis=2) / 8.0
 
 def jacobians(mesh: HexMesh) -> FloatArray:
     """(m, 8, 3, 3) dx_i / dxi_j at the Gauss points, m."""
-    return np.asarray(np.einsum("qaj,mai->mqij", GRADIENTS, mesh.points[mesh.cells], optimize=True))
+    return jacobians_of(mesh.points, mesh.cells)
+
+
+def jacobians_of(points: FloatArray, cells: IntArray) -> FloatArray:
+    """(m, 8, 3, 3) dx_i / dxi_j, m, at the Gauss points of cells (m, 8) of nodes (n, 3), m."""
+    return np.asarray(np.einsum("qaj,mai->mqij", GRADIENTS, points[cells], optimize=True))

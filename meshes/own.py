@@ -1,5 +1,7 @@
-"""A user's own mesh of hexahedra: read from a file, checked, and cut to its half y >= 0."""
+"""A user's own mesh: read from a file, checked, turned upright, and brought to its half y >= 0."""
 
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -7,81 +9,185 @@ import scipy.sparse as sp
 
 from meshes.arrays import BoolArray, FloatArray, IntArray
 from meshes.errors import MeshError
-from meshes.files import stored_cells
 from meshes.gauss import jacobians
+from meshes.hexahedra import as_hexahedra
 from meshes.hexmesh import SYMMETRY, HexMesh, face_keys, from_cells, half_body_tags
 from meshes.quality import edge_lengths, scaled_jacobians
+from meshes.reading.read import stored_mesh
+from meshes.reading.stored import StoredMesh
+from meshes.symmetry import NEAR, Part, half_of, place_text, size_text
 from meshes.topology import FACES
 
-__all__ = ["own_half", "read_own"]
+__all__ = ["TIPS", "OwnBody", "Stated", "own_body", "read_own"]
 
-FLAT = ("vertex", "line", "triangle", "quad")  # cells of points, lines and surfaces, which fill no volume
-HEXAHEDRA = 'Use 8-node hexahedra alone (meshio: "hexahedron", Abaqus: C3D8, Gmsh: recombined, first order).'
-NEAR = 1e-5  # of the largest diameter: nodes so near to the plane of symmetry lie on it
 SAME = 1e-6  # of the shortest edge: nodes so near to each other are one place
+LEAN = 1.0  # deg between the axis of least inertia and z, from which on it is told
+# the axes of the file, and their signs, that become x, y and z where the tip points along one of them; y
+# stays the normal of the plane of symmetry where it can
+TIPS: dict[str, tuple[tuple[int, float], ...]] = {
+    "-z": ((0, 1.0), (1, 1.0), (2, 1.0)),
+    "+z": ((0, -1.0), (1, 1.0), (2, -1.0)),
+    "-x": ((2, -1.0), (1, 1.0), (0, 1.0)),
+    "+x": ((2, 1.0), (1, 1.0), (0, -1.0)),
+    "-y": ((2, 1.0), (0, 1.0), (1, 1.0)),
+    "+y": ((2, -1.0), (0, 1.0), (1, -1.0)),
+}
 
 
-def read_own(path: str | Path, unit: float = 1.0) -> HexMesh:
-    """Read and check a mesh of a body; see `own_half` for what is asked of it.
+@dataclass(frozen=True, slots=True)
+class Stated:
+    """What a user says of a mesh, each None or empty where it is to be found.
+
+    Attributes
+    ----------
+    symmetry : which part of the body it is, see `PARTS`
+    tip : where the tip points, a key of `TIPS`
+    sets : sets of the file whose cells are the body
+    """
+
+    symmetry: str | None = None
+    tip: str | None = None
+    sets: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class OwnBody:
+    """A user's body.
+
+    Attributes
+    ----------
+    half : the half y >= 0, its tip at z = 0
+    sets : by name of a set of the file, the mask (m,) of its cells
+    told : sentences about what the file holds and how it was taken
+    """
+
+    half: HexMesh
+    sets: Mapping[str, BoolArray] = field(default_factory=dict)
+    told: tuple[str, ...] = ()
+
+
+def read_own(path: str | Path, unit: float = 1.0, stated: Stated | None = None) -> OwnBody:
+    """Read and check a mesh of a body; see `own_body` for what is asked of it.
 
     Parameters
     ----------
     path : path
-        Any format that meshio reads; points, lines and surface cells in it are left out.
+        Of any format that `stored_mesh` reads.
     unit : float
         Metres in one unit of the file.
+    stated : Stated, optional
 
     Raises
     ------
     MeshError
-        If the file cannot be read, holds other volume cells than hexahedra of 8 nodes, or is no such body.
+        If the file cannot be read, holds cells that cannot be taken, or is no such body.
     """
-    points, blocks = stored_cells(path)
-    others = {kind: len(cells) for kind, cells in blocks.items() if not kind.startswith(FLAT)}
-    count = others.pop("hexahedron", 0)
-    if others:
-        told = " and ".join(f"{number} cells of type {kind}" for kind, number in sorted(others.items()))
-        raise MeshError(f"holds {told} beside {count} hexahedra. {HEXAHEDRA}")
-    if not count:
-        raise MeshError(f"holds no volume cells, only {sorted(blocks) or 'nothing'}. {HEXAHEDRA}")
-    if points.shape[1:] != (3,):
-        raise MeshError(f"has points of {points.shape[1]} coordinates: a body needs three.")
-    return own_half(points.astype(np.float64) * unit, blocks["hexahedron"].astype(np.int64))
+    stated = stated or Stated()
+    stored = stored_mesh(path)
+    if not stored.blocks:
+        left = f": {', '.join(stored.ignored)} alone" if stored.ignored else ""
+        raise MeshError(f"holds no volume cells{left}. Give hexahedra, wedges or tetrahedra.")
+    if stored.points.shape[1:] != (3,):
+        raise MeshError(f"has points of {stored.points.shape[1]} coordinates: a body needs three.")
+    chosen = _chosen(stored, stated.sets)
+    if stored.masses and not stated.sets:
+        raise MeshError(
+            f"holds {' and '.join(stored.masses)}: mass without volume, which the body would lack. Leave it "
+            "out, or state by mesh_sets the sets whose cells are the body."
+        )
+    made = as_hexahedra(stored.points * unit, _blocks(stored, chosen))
+    parent = np.flatnonzero(chosen)[made.parent]
+    body = _own(Part(made.points, made.cells, parent), stated, _set_hint(stored))
+    ignored = (f"left out: {', '.join(stored.ignored)}",) if stored.ignored else ()
+    sets = {name: np.isin(body[1], cells) for name, cells in stored.sets.items()}
+    present = {name: here for name, here in sets.items() if here.any()}
+    return replace(body[0], sets=present, told=(*ignored, *made.told, *body[0].told))
 
 
-def own_half(points: FloatArray, cells: IntArray) -> HexMesh:
+def own_body(points: FloatArray, cells: IntArray, stated: Stated | None = None) -> OwnBody:
     """Return the half y >= 0 of a body of hexahedra, moved so that its tip stands at z = 0.
 
-    The axis is parallel to z, the tip is the lowest end, y = 0 is the plane of symmetry: all of the body may
-    be given, with nodes on that plane, or its half y >= 0. The centre of the volume is moved to x = 0.
+    The axis is parallel to z and the tip is the lowest end, unless stated otherwise. The mesh may be all of
+    the body, with nodes on its plane of symmetry y = 0, its half, quarter or eighth with faces in the planes
+    of symmetry. The centre of the volume is moved to x = 0.
 
     Parameters
     ----------
     points : (n, 3) float64, m
     cells : (m, 8) int64
         VTK hexahedron order.
+    stated : Stated, optional
 
     Raises
     ------
     MeshError
-        If a cell is folded, the body is in parts, its surface is not closed, it does not lie along z, or it
-        is not symmetric about y = 0.
+        If a cell is folded, the body is in parts, its surface is not closed, it does not lie along z, it is
+        not symmetric about y = 0, or it is not certain which part of the body the mesh is.
     """
-    if not np.isfinite(points).all() or cells.min() < 0 or cells.max() >= len(points):
+    return _own(Part(points, cells, np.arange(len(cells))), stated or Stated(), "")[0]
+
+
+def _chosen(stored: StoredMesh, sets: tuple[str, ...]) -> BoolArray:
+    """Return the mask of the cells that are in the sets, all where none is named."""
+    count = sum(len(cells) for _, cells in stored.blocks)
+    if not sets:
+        return np.ones(count, dtype=bool)
+    chosen = np.zeros(count, dtype=bool)
+    by_name = {name.upper(): name for name in stored.sets}
+    for name in sets:
+        if name.upper() not in by_name:
+            known = ", ".join(sorted(stored.sets)[:12]) or "none"
+            raise MeshError(f"has no set of cells {name!r}; it has {known}.")
+        chosen[stored.sets[by_name[name.upper()]]] = True
+    return chosen
+
+
+def _blocks(stored: StoredMesh, chosen: BoolArray) -> tuple[tuple[str, IntArray], ...]:
+    blocks, first = [], 0
+    for kind, cells in stored.blocks:
+        here = chosen[first : first + len(cells)]
+        first += len(cells)
+        if here.any():
+            blocks.append((kind, cells[here]))
+    return tuple(blocks)
+
+
+def _set_hint(stored: StoredMesh) -> str:
+    names = ", ".join(f'"{name}"' for name in sorted(stored.sets)[:8])
+    return f" Or name those that are the body: mesh_sets = [...] of {names}." if names else ""
+
+
+def _own(part: Part, stated: Stated, hint: str) -> tuple[OwnBody, IntArray]:
+    """Return the body of hexahedra, and the cells of the file in which its cells lie."""
+    points, cells = part.points, part.cells
+    if not np.isfinite(points[cells]).all() if _numbered(points, cells) else True:
         raise MeshError(
             "has points that are no finite numbers, or cells that name points that are not there."
         )
     used, new = np.unique(cells, return_inverse=True)
-    mesh = from_cells(points[used], new.reshape(cells.shape), half_body_tags)
+    part = Part(points[used], new.reshape(cells.shape), part.parent)
+    mesh = from_cells(part.points, part.cells, half_body_tags)
     _require_unfolded(mesh)
     _require_joined(mesh)
-    _require_one(mesh)
+    _require_one(mesh, hint)
     _require_closed(mesh)
-    _require_upright(mesh)
-    half = _placed(_half(mesh))
+    if stated.tip:
+        part = _turned(part, stated.tip)
+    elif stated.symmetry is None:
+        _require_upright(part, 1.0)  # what mirror images add makes it wider, not longer
+    part = half_of(part, stated.symmetry)
+    if not stated.tip:
+        _require_upright(part, 2.0)
+    half = from_cells(part.points, part.cells, half_body_tags)
     if not (half.face_tag == SYMMETRY).any():
         raise MeshError("has no face on the plane y = 0, its plane of symmetry. Move it there.")
-    return half
+    placed = _placed(half)
+    doubled = size_text(part, (1,))
+    return OwnBody(placed, {}, (*part.told, *_leaning(placed), f"whole body: {doubled}")), part.parent
+
+
+def _numbered(points: FloatArray, cells: IntArray) -> bool:
+    return bool(cells.min() >= 0 and cells.max() < len(points))
 
 
 def _require_unfolded(mesh: HexMesh) -> None:
@@ -89,11 +195,10 @@ def _require_unfolded(mesh: HexMesh) -> None:
     bad = np.flatnonzero(~(worst > 0.0))
     if not len(bad):
         return
-    where = _place(mesh.points[mesh.cells[bad[0]]].mean(axis=0))
-    turned = "All are: turn the order of their nodes round. " if len(bad) == len(worst) else ""
+    where = place_text(mesh.points[mesh.cells[bad[0]]].mean(axis=0))
     raise MeshError(
         f"has {len(bad)} of {len(worst)} cells that are folded or inside out, the first cell {bad[0]} about "
-        f"{where}. {turned}Each cell needs positive Jacobians at its corners and Gauss points."
+        f"{where}. Each cell needs positive Jacobians at its corners and Gauss points."
     )
 
 
@@ -106,7 +211,7 @@ def _require_joined(mesh: HexMesh) -> None:
     if pairs := tree.query_pairs(least):
         a, _ = min(pairs)
         raise MeshError(
-            f"has {len(pairs)} pairs of nodes in one place, the first at {_place(mesh.points[a])}: "
+            f"has {len(pairs)} pairs of nodes in one place, the first at {place_text(mesh.points[a])}: "
             "the cells there are not joined. Merge equal nodes."
         )
     corners = mesh.points[mesh.faces]
@@ -117,11 +222,11 @@ def _require_joined(mesh: HexMesh) -> None:
     if near.any():
         raise MeshError(
             f"has nodes in the middle of an edge or face of another cell, the first at "
-            f"{_place(middles[near][0])}: hanging nodes are not tied. Use cells that share whole faces."
+            f"{place_text(middles[near][0])}: hanging nodes are not tied. Use cells that share whole faces."
         )
 
 
-def _require_one(mesh: HexMesh) -> None:
+def _require_one(mesh: HexMesh, hint: str) -> None:
     """Refuse cells that are not all joined face by face."""
     keys = face_keys(mesh.cells[:, FACES].reshape(-1, 4))
     order = np.argsort(keys, kind="stable")
@@ -133,7 +238,7 @@ def _require_one(mesh: HexMesh) -> None:
         sizes = ", ".join(str(size) for size in np.sort(np.bincount(part))[::-1][:5])
         raise MeshError(
             f"is in {parts} parts that share no faces (of {sizes} cells). A projectile is one body: join its "
-            "parts node by node, or leave the others out."
+            f"parts node by node, or leave the others out.{hint}"
         )
 
 
@@ -145,59 +250,42 @@ def _require_closed(mesh: HexMesh) -> None:
     ends = np.sort(np.stack([mesh.faces, np.roll(mesh.faces, -1, axis=1)], axis=-1).reshape(-1, 2), axis=1)
     edges, count = np.unique(ends, axis=0, return_counts=True)
     if (count != 2).any():
-        where = _place(mesh.points[edges[count != 2][0]].mean(axis=0))
+        where = place_text(mesh.points[edges[count != 2][0]].mean(axis=0))
         raise MeshError(
             f"has an outer surface that is not closed: at the edge about {where} {count[count != 2][0]} "
             "outer faces meet, not two. Cells that touch at an edge alone must share a face or no node."
         )
 
 
-def _require_upright(mesh: HexMesh) -> None:
-    extent = np.ptp(mesh.points, axis=0)
+def _turned(part: Part, tip: str) -> Part:
+    """Return a part turned so that its tip, which points along an axis of the file, points to -z."""
+    (x, sx), (y, sy), (z, sz) = TIPS[tip]
+    points = part.points[:, [x, y, z]] * [sx, sy, sz] + 0.0
+    return Part(points, part.cells, part.parent, part.told)
+
+
+def _require_upright(part: Part, times: float) -> None:
+    """Refuse a part that does not lie along z, its width along y counted so many times."""
+    extent = np.ptp(part.points, axis=0) * [1.0, times, 1.0]
     if extent[2] < (1.0 - NEAR) * extent.max():
         longest = "xyz"[int(np.argmax(extent))]
         raise MeshError(
-            f"is {_mm(extent[2])} long along z and {_mm(extent.max())} along {longest}: the axis of a "
-            "projectile is z, with the tip at the lowest z. Turn the mesh."
+            f"is {1e3 * extent[2]:.4g} mm long along z and {1e3 * extent.max():.4g} mm along {longest}: the "
+            "axis of a projectile is z, with the tip at the lowest z. State where the tip points: "
+            f'mesh_tip = "-{longest}" or "+{longest}", or "-z" for a body that is wider than long.'
         )
 
 
-def _half(mesh: HexMesh) -> HexMesh:
-    """Return the half y >= 0, cut from the whole or as it is; its nodes on the plane lie there exactly."""
-    points = mesh.points.copy()
-    near = NEAR * float(np.ptp(points[:, :2], axis=0).max())
-    points[np.abs(points[:, 1]) < near, 1] = 0.0
-    if points[:, 1].max() <= 0.0:
-        raise MeshError("lies on the side y < 0 alone. Give the half y >= 0 of the body, or all of it.")
-    if points[:, 1].min() >= 0.0:
-        return from_cells(points, mesh.cells, half_body_tags)
-    y = points[mesh.cells][:, :, 1]
-    across = np.flatnonzero((y.min(axis=1) < 0.0) & (y.max(axis=1) > 0.0))
-    if len(across):
-        where = _place(points[mesh.cells[across[0]]].mean(axis=0))
-        raise MeshError(
-            f"has {len(across)} cells across the plane y = 0, the first about {where}. The plane of symmetry "
-            "must lie between cells: give a mesh with faces there, or the half y >= 0."
-        )
-    _require_mirrored(points, mesh.cells, near)
-    cells = mesh.cells[y.max(axis=1) > 0.0]
-    used, new = np.unique(cells, return_inverse=True)
-    return from_cells(points[used], new.reshape(cells.shape), half_body_tags)
-
-
-def _require_mirrored(points: FloatArray, cells: IntArray, near: float) -> None:
-    """Refuse a body whose nodes or cells on both sides of y = 0 are not mirror images of each other."""
-    from scipy.spatial import cKDTree  # here: every command imports this room, few read such a mesh
-
-    for what, places in (("node", points), ("cell", points[cells].mean(axis=1))):
-        away = cKDTree(places).query(places * [1.0, -1.0, 1.0])[0]
-        lonely: BoolArray = away > 2.0 * near
-        if lonely.any():
-            raise MeshError(
-                f"is not symmetric about the plane y = 0: {int(lonely.sum())} of {len(places)} {what}s have "
-                f"no mirror image, the first at {_place(places[lonely][0])}. The model holds half of a "
-                "symmetric body: mirror the mesh, turn it, or give the half y >= 0."
-            )
+def _leaning(mesh: HexMesh) -> tuple[str, ...]:
+    """Return a sentence where the axis of least inertia of a half body leans from z."""
+    weight = np.linalg.det(jacobians(mesh)).sum(axis=1)
+    place = mesh.points[mesh.cells].mean(axis=1)
+    x, z = place[:, 0], place[:, 2]
+    x, z = x - weight @ x / weight.sum(), z - weight @ z / weight.sum()
+    lean = 0.5 * np.rad2deg(np.arctan2(2.0 * (weight @ (x * z)), weight @ (z**2) - weight @ (x**2)))
+    if abs(lean) < LEAN:
+        return ()
+    return (f"its axis of least inertia leans by {lean:.3g} deg from z towards x",)
 
 
 def _placed(mesh: HexMesh) -> HexMesh:
@@ -207,12 +295,3 @@ def _placed(mesh: HexMesh) -> HexMesh:
     moved = abs(centre) > NEAR * float(np.ptp(mesh.points[:, 0]))
     shift = np.array([centre if moved else 0.0, 0.0, mesh.points[:, 2].min()])
     return from_cells(mesh.points - shift, mesh.cells, half_body_tags)
-
-
-def _mm(length: float) -> str:
-    return f"{length * 1e3:.4g} mm"
-
-
-def _place(point: FloatArray) -> str:
-    x, y, z = (1e3 * float(part) for part in point)
-    return f"({x:.4g}, {y:.4g}, {z:.4g}) mm"

@@ -122,6 +122,7 @@ def _statement(case: Case) -> dict[str, Any]:
     return {
         "scene": to_dict(scene),
         "digest": digest(scene),
+        "mesh": _mesh_entry(scene),
         "body": _body_entry(case.bodies),
         "sources": {row[0]: row[2] for row in inputs(scene).rows if row[2] != STATED},
         "intervals": {
@@ -136,6 +137,15 @@ def _statement(case: Case) -> dict[str, Any]:
         "limitations": [asdict(one) for one in case.limitations],
         "size": None if scene.accuracy.target else _size_entry(case.size),
     }
+
+
+def _mesh_entry(scene: Scene) -> list[str]:
+    """Return how the file of a mesh was taken, a sentence each."""
+    mesh = scene.projectile.own_mesh
+    if mesh is None:
+        return []
+    body = mesh.body()
+    return [f"mesh {shown_path(mesh.path)}: {len(body.half.cells)} hexahedra in the half y >= 0", *body.told]
 
 
 def _body_entry(bodies: Bodies) -> dict[str, float]:
@@ -233,7 +243,8 @@ def _long(case: Case, statement: dict[str, Any], place: Path) -> str:
     lines += _flow_lines(statement)
     lines += ["", "Values used where a scene does not state them"]
     lines += _wrapped(f"{d['key']} = {d['value']}: {d['source']}" for d in statement["defaults"])
-    lines += ["", "Projectile", *_drawing(case), *_wrapped(_body_lines(statement["body"]))]
+    lines += ["", "Projectile", *_drawing(case)]
+    lines += _wrapped([*statement["mesh"], *_body_lines(statement["body"])])
     lines += ["", "Effects"]
     lines += [line for choice in case.choices for line in _effect_lines(choice)]
     return "\n".join([*lines, *_size_lines(case), *_end_lines(case, statement)]) + "\n"
@@ -250,7 +261,7 @@ def _short(case: Case, statement: dict[str, Any]) -> str:
     """Return projectile, barrier and contact, effects with their numbers, size and limitations."""
     scene = case.scene
     lines = [headed(scene.id, scene.title), "", "Projectile", *_drawing(case)]
-    lines += _wrapped([_material_line(scene), *_body_lines(statement["body"])])
+    lines += _wrapped([_material_line(scene), *statement["mesh"], *_body_lines(statement["body"])])
     lines += ["", "Barrier and contact", *_wrapped(_contact_lines(case))]
     lines += ["", "Laws in force", *_wrapped(statement["laws"].values()), "", "Effects"]
     lines += _wrapped(

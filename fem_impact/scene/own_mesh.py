@@ -3,66 +3,120 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Sequence
+import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from fem_impact.errors import SceneError
-from fem_impact.scene.checks import check_choice
+from fem_impact.errors import MissingLibraryError, SceneError
+from fem_impact.scene.checks import check_choice, check_text
 from fem_impact.scene.units import DIMENSIONS
 
 if TYPE_CHECKING:
     from fem_impact.arrays import Array
-    from meshes import HexMesh
+    from meshes import HexMesh, OwnBody
     from rigid import Faceted
 
 UNITS = tuple(unit.symbol for unit in DIMENSIONS["length"].units)
+PARTS = ("whole", "half", "quarter", "eighth")
+KEYS = ("mesh", "mesh_unit", "mesh_content", "mesh_symmetry", "mesh_tip", "mesh_sets")
+TIPS = ("-z", "+z", "-x", "+x", "-y", "+y")
 
 
 @dataclass(frozen=True, slots=True)
 class OwnMesh:
-    """A mesh file: its path, the unit of its coordinates, and the SHA-256 of its content.
+    """A mesh file: its path, the unit of its coordinates, the SHA-256 of its content, and how it is taken.
 
     The content is part of the scene: another one under the same name makes another scene.
+
+    Attributes
+    ----------
+    symmetry : which part of the body the mesh is, one of `PARTS`; None: recognised
+    tip : where the tip points in the file, one of `TIPS`; None: to its lowest z
+    sets : sets of cells of the file that are the body; empty: all cells
     """
 
     path: str
     unit: str
     content: str
+    symmetry: str | None = None
+    tip: str | None = None
+    sets: tuple[str, ...] = ()
 
     @classmethod
-    def of(cls, path: str, unit: str = "m", content: str | None = None) -> OwnMesh:
+    def of(
+        cls,
+        path: str,
+        unit: str = "m",
+        content: str | None = None,
+        symmetry: str | None = None,
+        tip: str | None = None,
+        sets: tuple[str, ...] = (),
+    ) -> OwnMesh:
         """Return the mesh of a file; a stated ``content`` must be the file's.
 
         Raises
         ------
         SceneError
-            If the file is missing or has changed, or the unit is none of length.
+            If the file is missing or has changed, or a word is none of its choices.
         """
         check_choice(unit, UNITS, "mesh_unit")
+        for value, choices, key in ((symmetry, PARTS, "mesh_symmetry"), (tip, TIPS, "mesh_tip")):
+            if value is not None:
+                check_choice(value, choices, key)
         found = _content(path)
         if content not in (None, found):
             problem = f"has changed: its SHA-256 is {found[:12]}..., the scene was stated with that of"
             remedy = "Put the old file back, or leave mesh_content out to state another scene."
             raise SceneError(f"{problem} mesh_content.", key="mesh", value=path, remedy=remedy)
-        return cls(path, unit, found)
+        return cls(path, unit, found, symmetry, tip, sets)
 
-    def half(self) -> HexMesh:
-        """Return the half y >= 0 in the frame of the body, tip at z = 0, m; see `meshes.own_half`.
+    def body(self) -> OwnBody:
+        """Return the body with its half y >= 0 in its own frame, tip at z = 0, m; see `meshes.own_body`.
 
         Raises
         ------
         SceneError
-            If it is no body of hexahedra that the model can hold.
+            If it is no body that the model can hold.
+        MissingLibraryError
+            If a library that reads its format is not installed.
         """
-        return _half(self)
+        return _body(self)
+
+    def half(self) -> HexMesh:
+        """Return the half y >= 0 of the body."""
+        return _body(self).half
+
+
+def stated(table: Mapping[str, Any]) -> OwnMesh:
+    """Return the mesh that the table of a projectile states.
+
+    Raises
+    ------
+    SceneError
+        As `OwnMesh.of`.
+    """
+    sets = table.get("mesh_sets", [])
+    named = [sets] if isinstance(sets, str) else sets
+    if not isinstance(named, list):
+        remedy = 'Name sets of the file, such as mesh_sets = ["ROD"].'
+        raise SceneError("is no list of names.", key="mesh_sets", value=sets, remedy=remedy)
+    content, symmetry, tip = (table.get(key) for key in ("mesh_content", "mesh_symmetry", "mesh_tip"))
+    path, unit = check_text(table["mesh"], "mesh", 1000), table.get("mesh_unit", "m")
+    names = tuple(check_text(name, "mesh_sets", 200) for name in named)
+    return OwnMesh.of(path, unit, content, symmetry, tip, names)
 
 
 def _content(path: str) -> str:
+    """Return the SHA-256 of a file, and of the file of an XDMF that holds its numbers."""
     try:
-        return hashlib.sha256(Path(path).read_bytes()).hexdigest()
+        content = Path(path).read_bytes()
+        if Path(path).suffix.lower() in (".xdmf", ".xmf"):
+            for name in sorted(set(re.findall(rb">\s*([^<>:]+\.h5):", content))):
+                content += Path(path).with_name(name.decode()).read_bytes()
+        return hashlib.sha256(content).hexdigest()
     except OSError as error:
         reason = "there is no such file" if isinstance(error, FileNotFoundError) else str(error.strerror)
         remedy = "Name a mesh file, from the place of the scene's file."
@@ -70,13 +124,16 @@ def _content(path: str) -> str:
 
 
 @lru_cache(maxsize=8)
-def _half(mesh: OwnMesh) -> HexMesh:
+def _body(mesh: OwnMesh) -> OwnBody:
     import meshes
 
     unit = DIMENSIONS["length"].unit(mesh.unit)
     assert unit is not None, "the unit was checked"
+    stated = meshes.Stated(mesh.symmetry, mesh.tip, mesh.sets)
     try:
-        return meshes.read_own(mesh.path, unit.to_si("1"))
+        return meshes.read_own(mesh.path, unit.to_si("1"), stated)
+    except meshes.MissingReaderError as error:
+        raise MissingLibraryError(f"{mesh.path}: {error}") from None
     except meshes.MeshError as error:
         raise SceneError(str(error), key="mesh", value=mesh.path) from None
 

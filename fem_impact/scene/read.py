@@ -11,12 +11,11 @@ from pathlib import Path
 from typing import Any
 
 from fem_impact.errors import ResultError, SceneError, UsageError
-from fem_impact.scene import fields, library
+from fem_impact.scene import fields, library, own_mesh
 from fem_impact.scene.barrier import Barrier, Layer
-from fem_impact.scene.checks import check_names, check_text
+from fem_impact.scene.checks import check_names
 from fem_impact.scene.impact import WAYS, Impact, the_way
 from fem_impact.scene.library import read_material
-from fem_impact.scene.own_mesh import OwnMesh
 from fem_impact.scene.pairs import pair_surface
 from fem_impact.scene.projectile import ProjectileSpec, Segment
 from fem_impact.scene.shapes import (
@@ -269,11 +268,10 @@ def _of_profile(table: Table, own: dict[str, Any]) -> ProjectileSpec:
 
 
 def _of_mesh(table: Table, own: dict[str, Any]) -> ProjectileSpec:
-    check_keys(table, ("mesh", "mesh_unit", "mesh_content", "material"))
+    check_keys(table, (*own_mesh.KEYS, "material"))
     if own["bore"]:
         raise SceneError("stands beside a mesh, which has its own.", key="bore", remedy="Leave it out.")
-    path = check_text(table["mesh"], "mesh", 1000)
-    mesh = OwnMesh.of(path, table.get("mesh_unit", "m"), table.get("mesh_content"))
+    mesh = own_mesh.stated(table)
     return ProjectileSpec.meshed(mesh, within(table, "material", read_material), own["segments"])
 
 

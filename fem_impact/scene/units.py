@@ -54,7 +54,13 @@ _RPM = 2.0 * math.pi / 60.0
 DIMENSIONS: dict[str, Dimension] = {
     d.name: d
     for d in (
-        Dimension("length", "m", "mm", "240 mm", (Unit("m"), Unit("mm", -3), Unit("cm", -2), Unit("um", -6))),
+        Dimension(
+            "length",
+            "m",
+            "mm",
+            "240 mm",
+            (Unit("m"), Unit("mm", -3), Unit("cm", -2), Unit("um", -6), Unit("inch", 0, 0.0254)),
+        ),
         Dimension(
             "speed",
             "m_per_s",

@@ -80,7 +80,9 @@ def _shape(rod: ProjectileSpec) -> dict[str, Any]:
     if isinstance(shape, Profile):
         return {"profile": _points(shape.points), "profile_smooth": shape.smooth}
     if isinstance(shape, OwnMesh):
-        return {"mesh": shape.path, "mesh_unit": shape.unit, "mesh_content": shape.content}
+        named = {"mesh_symmetry": shape.symmetry, "mesh_tip": shape.tip, "mesh_sets": list(shape.sets)}
+        file = {"mesh": shape.path, "mesh_unit": shape.unit, "mesh_content": shape.content}
+        return file | {key: value for key, value in named.items() if value}
     return {"tip": rod.tip, **_written(rod, fields.PROJECTILE)}
 
 

@@ -78,7 +78,7 @@ def test_a_mesh_that_is_fine_already_is_used_as_it_is(tmp_path):
     path = write(tmp_path / "fine.vtu", points, cells)
     own = {"mesh": str(path), "material": "rod-steel"}
     made = MeshedBodies(Case.of(scene(own, ["auto", "vibration"], tip_size="0.9 mm", across=8)))
-    geometry, half = made.geometry, meshes.read_own(path)
+    geometry, half = made.geometry, meshes.read_own(path).half
     assert len(geometry.rod.mesh.cells) == len(half.cells)
     yields, touching = geometry.may_yield["rod"], geometry.touching
     middle = half.points[half.cells].mean(axis=1)

@@ -93,7 +93,7 @@ def test_other_content_is_another_scene_and_a_stated_content_holds(scene, tmp_pa
     [
         (None, r"projectile.mesh = .*: has a length of 1e\+05 mm\. Is its unit m\? State the unit"),
         ("um", r"projectile.mesh = .*: has a length of 0.1 mm\. Is its unit um\?"),
-        ("inch", r'projectile.mesh_unit = "inch": is not a choice\. Use "m", "mm"'),
+        ("ell", r'projectile.mesh_unit = "ell": is not a choice\. Use "m", "mm"'),
     ],
 )
 def test_an_unlikely_unit_is_refused(scene, tmp_path, unit, reason):

@@ -1,0 +1,282 @@
+"""Cells of any kind as hexahedra: tetrahedra and wedges, straight or curved, split about their middles.
+
+Each corner of a cell takes a hexahedron, between the middles of its three edges, those of its three faces
+and that of the cell. Cells that share a face share the hexahedra's faces on it: a conforming mesh stays one.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshes.arrays import BoolArray, FloatArray, IntArray
+from meshes.errors import MeshError
+from meshes.gauss import jacobians_of
+from meshes.split import edge_keys
+from meshes.topology import CORNERS, FACES
+
+__all__ = ["Hexahedra", "as_hexahedra"]
+
+TURNED = [4, 5, 6, 7, 0, 1, 2, 3]  # the corners of a hexahedron that is inside out, put right
+
+
+@dataclass(frozen=True, slots=True)
+class _Kind:
+    """A cell of which three edges meet at each corner.
+
+    Attributes
+    ----------
+    edges : pairs of corners, in the order of the middle nodes
+    faces : corners of each face, three or four, in order around it
+    places : of the corners, in a cell with positive volume
+    """
+
+    name: str
+    edges: tuple[tuple[int, int], ...]
+    faces: tuple[tuple[int, ...], ...]
+    places: IntArray
+
+    @property
+    def corners(self) -> int:
+        return len(self.places)
+
+    def around(self, corner: int) -> tuple[tuple[int, ...], tuple[int, ...]]:
+        """Return the edges at a corner, right-handed, and the faces between first and second, and on."""
+        ends = {k: a + b - corner for k, (a, b) in enumerate(self.edges) if corner in (a, b)}
+        x, y, z = ends
+        axes = [self.places[ends[k]] - self.places[corner] for k in (x, y, z)]
+        if np.linalg.det(np.array(axes, dtype=np.float64)) < 0:
+            y, z = z, y
+        pairs = ((x, y), (y, z), (z, x))
+        faces = tuple(
+            next(k for k, face in enumerate(self.faces) if {corner, ends[a], ends[b]} <= set(face))
+            for a, b in pairs
+        )
+        return (x, y, z), faces
+
+
+TETRA = _Kind(
+    "tetra",
+    ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)),
+    ((0, 1, 2), (0, 1, 3), (1, 2, 3), (2, 0, 3)),
+    np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]),
+)
+WEDGE = _Kind(
+    "wedge",
+    ((0, 1), (1, 2), (2, 0), (3, 4), (4, 5), (5, 3), (0, 3), (1, 4), (2, 5)),
+    ((0, 1, 2), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5)),
+    np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [0, 1, 1]]),
+)
+HEXAHEDRON = _Kind(
+    "hexahedron",
+    (
+        *((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4)),
+        *((0, 4), (1, 5), (2, 6), (3, 7)),
+    ),
+    tuple(tuple(int(corner) for corner in face) for face in FACES),
+    CORNERS,
+)
+KINDS = {kind.name: kind for kind in (TETRA, WEDGE, HEXAHEDRON)}
+# Shape functions of the middle of a quadratic cell or face: of a corner, and of the middle of an edge; those
+# of a wedge's edges between its ends differ
+MIDDLES = {"tetra": (-1 / 8, (1 / 4,) * 6), "hexahedron": (-1 / 4, (1 / 4,) * 12)}
+MIDDLES["wedge"] = (-2 / 9, (2 / 9,) * 6 + (1 / 3,) * 3)
+FACE_MIDDLES = {3: (-1 / 9, 4 / 9), 4: (-1 / 4, 1 / 2)}
+
+
+@dataclass(frozen=True, slots=True)
+class Hexahedra:
+    """Hexahedra of a body.
+
+    Attributes
+    ----------
+    points : (n, 3) float64
+    cells : (m, 8) int64, VTK order
+    parent : (m,) int64, the cell of the file in which each lies
+    told : sentences about what was done
+    """
+
+    points: FloatArray
+    cells: IntArray
+    parent: IntArray
+    told: tuple[str, ...]
+
+
+def as_hexahedra(points: FloatArray, blocks: tuple[tuple[str, IntArray], ...]) -> Hexahedra:
+    """Return the hexahedra of cells of all kinds, the order of nodes put right where all of a kind agree.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+    blocks : pairs of a kind and its cells, see `StoredMesh`
+
+    Raises
+    ------
+    MeshError
+        If a cell is a pyramid, or a hexahedron whose nodes fall together is none of these.
+    """
+    groups = [part for at, block in zip(_starts(blocks), blocks, strict=True) for part in _groups(block, at)]
+    told: list[str] = []
+    if all(kind is HEXAHEDRON and cells.shape[1] == 8 for kind, cells, _ in groups):
+        made = [(kind, cells, numbers) for kind, cells, numbers in groups]
+    else:
+        points, made = _split(points, groups)
+        names = sorted({kind.name for kind, _, _ in groups})
+        count = sum(len(cells) for _, cells, _ in groups)
+        told.append(
+            f"its {count} cells ({', '.join(names)}) are split about their middles into "
+            f"{sum(len(cells) for _, cells, _ in made)} hexahedra"
+        )
+    cells = []
+    for kind in KINDS.values():
+        own = [one for one, here, _ in ((c, k, n) for k, c, n in made) if here is kind]
+        if own and _inside_out(points, np.concatenate(own)):
+            told.append(f"the order of the nodes of each {kind.name} is turned round")
+            made = [(k, c[:, TURNED] if k is kind else c, n) for k, c, n in made]
+    cells = [here for _, here, _ in made]
+    numbers = [here for _, _, here in made]
+    return Hexahedra(points, np.concatenate(cells), np.concatenate(numbers), tuple(told))
+
+
+def _starts(blocks: tuple[tuple[str, IntArray], ...]) -> list[int]:
+    return [sum(len(cells) for _, cells in blocks[:k]) for k in range(len(blocks))]
+
+
+def _groups(block: tuple[str, IntArray], first: int) -> list[tuple[_Kind, IntArray, IntArray]]:
+    """Return the cells of a block with numbers, hexahedra whose nodes fall together as what they are."""
+    name, cells = block
+    numbers = first + np.arange(len(cells))
+    if name.startswith("pyramid"):
+        raise MeshError(
+            f"holds {len(cells)} pyramids, which cannot be split into hexahedra. Mesh the body with "
+            "hexahedra, wedges or tetrahedra alone."
+        )
+    kind = next(kind for kind in KINDS.values() if name.startswith(kind.name))
+    if kind is not HEXAHEDRON:
+        return [(kind, cells, numbers)]
+    corners = np.sort(cells[:, :8], axis=1)
+    distinct = 1 + (np.diff(corners, axis=1) != 0).sum(axis=1)
+    whole = distinct == 8
+    found = [(HEXAHEDRON, cells[whole], numbers[whole])] if whole.any() else []
+    for count in (4, 6):
+        here = np.flatnonzero(distinct == count)
+        if len(here):
+            low = np.array([_tetra(cells[k]) if count == 4 else _wedge(cells[k]) for k in here])
+            found.append((TETRA if count == 4 else WEDGE, low, numbers[here]))
+    if other := int((~np.isin(distinct, (4, 6, 8))).sum()):
+        raise MeshError(
+            f"holds {other} hexahedra whose nodes fall together, but not to a wedge or a tetrahedron. Mesh "
+            "the body with hexahedra, wedges or tetrahedra alone."
+        )
+    return found
+
+
+def _tetra(cell: IntArray) -> list[int]:
+    return list(dict.fromkeys(int(node) for node in cell[:8]))
+
+
+def _wedge(cell: IntArray) -> list[int]:
+    """Return the corners of a wedge that is given as a hexahedron with two edges of no length."""
+    corners = [int(node) for node in cell[:8]]
+    ends = [tuple(dict.fromkeys(corners[k] for k in face)) for face in HEXAHEDRON.faces]
+    ends = [face for face in ends if len(face) == 3]
+    joined = {frozenset((corners[a], corners[b])) for a, b in HEXAHEDRON.edges}
+    if len(ends) != 2 or set(ends[0]) & set(ends[1]):
+        raise MeshError("holds a hexahedron of six nodes that is no wedge. Mesh it with hexahedra or wedges.")
+    low, high = ends
+    facing = [next((b for b in high if frozenset((a, b)) in joined), -1) for a in low]
+    if sorted(facing) != sorted(high):
+        raise MeshError("holds a hexahedron of six nodes that is no wedge. Mesh it with hexahedra or wedges.")
+    return [*low, *facing]
+
+
+def _split(
+    points: FloatArray, groups: list[tuple[_Kind, IntArray, IntArray]]
+) -> tuple[FloatArray, list[tuple[_Kind, IntArray, IntArray]]]:
+    """Return points with the middles of edges, faces and cells, and the hexahedra about them, by group."""
+    pairs = [cells[:, np.array(kind.edges)] for kind, cells, _ in groups]
+    edges, edge_at = np.unique(np.concatenate([edge_keys(p).ravel() for p in pairs]), return_inverse=True)
+    ends = np.stack([edges >> 31, edges & ((1 << 31) - 1)], axis=1)
+    middles = 0.5 * points[ends].sum(axis=1)
+    own = np.cumsum([0, *(p.shape[0] * p.shape[1] for p in pairs)])
+    at = [edge_at[low:high].reshape(p.shape[:2]) for low, high, p in zip(own, own[1:], pairs, strict=False)]
+    for (kind, cells, _), here in zip(groups, at, strict=True):
+        count = len(kind.edges)
+        if cells.shape[1] >= kind.corners + count:  # curved: the file's own middles
+            middles[here] = points[cells[:, kind.corners : kind.corners + count]]
+    first_edge, first_face = len(points), len(points) + len(edges)
+    faces = _Faces(points, middles)
+    shares = [faces.add(kind, cells, here) for (kind, cells, _), here in zip(groups, at, strict=True)]
+    face_at, face_points = faces.placed()
+    first_cell = first_face + len(face_points)
+    made, centres, begin = [], [], 0
+    for (kind, cells, numbers), here, (low, high) in zip(groups, at, shares, strict=True):
+        corner, edge = MIDDLES[kind.name]
+        centre = corner * points[cells[:, : kind.corners]].sum(axis=1)
+        centre += np.einsum("e,mei->mi", np.array(edge), middles[here])
+        centres.append(centre)
+        number = first_cell + begin + np.arange(len(cells))
+        begin += len(cells)
+        at_faces = first_face + face_at[low:high].reshape(len(cells), len(kind.faces))
+        parts = []
+        for k in range(kind.corners):
+            (x, y, z), (xy, yz, zx) = kind.around(k)
+            mids = first_edge + here
+            nodes = (
+                *(cells[:, k], mids[:, x], at_faces[:, xy], mids[:, y]),
+                *(mids[:, z], at_faces[:, zx], number, at_faces[:, yz]),
+            )
+            parts.append(np.stack(nodes, axis=1))
+        made.append((kind, np.stack(parts, axis=1).reshape(-1, 8), np.repeat(numbers, kind.corners)))
+    return np.concatenate([points, middles, face_points, *centres]), made
+
+
+class _Faces:
+    """The faces of all cells, those that two share once."""
+
+    def __init__(self, points: FloatArray, middles: FloatArray) -> None:
+        self.points, self.middles = points, middles
+        self.keys: list[IntArray] = []
+        self.places: list[FloatArray] = []
+        self.count = 0
+
+    def add(self, kind: _Kind, cells: IntArray, edges: IntArray) -> tuple[int, int]:
+        """Add the faces of cells with their ``edges``; return where they stand among all of them."""
+        keys, places = [], []
+        for face in kind.faces:
+            around = [
+                next(k for k, edge in enumerate(kind.edges) if set(edge) == {a, b})
+                for a, b in zip(face, (*face[1:], face[0]), strict=True)
+            ]
+            corner, edge = FACE_MIDDLES[len(face)]
+            nodes = np.sort(cells[:, list(face)], axis=1)
+            if nodes.shape[1] == 3:
+                nodes = np.concatenate([nodes, np.full((len(nodes), 1), -1)], axis=1)
+            keys.append(nodes)
+            place = corner * self.points[cells[:, list(face)]].sum(axis=1)
+            place += edge * self.middles[edges[:, around]].sum(axis=1)
+            places.append(self._nearest(place, cells, kind))
+        self.keys.append(np.stack(keys, axis=1).reshape(-1, 4))
+        self.places.append(np.stack(places, axis=1).reshape(-1, 3))
+        first, self.count = self.count, self.count + len(self.keys[-1])
+        return first, self.count
+
+    def _nearest(self, place: FloatArray, cells: IntArray, kind: _Kind) -> FloatArray:
+        """Return the file's own middle of each face, where a cell has nodes in its faces, else ``place``."""
+        own = cells[:, kind.corners + len(kind.edges) :]
+        if not own.shape[1]:
+            return place
+        given = self.points[own]
+        near = np.linalg.norm(given - place[:, None], axis=2).argmin(axis=1)
+        return np.asarray(given[np.arange(len(cells)), near])
+
+    def placed(self) -> tuple[IntArray, FloatArray]:
+        """Return for each face added the number of its middle, and the middles (k, 3)."""
+        _, first, at = np.unique(np.concatenate(self.keys), axis=0, return_index=True, return_inverse=True)
+        return at.reshape(-1), np.concatenate(self.places)[first]
+
+
+def _inside_out(points: FloatArray, cells: IntArray) -> bool:
+    """Return whether all of the hexahedra have a negative volume about each Gauss point."""
+    volume: FloatArray = np.linalg.det(jacobians_of(points, cells))
+    negative: BoolArray = volume < 0.0
+    return bool(negative.all())

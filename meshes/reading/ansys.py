@@ -1,0 +1,170 @@
+"""Archives of Ansys Mechanical APDL (.cdb): NBLOCK, EBLOCK, CMBLOCK and the types of elements."""
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from meshes.errors import MeshError
+from meshes.reading.stored import Elements, StoredMesh, number_of, whole_number
+
+__all__ = ["ansys"]
+
+# numbers of the types of elements that are solids; those of ten nodes; points of mass
+SOLIDS = {5, 45, 62, 64, 65, 69, 70, 90, 95, 96, 97, 117, 122, 128, 147, 162, 164, 185, 186, 190, 226, 231}
+SOLIDS |= {239, 278, 279}
+TETRA10 = {87, 92, 98, 123, 127, 148, 168, 187, 227, 232, 237, 291}
+TETRA4 = {72, 285}
+MASSES = {21, 166}
+MAKERS = ("NGEN", "EGEN", "NSCALE", "TRANSFER", "NSYM", "ESYM", "EN", "E", "N")
+
+
+@dataclass(slots=True)
+class _Archive:
+    """What was read of an archive.
+
+    Attributes
+    ----------
+    nodes : place of each node by number
+    types : number of the element's type by its number in the file
+    cells : by number: type, nodes
+    components : by name: numbers of elements
+    """
+
+    points: list[list[float]] = field(default_factory=list)
+    nodes: dict[int, int] = field(default_factory=dict)
+    types: dict[int, int] = field(default_factory=dict)
+    cells: dict[int, tuple[int, list[int]]] = field(default_factory=dict)
+    components: dict[str, list[int]] = field(default_factory=dict)
+
+
+def ansys(path: Path) -> StoredMesh:
+    """Read an archive as CDWRITE writes it; a set is a component of elements.
+
+    Raises
+    ------
+    MeshError
+        If it makes nodes or cells by commands, or names what is not there.
+    """
+    archive, lines = _Archive(), iter(path.read_text(encoding="latin-1").splitlines())
+    for line in lines:
+        words = [word.strip() for word in line.split("!")[0].split(",")]
+        name = words[0].upper()
+        if name == "ET":
+            archive.types[whole_number(words[1], "ET")] = whole_number(re.sub(r"\D", "", words[2]), "ET")
+        elif name == "ETBLOCK":
+            _types(lines, archive)
+        elif name == "NBLOCK":
+            _nodes(lines, archive)
+        elif name == "EBLOCK":
+            _cells(lines, archive, "SOLID" in line.upper())
+        elif name == "CMBLOCK" and words[2].upper().startswith("ELEM"):
+            members = list(_integers(lines, whole_number(words[3], "CMBLOCK")))
+            archive.components[words[1].upper()] = _ranges(members)
+        elif name in MAKERS:
+            raise MeshError(
+                f"makes nodes or cells by the command {name}. Write it by CDWRITE,DB with blocks."
+            )
+    return _stored(archive)
+
+
+def _widths(line: str) -> tuple[int, int, int]:
+    """Return count and width of whole numbers, and width of numbers, of a line such as (3i9,6e21.13e3)."""
+    found = re.match(r"\s*\((\d+)i(\d+)(?:,\d+[eg](\d+))?", line.lower())
+    if not found:
+        raise MeshError(f"has a block with the format {line.strip()!r}, which is not read.")
+    return int(found[1]), int(found[2]), int(found[3] or 0)
+
+
+def _nodes(lines: Iterator[str], archive: _Archive) -> None:
+    count, width, wide = _widths(next(lines, ""))
+    for line in lines:
+        if line.strip().startswith(("N,", "-1")):
+            return
+        number, start = whole_number(line[:width], "NBLOCK"), count * width
+        archive.nodes[number] = len(archive.points)
+        texts = (line[start + k * wide : start + (k + 1) * wide] for k in range(3))
+        archive.points.append([number_of(text, f"node {number}") for text in texts])
+
+
+def _types(lines: Iterator[str], archive: _Archive) -> None:
+    _widths(next(lines, ""))
+    for line in lines:
+        parts = line.split()
+        if parts[:1] in ([], ["-1"]):
+            return
+        archive.types[int(parts[0])] = int(parts[1])
+
+
+def _cells(lines: Iterator[str], archive: _Archive, solid: bool) -> None:
+    """Read a block of elements: of solids with eleven numbers before the nodes, of others with five."""
+    _, width, _ = _widths(next(lines, ""))
+    wanted, numbers = 0, list[int]()
+    for line in lines:
+        parts = [whole_number(line[k : k + width], "EBLOCK") for k in range(0, len(line.rstrip()), width)]
+        if parts[:1] == [-1]:
+            return
+        numbers += parts
+        if solid and len(numbers) >= 11:
+            wanted = 11 + numbers[8]
+        if len(numbers) >= wanted:
+            kind, number, nodes = (
+                (numbers[1], numbers[10], numbers[11:]) if solid else (0, numbers[0], numbers[5:])
+            )
+            archive.cells[number] = kind, nodes
+            numbers = []
+
+
+def _integers(lines: Iterator[str], count: int) -> Iterator[int]:
+    _, width, _ = _widths(next(lines, ""))
+    left = count
+    while left > 0:
+        line = next(lines, "")
+        for k in range(0, min(len(line.rstrip()), left * width), width):
+            yield whole_number(line[k : k + width], "CMBLOCK")
+        left -= max(len(line.rstrip()) // width, 1)
+
+
+def _ranges(members: list[int]) -> list[int]:
+    """Return all numbers of a list, of which one below 0 ends a range that the one before it begins."""
+    found: list[int] = []
+    for one in members:
+        found += range(found[-1] + 1, -one + 1) if one < 0 and found else [one]
+    return found
+
+
+def _stored(archive: _Archive) -> StoredMesh:
+    found, sets = Elements(), dict[int, list[str]]()
+    for name, members in archive.components.items():
+        for member in members:
+            sets.setdefault(member, []).append(name)
+    for number, (slot, nodes) in archive.cells.items():
+        kind = archive.types.get(slot, 0)
+        missing = [node for node in nodes if node and node not in archive.nodes]
+        if kind in SOLIDS | TETRA4 | TETRA10 and missing:
+            raise MeshError(f"has a cell {number} that names the node {missing[0]}, which is not there.")
+        told = _kind(kind, len(nodes))
+        if told is None:
+            found.leave(
+                f"cell of type {kind}" if kind else "cell outside of solid blocks", mass=kind in MASSES
+            )
+            continue
+        found.add(told, tuple(archive.nodes[node] for node in nodes), *sets.get(number, []))
+    return found.stored(np.array(archive.points, dtype=np.float64).reshape(-1, 3))
+
+
+def _kind(kind: int, count: int) -> str | None:
+    """Return the kind of volume cells of a type of element, None where it is no solid."""
+    if kind in TETRA10 and count == 10:
+        return "tetra10"
+    if kind in TETRA4 and count == 4:
+        return "tetra"
+    if kind in SOLIDS | TETRA4:
+        kinds = {8: "hexahedron", 20: "hexahedron20", 4: "tetra", 10: "tetra10"}
+        if count in kinds:
+            return kinds[count]
+    if kind in SOLIDS | TETRA4 | TETRA10:
+        raise MeshError(f"has a solid of type {kind} with {count} nodes, which is not read.")
+    return None

@@ -1,0 +1,95 @@
+"""Formats that meshio reads right: Gmsh, VTK, MED, Medit, XDMF and others."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from meshes.arrays import IntArray
+from meshes.errors import MeshError
+from meshes.reading.stored import NODES, StoredMesh, counted
+
+__all__ = ["by_meshio", "parsed"]
+
+VOXEL = (0, 1, 3, 2, 4, 5, 7, 6)  # corners of VTK's voxel in the order of a hexahedron
+FLAT = ("vertex", "line", "triangle", "quad", "polygon")  # cells of points, lines and surfaces
+VALUES = 50  # of a whole number of cells, up to which it counts as a mark of regions
+
+
+def parsed(path: Path, kind: str) -> Any:
+    """Return meshio's mesh of a file; not by `meshio.read`, which ends the process on a broken file."""
+    import meshio
+
+    return getattr(meshio, kind.removesuffix("-xml")).read(path)
+
+
+def by_meshio(path: Path, kinds: list[str]) -> StoredMesh:
+    """Read a file in the first of meshio's formats that fits.
+
+    Raises
+    ------
+    MeshError
+        If none fits, or it holds volume cells that are not read.
+    """
+    refused = []
+    for kind in kinds:
+        try:
+            stored = parsed(path, kind)
+        except ImportError:
+            raise
+        except Exception as error:
+            # meshio passes on whatever its parsers raise on a broken file: XML, struct and index errors
+            refused.append(f"{kind}: {' '.join(str(error).split())[:80] or type(error).__name__}")
+        else:
+            return _stored(stored)
+    raise MeshError(f"is not readable ({'; '.join(refused)}). Write it again, as .vtu for example.")
+
+
+def _stored(mesh: Any) -> StoredMesh:
+    blocks, ignored, at = [], [], []
+    first = 0
+    for block in mesh.cells:
+        kind, cells = block.type, np.asarray(block.data)
+        if kind == "voxel":
+            kind, cells = "hexahedron", cells[:, VOXEL]
+        if kind.startswith(FLAT):
+            ignored.append((kind, len(cells)))
+            at.append(np.zeros(0, np.int64))
+            continue
+        if kind not in NODES:
+            raise MeshError(f"holds {counted(len(cells), f'cell of type {kind}')}, which are not read.")
+        blocks.append((kind, cells.astype(np.int64)))
+        at.append(np.arange(first, first + len(cells)))
+        first += len(cells)
+    counts = {kind: sum(count for one, count in ignored if one == kind) for kind, _ in ignored}
+    told = tuple(counted(count, f"cell of type {kind}") for kind, count in counts.items())
+    points = np.asarray(mesh.points, np.float64)
+    return StoredMesh(points, tuple(blocks), _sets(mesh, at), told)
+
+
+def _sets(mesh: Any, at: list[IntArray]) -> dict[str, IntArray]:
+    """Return named sets, and regions by the whole numbers that cells are marked with."""
+    sets: dict[str, list[IntArray]] = {}
+    for name, members in mesh.cell_sets.items():
+        if name.startswith("gmsh:"):
+            continue
+        for places, chosen in zip(at, members, strict=False):
+            if chosen is not None and len(places):
+                sets.setdefault(name, []).append(places[np.asarray(chosen, np.int64)])
+    names = {int(number): name for name, (number, dim) in mesh.field_data.items() if int(dim) == 3}
+    for key, values in mesh.cell_data.items():
+        for places, marks in zip(at, values, strict=False):
+            marks = np.asarray(marks)
+            if not len(places) or marks.ndim != 1 or marks.dtype.kind not in "iu":
+                continue
+            for mark in np.unique(marks)[: VALUES + 1]:
+                name = names.get(int(mark)) if key == "gmsh:physical" else None
+                for one in {name or f"{key.rpartition(':')[2]} {mark}", *mesh_tags(mesh, key, int(mark))}:
+                    sets.setdefault(one, []).append(places[marks == mark])
+    return {name: np.unique(np.concatenate(parts)) for name, parts in sets.items()}
+
+
+def mesh_tags(mesh: Any, key: str, mark: int) -> list[str]:
+    """Return the groups of MED that a family of cells belongs to."""
+    tags = getattr(mesh, "cell_tags", None)
+    return list(tags.get(mark, [])) if tags and key == "cell_tags" else []

@@ -1,0 +1,129 @@
+"""Exodus II files (.e, .exo, .ex2, .g): blocks of elements, from netCDF classic or netCDF-4 (HDF5)."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from meshes.arrays import IntArray
+from meshes.errors import MeshError
+from meshes.reading.stored import NODES, StoredMesh, counted
+
+__all__ = ["exodus"]
+
+HDF5 = b"\x89HDF"
+CLASSIC = b"CDF\x01", b"CDF\x02"
+NAMES = {"HEX": "hexahedron", "TET": "tetra", "WED": "wedge", "PYR": "pyramid"}  # by their first letters
+MASSES = ("SPHERE", "POINT")
+# the middles of edges between both ends come before those of the upper end
+REORDERED = {
+    "hexahedron20": (*range(12), *range(16, 20), *range(12, 16)),
+    "hexahedron27": (*range(12), *range(16, 20), *range(12, 16), *range(20, 27)),
+    "wedge15": (*range(9), 12, 13, 14, 9, 10, 11),
+}
+
+
+def exodus(path: Path) -> StoredMesh:
+    """Read the blocks of solid elements; each block is a set, by its name or "BLOCK" with its number.
+
+    Raises
+    ------
+    MeshError
+        If it is neither of the two kinds of netCDF, or is no Exodus file.
+    """
+    kept = _variables(path)
+    if "coord" in kept:
+        points = np.asarray(kept["coord"], np.float64).T
+    else:
+        axes = [kept[f"coord{axis}"] for axis in "xyz" if f"coord{axis}" in kept]
+        points = np.asarray(axes, np.float64).T
+    if points.ndim != 2 or points.shape[1] != 3:
+        raise MeshError(
+            "has no nodes of three coordinates (coordx, coordy, coordz): it is no body in Exodus."
+        )
+    names = [_text(name) for name in kept.get("eb_names", [])]
+    numbers = list(kept.get("eb_prop1", []))
+    blocks, ignored, masses = [], [], []
+    sets: dict[str, IntArray] = {}
+    first, k = 0, 1
+    while f"connect{k}" in kept or f"num_el_in_blk{k}" in kept:
+        if f"connect{k}" in kept:
+            cells, kind = kept[f"connect{k}"], _text(kept.get(f"connect{k}:elem_type", b""))
+            told = _kind(kind, cells.shape[1])
+            if told:
+                cells = np.asarray(cells, np.int64)[:, REORDERED.get(told, range(cells.shape[1]))] - 1
+                blocks.append((told, cells))
+                here = np.arange(first, first + len(cells))
+                name = names[k - 1] if k <= len(names) else ""
+                number = int(numbers[k - 1]) if k <= len(numbers) else k
+                for one in {name, f"BLOCK {number}"} - {""}:
+                    sets[one] = here
+                first += len(cells)
+            else:
+                ignored.append(counted(len(cells), f"cell of type {kind}"))
+                masses += ignored[-1:] if kind.upper().startswith(MASSES) else []
+        k += 1
+    return StoredMesh(points, tuple(blocks), sets, tuple(ignored), tuple(masses))
+
+
+def _variables(path: Path) -> Mapping[str, Any]:
+    """Return the arrays of a file by name, and the type of each block's elements."""
+    with path.open("rb") as file:
+        start = file.read(4)
+    if start == HDF5:
+        return _of_hdf5(path)
+    if start in CLASSIC:
+        return _of_classic(path)
+    raise MeshError(
+        f"begins with {start!r}: it is no Exodus file of netCDF classic, of 64-bit offsets or netCDF-4. "
+        "Convert it by nccopy -k nc4."
+    )
+
+
+def _of_hdf5(path: Path) -> dict[str, Any]:
+    import h5py
+
+    kept: dict[str, Any] = {}
+    with h5py.File(path) as file:
+        for name, array in file.items():
+            if name.startswith(("coord", "connect", "eb_")):
+                kept[name] = array[()]
+                if "elem_type" in array.attrs:
+                    kept[f"{name}:elem_type"] = array.attrs["elem_type"]
+            elif name.startswith("num_el_in_blk"):
+                kept[name] = len(array)
+    return kept
+
+
+def _of_classic(path: Path) -> dict[str, Any]:
+    from scipy.io import netcdf_file
+
+    kept: dict[str, Any] = {}
+    with netcdf_file(path, mmap=False) as file:
+        for name, array in file.variables.items():
+            if name.startswith(("coord", "connect", "eb_")):
+                kept[name] = array.data.copy()
+                if hasattr(array, "elem_type"):
+                    kept[f"{name}:elem_type"] = array.elem_type
+        kept |= {name: size for name, size in file.dimensions.items() if name.startswith("num_el_in_blk")}
+    return kept
+
+
+def _text(value: Any) -> str:
+    """Return text that is stored as bytes, as a row of letters or as a string."""
+    if isinstance(value, np.ndarray):
+        value = value.tobytes()
+    text = value.decode("latin-1") if isinstance(value, bytes) else str(value)
+    return text.split("\0")[0].strip()
+
+
+def _kind(name: str, count: int) -> str | None:
+    """Return the kind of cells of a block, None where they fill no volume."""
+    stem = NAMES.get(name.upper()[:3])
+    if stem is None:
+        return None
+    kind = next((kind for kind, nodes in NODES.items() if kind.startswith(stem) and nodes == count), None)
+    if kind is None:
+        raise MeshError(f"has a block of {name} with {count} nodes a cell, which is not read.")
+    return kind

@@ -1,0 +1,81 @@
+"""Model parts of Kratos Multiphysics (.mdpa): nodes, elements by their name, sub model parts."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+
+from meshes.errors import MeshError
+from meshes.reading.stored import Elements, StoredMesh, number_of, whole_number
+
+__all__ = ["kratos"]
+
+KINDS = {4: "tetra", 5: "pyramid", 6: "wedge", 8: "hexahedron", 10: "tetra10", 15: "wedge15"}
+KINDS |= {20: "hexahedron20", 27: "hexahedron27"}
+SURFACES = (
+    "SHELL",
+    "MEMBRANE",
+    "CONDITION",
+    "SURFACE",
+    "CABLE",
+    "TRUSS",
+    "BEAM",
+    "LINE",
+    "QUADRI",
+    "TRIANGLE",
+)
+# the middles of edges around an end run the other way, and those between the ends come before the upper end
+REORDERED = {"hexahedron20": (*range(12), *range(16, 20), *range(12, 16))}
+REORDERED["hexahedron27"] = (*REORDERED["hexahedron20"], *range(20, 27))
+
+
+def kratos(path: Path) -> StoredMesh:
+    """Read nodes and the elements whose name ends in 3D and a number of nodes; a set is a sub model part.
+
+    Raises
+    ------
+    MeshError
+        If a cell names what is not there.
+    """
+    place: dict[int, int] = {}
+    points: list[list[float]] = []
+    cells: dict[int, tuple[str | None, list[int], str]] = {}
+    groups: dict[int, list[str]] = {}
+    found, opened = Elements(), list[tuple[str, str]]()
+    for raw in path.read_text(encoding="latin-1").splitlines():
+        line = raw.split("//")[0].strip()
+        words = line.split()
+        if not words:
+            continue
+        if words[0] == "Begin":
+            opened.append((words[1], words[2] if len(words) > 2 else ""))
+        elif words[0] == "End" and opened:
+            opened.pop()
+        elif opened and opened[-1][0] == "Nodes":
+            place[whole_number(words[0], "Nodes")] = len(points)
+            points.append([number_of(text, f"node {words[0]}") for text in words[1:4]])
+        elif opened and opened[-1][0] == "Elements":
+            name = opened[-1][1]
+            numbers = [whole_number(text, name) for text in words]
+            cells[numbers[0]] = _kind(name, len(numbers) - 2), numbers[2:], f"PROPERTIES {numbers[1]}"
+        elif opened and opened[-1][0] == "SubModelPartElements":
+            names = [name for kind, name in opened if kind == "SubModelPart"]
+            groups.setdefault(whole_number(words[0], "SubModelPartElements"), []).extend(names)
+        elif opened and opened[-1][0] == "Conditions":
+            found.leave(f"condition {opened[-1][1]}")
+    for number, (kind, nodes, properties) in cells.items():
+        if kind is None:
+            found.leave(f"cell of {len(nodes)} nodes that fills no volume")
+            continue
+        missing = [node for node in nodes if node not in place]
+        if missing:
+            raise MeshError(f"has a cell {number} that names the node {missing[0]}, which is not there.")
+        nodes = [nodes[k] for k in REORDERED.get(kind, range(len(nodes)))]
+        found.add(kind, tuple(place[node] for node in nodes), properties, *groups.get(number, []))
+    return found.stored(np.array(points, dtype=np.float64).reshape(-1, 3))
+
+
+def _kind(name: str, count: int) -> str | None:
+    """Return the kind of cells of an element by its name and number of nodes, None where it is no solid."""
+    solid = re.search(r"3D\d*N?$", name) and not any(word in name.upper() for word in SURFACES)
+    return KINDS.get(count) if solid else None

@@ -1,0 +1,126 @@
+"""Keyword files of LS-DYNA: nodes, solid elements, parts."""
+
+from collections.abc import Iterator
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+
+from meshes.errors import MeshError
+from meshes.reading.stored import Elements, StoredMesh, number_of, whole_number
+
+__all__ = ["lsdyna"]
+
+REFUSED = {
+    "INCLUDE": "takes a part of the mesh from another file by *{0}. Name that file as mesh if it holds all "
+    "nodes and cells, or copy its lines into this one.",
+    "NODE_TRANSFORM": "moves nodes by *{0}. Write the deck with the nodes where they are.",
+    "NODE_MERGE": "merges nodes by *{0}. Write the deck with merged nodes.",
+    "NODE_SCALAR": "has nodes by *{0}, which are not read. Leave them out.",
+    "PARAMETER": "states numbers as parameters by *{0}. Write the deck with the numbers themselves.",
+    "ELEMENT_SOLID_NURBS": "holds cells of *{0}, which are no hexahedra. Mesh the body with hexahedra.",
+}
+SOLIDS = ("ELEMENT_SOLID", "ELEMENT_SOLID_TITLE", "ELEMENT_TSHELL")
+LINES_MORE = {"ORTHO": 2, "DOF": 1}  # that an option adds to each element
+MASSES = ("ELEMENT_MASS", "ELEMENT_INERTIA")
+
+
+def lsdyna(path: Path) -> StoredMesh:
+    """Read *NODE and *ELEMENT_SOLID, fixed or free fields; a set is a part, by its number and its title.
+
+    Raises
+    ------
+    MeshError
+        If the deck includes or moves what it does not hold, or names what is not there.
+    """
+    place: dict[int, int] = {}
+    points: list[list[float]] = []
+    titles: dict[int, str] = {}
+    solids: list[tuple[int, list[int]]] = []
+    found = Elements()
+    for name, long, lines in _keywords(path.read_text(encoding="latin-1")):
+        for start, problem in REFUSED.items():
+            if name.startswith(start):
+                raise MeshError(problem.format(name))
+        if name == "NODE":
+            for line in lines:
+                number, *rest = _split(line, [20] * 4 if long else [8, 16, 16, 16])
+                place[whole_number(number, "*NODE")] = len(points)
+                points.append([number_of(text, f"node {number}") for text in (rest + [""] * 3)[:3]])
+        elif name == "PART":
+            for title, numbers in zip(lines[::2], lines[1::2], strict=False):
+                part = whole_number(_split(numbers, [20 if long else 10])[0], "*PART")
+                titles[part] = title.strip()
+        elif name.startswith(("ELEMENT_SOLID", "ELEMENT_TSHELL")):
+            solids += _solids(name, lines, 20 if long else 8)
+        elif name.startswith("ELEMENT_"):
+            found.leave(f"line of *{name}", len(lines), mass=name.startswith(MASSES))
+        elif name.startswith("RIGIDWALL"):
+            found.leave(f"wall (*{name})")
+    for part, nodes in solids:
+        missing = [node for node in nodes if node not in place]
+        if missing:
+            raise MeshError(
+                f"has a solid of part {part} that names the node {missing[0]}, which is not there."
+            )
+        kind = {8: "hexahedron", 10: "tetra10"}[len(nodes)]
+        names = {f"PART {part}", titles.get(part, "")} - {""}
+        found.add(kind, tuple(place[node] for node in nodes), *names)
+    return found.stored(np.array(points, dtype=np.float64).reshape(-1, 3))
+
+
+def _keywords(text: str) -> Iterator[tuple[str, bool, list[str]]]:
+    """Yield each keyword, whether its fields are long, and its lines."""
+    name, long, every, lines = "", False, False, list[str]()
+    for line in text.splitlines():
+        if line.startswith("$") or not line.strip():
+            continue
+        if not line.startswith("*"):
+            lines.append(line.rstrip())
+            continue
+        if name:
+            yield name, long, lines
+        name, lines = line[1:].strip().upper(), []
+        if name.startswith("KEYWORD"):
+            every = "LONG=Y" in name.replace(" ", "")
+        long = (every or name.endswith("+")) and not name.endswith("-")
+        name = name.rstrip("+-% ").strip()
+        if name == "END":
+            break
+    yield name, long, lines
+
+
+def _split(line: str, widths: list[int]) -> list[str]:
+    """Return the fields of a line: between commas, or of fixed widths."""
+    if "," in line:
+        return [part.strip() for part in line.split(",")]
+    ends = np.cumsum([0, *widths])
+    return [line[low:high].strip() for low, high in pairwise(ends)]
+
+
+def _solids(name: str, lines: list[str], width: int) -> Iterator[tuple[int, list[int]]]:
+    """Yield part and nodes of each solid, on one line of ten numbers, or on two."""
+    option = (
+        name.removeprefix("ELEMENT_SOLID").removeprefix("ELEMENT_TSHELL").strip("_").removesuffix("_TITLE")
+    )
+    if option not in ("", "TITLE", *LINES_MORE):
+        raise MeshError(f"holds cells of *{name}, which is not read. Write them as *ELEMENT_SOLID.")
+    more, at = LINES_MORE.get(option, 0), 0
+    while at < len(lines):
+        head = [whole_number(text, name) for text in _split(lines[at], [width] * 10) if text]
+        at += 1
+        if len(head) <= 2:
+            if at >= len(lines):
+                raise MeshError(f"ends within a cell of *{name}.")
+            nodes = [whole_number(text, name) for text in _split(lines[at], [width] * 10) if text]
+            at += 1
+        else:
+            nodes = head[2:]
+        at += more
+        nodes = [node for node in nodes if node]
+        if len(nodes) == 10 and nodes[8] != nodes[9]:
+            yield head[1], nodes
+        elif len(nodes) >= 4:
+            yield head[1], (nodes + [nodes[-1]] * 8)[:8] if len(nodes) < 8 else nodes[:8]
+        else:
+            raise MeshError(f"has a cell {head[0]} of *{name} with {len(nodes)} nodes.")

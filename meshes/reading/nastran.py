@@ -1,0 +1,244 @@
+"""Bulk data of Nastran, of any field width, with its systems of coordinates."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from meshes.arrays import FloatArray
+from meshes.errors import MeshError
+from meshes.reading.stored import Elements, StoredMesh, number_of, whole_number
+
+__all__ = ["nastran"]
+
+# kind of a cell by its card, and how many nodes of its kind with middles of edges, whose order is VTK's but
+# for the edges between the two ends, which come before those of the upper end
+SOLIDS = {
+    "CHEXA": (8, "hexahedron", 20, "hexahedron20"),
+    "CPENTA": (6, "wedge", 15, "wedge15"),
+    "CTETRA": (4, "tetra", 10, "tetra10"),
+    "CPYRAM": (5, "pyramid", 13, "pyramid13"),
+}
+REORDERED = {
+    "hexahedron20": (*range(12), *range(16, 20), *range(12, 16)),
+    "wedge15": (*range(9), 12, 13, 14, 9, 10, 11),
+}
+EDGES = {  # corners at the ends of each middle node, in VTK's order
+    "hexahedron20": (
+        (0, 1),
+        (1, 2),
+        (2, 3),
+        (3, 0),
+        (4, 5),
+        (5, 6),
+        (6, 7),
+        (7, 4),
+        (0, 4),
+        (1, 5),
+        (2, 6),
+        (3, 7),
+    ),
+    "wedge15": ((0, 1), (1, 2), (2, 0), (3, 4), (4, 5), (5, 3), (0, 3), (1, 4), (2, 5)),
+    "tetra10": ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)),
+    "pyramid13": ((0, 1), (1, 2), (2, 3), (3, 0), (0, 4), (1, 4), (2, 4), (3, 4)),
+}
+MASSES = ("CONM1", "CONM2", "CMASS1", "CMASS2", "CMASS3", "CMASS4")
+SURFACES = (
+    "CQUAD",
+    "CTRI",
+    "CSHEAR",
+    "CBAR",
+    "CBEAM",
+    "CROD",
+    "CONROD",
+    "CTUBE",
+    "CBUSH",
+    "CELAS",
+    "CGAP",
+    "PLOTEL",
+    "RBE",
+    "RBAR",
+    "CBEND",
+    "CWELD",
+    "CFAST",
+)
+REFUSED = {
+    "INCLUDE": "takes a part of the mesh from another file by INCLUDE. Copy its lines into this file.",
+    "BEGIN SUPER": "holds superelements. Write it as one bulk section.",
+    "SEBULK": "holds superelements. Write it as one bulk section.",
+    "EGRID": "makes nodes by EGRID. Write it with all of its GRID cards.",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class _System:
+    """A system of coordinates: R, C or S, its origin (3,) and axes, rows of (3, 3), in the basic one."""
+
+    kind: str
+    origin: FloatArray
+    axes: FloatArray
+
+    def basic(self, place: FloatArray) -> FloatArray:
+        """Return a place (3,), of which angles are in degrees, in the basic system."""
+        a, b, c = place
+        if self.kind == "C":
+            place = np.array([a * np.cos(np.deg2rad(b)), a * np.sin(np.deg2rad(b)), c])
+        if self.kind == "S":  # b is the angle from the third axis
+            theta, phi = np.deg2rad(b), np.deg2rad(c)
+            place = a * np.array([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)])
+        return np.asarray(self.origin + place @ self.axes)
+
+
+BASIC = _System("R", np.zeros(3), np.eye(3))
+
+
+def nastran(path: Path) -> StoredMesh:
+    """Read GRID cards, in their systems of coordinates, and solid elements; a set is a property number.
+
+    Raises
+    ------
+    MeshError
+        If the file includes others, or names what is not there.
+    """
+    cards = list(_cards(path.read_text(encoding="latin-1")))
+    grids, defined, found = {}, {}, Elements()
+    default = next((fields[1] for name, fields in cards if name == "GRDSET"), "")
+    for name, fields in cards:
+        if name == "GRID":
+            number = whole_number(fields[0], "GRID")
+            place = [number_of(text, f"GRID {number}") for text in (fields[2:5] + [""] * 3)[:3]]
+            system = fields[1] or default
+            grids[number] = whole_number(system, f"GRID {number}") if system else 0, np.array(place)
+        elif name.startswith(("CORD1", "CORD2")):
+            for number, one in _definitions(name, fields):
+                defined[number] = one
+    systems = _Systems(defined, grids)
+    points = np.array([systems.place(number) for number in grids]).reshape(-1, 3)
+    numbered = {number: k for k, number in enumerate(grids)}
+    edges: list[FloatArray] = []  # middles of edges that have no node of their own
+    for name, fields in cards:
+        if name in SOLIDS:
+            _add(name, fields, numbered, points, found, edges)
+        elif name in MASSES:
+            found.leave(f"mass ({name})", mass=True)
+        elif name.startswith(SURFACES):
+            found.leave(f"cell of type {name}")
+    return found.stored(np.concatenate([points, *(edge[None] for edge in edges)]))
+
+
+def _cards(text: str) -> Iterator[tuple[str, list[str]]]:
+    """Yield each card's name with its fields from the second on, those of its continuations joined."""
+    lines = text.splitlines()
+    begin = [k for k, line in enumerate(lines) if line.upper().split()[:2] == ["BEGIN", "BULK"]]
+    name, fields = "", []
+    for raw in lines[begin[0] + 1 if begin else 0 :]:
+        line = raw.split("$")[0].rstrip().expandtabs(8)
+        if not line:
+            continue
+        for start, problem in REFUSED.items():
+            if line.upper().split("'")[0].startswith(start):
+                raise MeshError(problem)
+        if line.upper().startswith("ENDDATA"):
+            break
+        first, more = _fields(line)
+        if not first or first[0] in "+*":
+            fields += more
+            continue
+        if name:
+            yield name, fields
+        name, fields = first.rstrip("*").upper(), more
+    if name:
+        yield name, fields
+
+
+def _fields(line: str) -> tuple[str, list[str]]:
+    """Return the first field of a line, and its fields of data: 8 of them, or 4 of 16 characters."""
+    if "," in line:
+        first, *rest = (part.strip() for part in line.split(","))
+        wide = 4 if first.endswith("*") or first.startswith("*") else 8
+        return first, (rest + [""] * wide)[:wide]
+    first = line[:8].strip()
+    width, count = (16, 4) if first.endswith("*") or first.startswith("*") else (8, 8)
+    return first, [line[8 + k * width : 8 + (k + 1) * width].strip() for k in range(count)]
+
+
+def _definitions(
+    name: str, fields: list[str]
+) -> Iterator[tuple[int, tuple[str, int, list[FloatArray] | list[int]]]]:
+    """Yield the number of a system, with its letter, the system it is given in, and three places or nodes."""
+    if name.startswith("CORD2"):
+        numbers = [number_of(text, name) for text in (fields[2:11] + [""] * 9)[:9]]
+        places = [np.array(numbers[k : k + 3]) for k in (0, 3, 6)]
+        yield whole_number(fields[0], name), (name[5:6], whole_number(fields[1] or "0", name), places)
+        return
+    for k in (0, 4):
+        if fields[k : k + 1] not in ([], [""]):
+            nodes = [whole_number(text, name) for text in fields[k + 1 : k + 4]]
+            yield whole_number(fields[k], name), (name[5:6], 0, nodes)
+
+
+class _Systems:
+    """The systems of coordinates of a file, each worked out at its first use."""
+
+    def __init__(
+        self,
+        defined: dict[int, tuple[str, int, list[FloatArray] | list[int]]],
+        grids: dict[int, tuple[int, FloatArray]],
+    ) -> None:
+        self.defined, self.grids, self.known = defined, grids, {0: BASIC}
+
+    def place(self, node: int) -> FloatArray:
+        """Return a node (3,) in the basic system."""
+        if node not in self.grids:
+            raise MeshError(f"has a system of coordinates that names the node {node}, which is not there.")
+        system, place = self.grids[node]
+        return self.system(system).basic(place)
+
+    def system(self, number: int, asked: tuple[int, ...] = ()) -> _System:
+        """Return a system by its number."""
+        if number in self.known:
+            return self.known[number]
+        if number not in self.defined or number in asked:
+            raise MeshError(
+                f"has no system of coordinates {number} (CORD2R, CORD1C, ...) that nodes are given in."
+            )
+        kind, given_in, three = self.defined[number]
+        a, b, c = (
+            self.place(one) if isinstance(one, int) else self.system(given_in, (*asked, number)).basic(one)
+            for one in three
+        )
+        z = (b - a) / np.linalg.norm(b - a)  # b lies on the third axis, c in the plane of the first and third
+        y = np.cross(z, c - a)
+        y /= np.linalg.norm(y)
+        self.known[number] = _System(kind, a, np.array([np.cross(y, z), y, z]))
+        return self.known[number]
+
+
+def _add(
+    name: str,
+    fields: list[str],
+    place: dict[int, int],
+    points: FloatArray,
+    found: Elements,
+    edges: list[FloatArray],
+) -> None:
+    """Add a solid element; middles that are left out of one that has others lie halfway."""
+    corners, kind, all_nodes, fine = SOLIDS[name]
+    nodes = [whole_number(text, f"{name} {fields[0]}") if text else 0 for text in fields[2 : 2 + all_nodes]]
+    missing = [node for node in nodes if node and node not in place]
+    if missing or len(nodes) < corners or not all(nodes[:corners]):
+        what = f"the node {missing[0]}, which is not there" if missing else f"fewer than {corners} corners"
+        raise MeshError(f"has a cell {name} {fields[0]} that names {what}.")
+    names = (f"PID {fields[1] or fields[0]}",)
+    if not any(nodes[corners:]):
+        found.add(kind, tuple(place[node] for node in nodes[:corners]), *names)
+        return
+    nodes += [0] * (all_nodes - len(nodes))
+    nodes = [nodes[k] for k in REORDERED.get(fine, range(all_nodes))]
+    numbers = [place[node] if node else -1 for node in nodes]
+    for k, (a, b) in enumerate(EDGES[fine], corners):
+        if numbers[k] < 0:
+            numbers[k] = len(points) + len(edges)
+            edges.append(0.5 * (points[numbers[a]] + points[numbers[b]]))
+    found.add(fine, tuple(numbers), *names)

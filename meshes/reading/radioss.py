@@ -1,0 +1,111 @@
+"""Starter files of Radioss: nodes and solid elements by part."""
+
+from collections.abc import Iterator
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+
+from meshes.errors import MeshError
+from meshes.reading.stored import Elements, StoredMesh, number_of, whole_number
+
+__all__ = ["radioss"]
+
+SOLIDS = {"BRICK": 8, "TETRA4": 4, "PENTA6": 6, "TETRA10": 10, "BRIC20": 20}
+KINDS = {8: "hexahedron", 4: "tetra", 6: "wedge", 10: "tetra10", 20: "hexahedron20"}
+# /BRIC20 numbers the edges between both ends before those of the upper end
+REORDERED = {20: (*range(12), *range(16, 20), *range(12, 16))}
+OTHERS = ("SHELL", "SH3N", "TRUSS", "BEAM", "SPRING", "QUAD", "TRIA")
+MASSES = ("ADMAS",)
+REFUSED = {
+    "TRANSFORM": "moves nodes by /{0}. Write the deck with the nodes where they are.",
+    "SUBMODEL": "holds a submodel by /{0}. Write it as one model.",
+    "SUBSET/INCLUDE": "takes a part of the mesh from another file by /{0}. Copy its lines into this one.",
+}
+
+
+def radioss(path: Path) -> StoredMesh:
+    """Read /NODE, /BRICK, /TETRA4, /PENTA6, /TETRA10 and /BRIC20; a set is a part, by number and title.
+
+    Raises
+    ------
+    MeshError
+        If the deck includes or moves what it does not hold, or names what is not there.
+    """
+    place: dict[int, int] = {}
+    points: list[list[float]] = []
+    titles: dict[str, str] = {}
+    solids: list[tuple[str, list[int]]] = []
+    found = Elements()
+    for name, lines in _blocks(path.read_text(encoding="latin-1")):
+        for start, problem in REFUSED.items():
+            if name.removeprefix("/").startswith(start):
+                raise MeshError(problem.format(name))
+        kind, _, part = name.partition("/")
+        if kind == "NODE":
+            for line in lines:
+                number, *rest = _split(line, [10, 20, 20, 20])
+                place[whole_number(number, "/NODE")] = len(points)
+                points.append([number_of(text, f"node {number}") for text in (rest + [""] * 3)[:3]])
+        elif kind == "PART" and lines:
+            titles[part.split("/")[0]] = lines[0].strip()
+        elif kind in SOLIDS:
+            solids += [(part, nodes) for nodes in _solids(kind, lines)]
+        elif kind in OTHERS:
+            found.leave(f"line of /{kind}", len(lines))
+        elif kind in MASSES:
+            found.leave(f"mass (/{kind})", mass=True)
+        elif kind == "RWALL":
+            found.leave("wall (/RWALL)")
+    for part, nodes in solids:
+        missing = [node for node in nodes if node not in place]
+        if missing:
+            raise MeshError(
+                f"has a solid of part {part} that names the node {missing[0]}, which is not there."
+            )
+        names = {f"PART {part}", titles.get(part, "")} - {""}
+        found.add(KINDS[len(nodes)], tuple(place[node] for node in nodes), *names)
+    return found.stored(np.array(points, dtype=np.float64).reshape(-1, 3))
+
+
+def _blocks(text: str) -> Iterator[tuple[str, list[str]]]:
+    """Yield each keyword, without its leading stroke, with its lines."""
+    name, lines = "", list[str]()
+    for line in text.splitlines():
+        if line.startswith("#include"):
+            raise MeshError(
+                "takes a part of the mesh from another file by #include. Copy its lines into this one."
+            )
+        if line.startswith("#") or not line.strip():
+            continue
+        if not line.startswith("/"):
+            lines.append(line.rstrip())
+            continue
+        if name:
+            yield name, lines
+        name, lines = line.strip()[1:].upper(), []
+    if name:
+        yield name, lines
+
+
+def _split(line: str, widths: list[int]) -> list[str]:
+    """Return the fields of a line: of fixed widths, or between spaces where they are shorter than these."""
+    parts = line.split()
+    if len(parts) >= len(widths) or len(line) <= widths[0]:
+        return parts
+    ends = np.cumsum([0, *widths])
+    return [line[low:high].strip() for low, high in pairwise(ends)]
+
+
+def _solids(kind: str, lines: list[str]) -> Iterator[list[int]]:
+    """Yield the nodes of each solid; those of ten and twenty nodes go on after the line of their number."""
+    count, numbers = SOLIDS[kind], list[int]()
+    for line in lines:
+        texts = [line[k : k + 10] for k in range(0, len(line), 10)] if len(line) > 80 else line.split()
+        numbers += [whole_number(text, f"/{kind}") for text in texts if text.strip()]
+        if len(numbers) > count:
+            nodes = numbers[1 : count + 1]
+            yield [nodes[k] for k in REORDERED.get(count, range(count))]
+            numbers = []
+    if numbers:
+        raise MeshError(f"ends within a cell of /{kind}.")

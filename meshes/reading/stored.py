@@ -1,0 +1,138 @@
+"""What a mesh file holds: its nodes, its volume cells, their sets, and what of it is left out."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from meshes.arrays import FloatArray, IntArray
+from meshes.errors import MeshError
+
+__all__ = ["NODES", "Elements", "StoredMesh", "counted", "number_of", "whole_number"]
+
+#: Nodes of each kind of volume cell; corners first, then the middles of edges, in VTK's order.
+NODES = {
+    "tetra": 4,
+    "tetra10": 10,
+    "pyramid": 5,
+    "pyramid13": 13,
+    "wedge": 6,
+    "wedge15": 15,
+    "hexahedron": 8,
+    "hexahedron20": 20,
+    "hexahedron27": 27,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class StoredMesh:
+    """The volume cells of a file.
+
+    Attributes
+    ----------
+    points : (n, 3) float64, in the unit of the file
+    blocks : pairs of a kind, a key of `NODES`, and its cells, (m, k) int64
+    sets : by name, numbers of cells, counted through all blocks
+    ignored : what the file holds beside the cells and is left out, one phrase each
+    masses : what of that has a mass
+    """
+
+    points: FloatArray
+    blocks: tuple[tuple[str, IntArray], ...]
+    sets: Mapping[str, IntArray] = field(default_factory=dict)
+    ignored: tuple[str, ...] = ()
+    masses: tuple[str, ...] = ()
+
+
+@dataclass(slots=True)
+class Elements:
+    """Volume cells while a deck is read, by numbers of the deck.
+
+    Attributes
+    ----------
+    kinds : kind of each cell
+    nodes : places of its nodes in the list of points
+    sets : names of sets, with the places of their cells
+    left_out : what is left out, with its count
+    masses : what of that has a mass
+    """
+
+    kinds: list[str] = field(default_factory=list)
+    nodes: list[tuple[int, ...]] = field(default_factory=list)
+    sets: dict[str, list[int]] = field(default_factory=dict)
+    left_out: dict[str, int] = field(default_factory=dict)
+    masses: dict[str, int] = field(default_factory=dict)
+
+    def add(self, kind: str, nodes: tuple[int, ...], *names: str) -> int:
+        """Add a cell that is in sets of those names; return its place."""
+        place = len(self.kinds)
+        self.kinds.append(kind)
+        self.nodes.append(nodes)
+        for name in names:
+            self.sets.setdefault(name, []).append(place)
+        return place
+
+    def leave(self, what: str, count: int = 1, mass: bool = False) -> None:
+        """Count what is left out, in one word or more, and whether it has a mass of its own."""
+        counts = self.masses if mass else self.left_out
+        counts[what] = counts.get(what, 0) + count
+
+    def stored(self, points: FloatArray, *more: str) -> StoredMesh:
+        """Return what was read, cells of one kind together, with ``more`` that is left out."""
+        kinds = np.array(self.kinds)
+        order, blocks = [], []
+        for kind in dict.fromkeys(self.kinds):
+            here = np.flatnonzero(kinds == kind)
+            order.append(here)
+            blocks.append((kind, np.array([self.nodes[k] for k in here], dtype=np.int64)))
+        new = np.empty(len(kinds), dtype=np.int64)
+        new[np.concatenate([*order, np.zeros(0, np.int64)])] = np.arange(len(kinds))
+        sets = {name: np.unique(new[places]) for name, places in self.sets.items() if places}
+        told, masses = (
+            tuple(counted(count, what) for what, count in counts.items())
+            for counts in (self.left_out, self.masses)
+        )
+        return StoredMesh(points, tuple(blocks), sets, (*told, *masses, *more), masses)
+
+
+def counted(count: int, what: str) -> str:
+    """Return "1 cell of type S4R" or "3 cells of type S4R": the first word is the one that is counted."""
+    first, _, rest = what.partition(" ")
+    plural = first if count == 1 else f"{first}es" if first.endswith("s") else f"{first}s"
+    return f"{count} {plural} {rest}".rstrip()
+
+
+def number_of(text: str, where: str) -> float:
+    """Return a number of a deck, "1.5-3", "2.D+4" and blanks, which are 0, included.
+
+    Raises
+    ------
+    MeshError
+        If it is none; ``where`` says what it belongs to.
+    """
+    bare = text.strip().upper().replace("D", "E")
+    try:
+        return float(bare) if bare else 0.0
+    except ValueError:
+        pass
+    for sign in "+-":  # Fortran leaves the E of an exponent out
+        head, _, tail = bare.rpartition(sign)
+        try:
+            return float(f"{head}E{sign}{tail}")
+        except ValueError:
+            continue
+    raise MeshError(f"has {text.strip()!r} for a number of {where}.")
+
+
+def whole_number(text: str, where: str) -> int:
+    """Return a whole number of a deck.
+
+    Raises
+    ------
+    MeshError
+        If it is none; ``where`` says what it belongs to.
+    """
+    try:
+        return int(text)
+    except ValueError:
+        raise MeshError(f"has {text.strip()!r} for a whole number of {where}.") from None

@@ -1,0 +1,108 @@
+"""Universal files of I-DEAS (.unv), as Salome and Gmsh write them: nodes, elements and groups."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from meshes.errors import MeshError
+from meshes.reading.stored import Elements, StoredMesh, number_of
+
+__all__ = ["universal"]
+
+KINDS = {
+    111: "tetra",
+    112: "wedge",
+    113: "wedge15",
+    114: "pyramid",
+    115: "hexahedron",
+    116: "hexahedron20",
+    118: "tetra10",
+}
+LINES = {11, 21, 22, 23, 24}  # beams and rods, of which a line of their section follows
+MASSES = {161}
+# the middles of edges stand between the corners in the order of the walk around each end
+REORDERED = {
+    116: (0, 2, 4, 6, 12, 14, 16, 18, 1, 3, 5, 7, 13, 15, 17, 19, 8, 9, 10, 11),
+    118: (0, 2, 4, 9, 1, 3, 5, 6, 7, 8),
+    113: (0, 2, 4, 9, 11, 13, 1, 3, 5, 10, 12, 14, 6, 7, 8),
+}
+
+
+def universal(path: Path) -> StoredMesh:
+    """Read the sets of data 2411 or 781 (nodes), 2412 (elements) and 2467, 2477 or 2452 (groups).
+
+    Raises
+    ------
+    MeshError
+        If it gives nodes in local systems of coordinates, or names what is not there.
+    """
+    place: dict[int, int] = {}
+    points: list[list[float]] = []
+    cells: dict[int, tuple[int, list[int]]] = {}
+    groups: dict[int, list[str]] = {}
+    local = False
+    for number, lines in _sets(path.read_text(encoding="latin-1")):
+        if number in (2411, 781):
+            for head, line in zip(lines[::2], lines[1::2], strict=False):
+                place[int(head.split()[0])] = len(points)
+                points.append([number_of(line[k : k + 25], "a node") for k in (0, 25, 50)])
+                local |= head.split()[1:2] not in (["0"], ["1"])
+        elif number == 2412:
+            _cells(lines, cells)
+        elif number in (2467, 2477, 2452, 2435):
+            _groups(lines, groups)
+    if local:
+        raise MeshError("gives nodes in local systems of coordinates. Write it in the global one.")
+    found = Elements()
+    for number, (kind, nodes) in cells.items():
+        if kind not in KINDS:
+            found.leave(f"cell of type {kind}", mass=kind in MASSES)
+            continue
+        missing = [node for node in nodes if node not in place]
+        if missing:
+            raise MeshError(f"has a cell {number} that names the node {missing[0]}, which is not there.")
+        nodes = [nodes[k] for k in REORDERED.get(kind, range(len(nodes)))]
+        found.add(KINDS[kind], tuple(place[node] for node in nodes), *groups.get(number, []))
+    return found.stored(np.array(points, dtype=np.float64).reshape(-1, 3))
+
+
+def _sets(text: str) -> Iterator[tuple[int, list[str]]]:
+    """Yield the number of each set of data with its lines."""
+    lines, open_ = list[str](), False
+    for line in text.splitlines():
+        if line.strip() != "-1":
+            lines.append(line)
+            continue
+        if open_ and lines and lines[0].split()[:1] and lines[0].split()[0].isdigit():
+            yield int(lines[0].split()[0]), lines[1:]
+        lines, open_ = [], not open_
+
+
+def _cells(lines: list[str], cells: dict[int, tuple[int, list[int]]]) -> None:
+    at = 0
+    while at < len(lines):
+        head = [int(part) for part in lines[at].split()]
+        at += 1 + (head[1] in LINES)
+        nodes: list[int] = []
+        while len(nodes) < head[5] and at < len(lines):
+            nodes += [int(part) for part in lines[at].split()]
+            at += 1
+        if len(nodes) != head[5]:
+            raise MeshError(f"has a cell {head[0]} with {len(nodes)} nodes instead of {head[5]}.")
+        cells[head[0]] = head[1], nodes
+
+
+def _groups(lines: list[str], groups: dict[int, list[str]]) -> None:
+    """Add the names of groups of elements (of kind 8) by element."""
+    at = 0
+    while at + 1 < len(lines):
+        count, name = int(lines[at].split()[7]), lines[at + 1].strip()
+        at += 2
+        numbers: list[int] = []
+        while len(numbers) < 4 * count and at < len(lines):
+            numbers += [int(part) for part in lines[at].split()]
+            at += 1
+        for kind, element in zip(numbers[::4], numbers[1::4], strict=False):
+            if kind == 8:
+                groups.setdefault(element, []).append(name)

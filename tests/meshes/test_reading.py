@@ -1,0 +1,192 @@
+"""A mesh written in the form of each program and read back: mass, inertia and lowest point are the same."""
+
+import decks
+import numpy as np
+import pytest
+from own_bodies import taper
+
+import meshes
+from meshes import MeshError, own_body, read_own
+from meshes.hexahedra import as_hexahedra
+
+TETRAHEDRA = [[0, 1, 2, 6], [0, 2, 3, 6], [0, 3, 7, 6], [0, 7, 4, 6], [0, 4, 5, 6], [0, 5, 1, 6]]
+WEDGES = [[0, 1, 2, 4, 5, 6], [0, 2, 3, 4, 6, 7]]
+
+
+def cells_of(kind):
+    """Return a tapered bar, in mm, of cells of a kind."""
+    points, cells = taper(cells=(3, 2, 5))
+    split = {"tetra": TETRAHEDRA, "wedge": WEDGES}.get(kind)
+    return 1e3 * points, cells[:, split].reshape(-1, len(split[0])) if split else cells
+
+
+def summary(half):
+    """Return mass, centre and inertia of a half body of density 1, and its lowest point."""
+    part = meshes.cell_moments(half)
+    sums = [part.volume.sum(), part.x.sum(), part.z.sum(), part.xx.sum(), part.zz.sum()]
+    lowest = half.points[np.lexsort(half.points.T.round(9))[0]]
+    scale = sums[0] * np.array([1.0, 0.06, 0.06, 0.06**2, 0.06**2])
+    return np.concatenate([sums / scale, lowest / 0.06])
+
+
+@pytest.mark.parametrize("ending", decks.ENDINGS)
+@pytest.mark.parametrize("kind", ["hexahedron", "tetra", "wedge"])
+def test_every_format_gives_mass_inertia_and_lowest_point(tmp_path, ending, kind):
+    points, cells = cells_of(kind)
+    body = read_own(decks.write(tmp_path / f"bar{ending}", points, cells), 1e-3)
+    made = as_hexahedra(points / 1e3, ((kind, cells),))
+    assert summary(body.half) == pytest.approx(summary(own_body(made.points, made.cells).half), abs=1e-6)
+    assert len(body.half.cells) == {"hexahedron": 30, "tetra": 720, "wedge": 360}[kind]
+
+
+def volume_of(path, stated=None):
+    return 2e9 * meshes.volume(read_own(path, 1e-3, stated).half)
+
+
+def parts(text, moves="", more="", assembly=""):
+    """Return a deck of one part of the bar, standing in an assembly."""
+    body = text.partition("*node")[2].partition("*material")[0]
+    instance = f"*INSTANCE, NAME=Rod-1, PART=rod\n{moves}*END INSTANCE\n"
+    return (
+        f"*PART, NAME=Rod\n*node{body}*END PART\n*ASSEMBLY, NAME=A\n{instance}{more}{assembly}*END ASSEMBLY\n"
+    )
+
+
+def square():
+    """Return a whole bar of 12 x 12 x 60 mm, in mm."""
+    points, cells = taper(end=1.0, cells=(2, 1, 5), whole=True)
+    return 1e3 * points, cells
+
+
+def test_an_instance_is_moved_and_then_turned(tmp_path):
+    points, cells = square()
+    laid = np.stack([points[:, 2], points[:, 1], -points[:, 0]], axis=1)  # turned about y by 90 deg
+    there = laid - [10.0, 3.0, 0.0]
+    moves = "10., 3., 0.\n0., 0., 0., 0., 1., 0., -90.\n"
+    deck = tmp_path / "turned.inp"
+    deck.write_text(parts(decks.abaqus(there, cells), moves))
+    body = read_own(deck, 1e-3)
+    plain = own_body(points / 1e3, cells).half
+    assert summary(body.half) == pytest.approx(summary(plain), abs=1e-9)
+    assert {"Rod-1".upper(), "LOW", "HIGH"} <= set(body.sets)
+
+
+def test_two_instances_are_both_there_and_one_may_be_named(tmp_path):
+    points, cells = square()
+    second = "*INSTANCE, NAME=WALL-1, PART=ROD\n0., 0., -61.\n*END INSTANCE\n"
+    deck = tmp_path / "two.inp"
+    deck.write_text(parts(decks.abaqus(points, cells), more=second))
+    with pytest.raises(MeshError, match=r'in 2 parts .* mesh_sets = \[\.\.\.\] of .*"ROD-1", "WALL-1"'):
+        read_own(deck, 1e-3)
+    assert volume_of(deck, meshes.Stated(sets=("rod-1",))) == pytest.approx(8640.0)
+    with pytest.raises(MeshError, match="has no set of cells 'ROD-2'; it has HIGH, LOW, ROD-1, WALL-1"):
+        read_own(deck, 1e-3, meshes.Stated(sets=("ROD-2",)))
+
+
+def test_reference_points_and_shells_are_told_and_masses_refused(tmp_path):
+    points, cells = square()
+    point = "*NODE\n1, 0., 0., -10.\n*NSET, NSET=RP\n1,\n"
+    deck = tmp_path / "rp.inp"
+    deck.write_text(parts(decks.abaqus(points, cells), assembly=point))
+    body = read_own(deck, 1e-3)
+    assert body.told[0] == "left out: 1 cell of type S3"
+    mass = "*ELEMENT, TYPE=MASS, ELSET=M\n1, 1\n*MASS, ELSET=M\n0.5,\n"
+    deck.write_text(parts(decks.abaqus(points, cells), assembly=point + mass))
+    with pytest.raises(MeshError, match="holds 1 cell of type MASS: mass without volume"):
+        read_own(deck, 1e-3)
+    assert volume_of(deck, meshes.Stated(sets=("ROD-1",))) == pytest.approx(8640.0)
+
+
+@pytest.mark.parametrize(
+    ("line", "reason"),
+    [
+        ("*NGEN\n1, 5, 1", r"makes nodes or cells by \*NGEN"),
+        ("*INCLUDE, INPUT=mesh.inp", r"from another file by \*INCLUDE, 'mesh.inp'"),
+        ("*ELEMENT, TYPE=C3D8\n999, 1, 2, 3, 4, 5, 6, 7, 9999", "a cell 999 that names the node 9999"),
+        ("*ELEMENT, TYPE=CIN3D8\n999, 1, 2, 3, 4, 5, 6, 7, 8", "infinite cells"),
+    ],
+)
+def test_what_an_abaqus_deck_makes_by_rules_is_refused(tmp_path, line, reason):
+    (tmp_path / "a.inp").write_text(decks.abaqus(*square()) + line + "\n")
+    with pytest.raises(MeshError, match=reason):
+        read_own(tmp_path / "a.inp", 1e-3)
+
+
+def test_an_abaqus_system_moves_and_turns_the_nodes_that_follow(tmp_path):
+    points, cells = square()
+    local = np.stack([points[:, 1], -points[:, 0], points[:, 2] - 5.0], axis=1)
+    text = decks.abaqus(local, cells).replace("*node, nset=all", "*SYSTEM\n0,0,5, 0,1,5\n-1,0,5\n*node")
+    (tmp_path / "s.inp").write_text(text)
+    plain = own_body(points / 1e3, cells).half
+    # the second axis of the system is -x: its x axis is y
+    assert summary(read_own(tmp_path / "s.inp", 1e-3).half) == pytest.approx(summary(plain), abs=1e-9)
+
+
+def cylindrical(point):
+    x, y, z = point
+    return np.array([np.hypot(x, y), np.degrees(np.arctan2(y, x)), z])
+
+
+def spherical(point):
+    r = np.linalg.norm(point)
+    around = np.degrees(np.arctan2(point[1], point[0]))
+    return np.array([r, np.degrees(np.arccos(point[2] / r)) if r else 0.0, around])
+
+
+@pytest.mark.parametrize(
+    ("card", "place"),
+    [
+        ("CORD2R,5,,1.,2.,3.,1.,2.,4.,\n,1.,3.,3.", lambda p: np.array([p[1] - 2, 1 - p[0], p[2] - 3])),
+        ("CORD2C,5,,0.,0.,0.,0.,0.,1.,\n,1.,0.,0.", cylindrical),
+        ("CORD2S,5,,0.,0.,0.,0.,0.,1.,\n,1.,0.,0.", spherical),
+    ],
+)
+@pytest.mark.parametrize("default", [False, True])
+def test_nastran_coordinates_are_those_of_their_system(tmp_path, card, place, default):
+    points, cells = square()
+    text = decks.nastran(points, cells, 0 if default else 5, place)
+    more = f"{card}\nGRDSET,,5\n" if default else f"{card}\n"
+    (tmp_path / "c.bdf").write_text(text.replace("ENDDATA", f"{more}ENDDATA"))
+    body = read_own(tmp_path / "c.bdf", 1e-3)
+    assert summary(body.half) == pytest.approx(summary(own_body(points / 1e3, cells).half), abs=1e-9)
+    assert list(body.sets) == ["PID 7"]
+
+
+def test_nastran_fields_of_eight_characters_and_masses(tmp_path):
+    points, cells = square()
+    lines = [f"GRID    {n:8d}        {x:8.3f}{y:8.3f}{z:8.3f}" for n, (x, y, z) in decks.numbered(points)]
+    lines[0] = lines[0].replace("  -6.000", "  -6.0+0")
+    for n, cell in decks.numbered(cells + 1):
+        six, two = "".join(f"{v:8d}" for v in cell[:6]), "".join(f"{v:8d}" for v in cell[6:])
+        lines += [f"CHEXA   {n:8d}{3:8d}{six}+E{n}", f"+E{n}".ljust(8) + two]
+    (tmp_path / "f.nas").write_text("\n".join(lines))
+    assert volume_of(tmp_path / "f.nas") == pytest.approx(8640.0)
+    (tmp_path / "f.nas").write_text("\n".join([*lines, "CONM2,99,1,,2.5"]))
+    with pytest.raises(MeshError, match=r"holds 1 mass \(CONM2\)"):
+        read_own(tmp_path / "f.nas", 1e-3)
+
+
+def test_archives_keep_components_and_lsdyna_titles(tmp_path):
+    points, cells = square()
+    body = read_own(decks.write(tmp_path / "a.cdb", points, cells), 1e-3)
+    assert set(body.sets) <= {"FIRST"}
+    body = read_own(decks.write(tmp_path / "a.k", points, cells), 1e-3)
+    assert set(body.sets) == {"PART 3", "striker"}
+    assert body.told[0] == "left out: 1 wall (*RIGIDWALL_PLANAR)"
+
+
+@pytest.mark.parametrize("ending", [".inp", ".bdf", ".cdb"])
+def test_middles_of_edges_shape_the_body(tmp_path, ending):
+    """Hexahedra of 20 nodes whose outer edges bulge along x by 1 mm hold 2/3 of it more width."""
+    points, cells = taper(end=1.0, cells=(1, 1, 1))
+    points = 1e3 * points
+    ends = [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)]
+    middles = np.array([points[cells[0, list(pair)]].mean(axis=0) for pair in ends])
+    upright = middles[:, 2] == 30.0
+    middles[upright, 0] *= 1.0 + 1.0 / 6.0  # halfway up it is 14 mm wide instead of 12 mm
+    fine = np.concatenate([cells[0], len(points) + np.arange(12)])[None]
+    path = decks.write(tmp_path / f"m{ending}", np.vstack([points, middles]), fine)
+    body = read_own(path, 1e-3, meshes.Stated("half"))
+    assert len(body.half.cells) == 8
+    # the facets between 12 mm and 14 mm: the mean width is 13 mm
+    assert 2e9 * meshes.volume(body.half) == pytest.approx(13.0 * 12.0 * 60.0, rel=1e-9)
