@@ -123,6 +123,12 @@ def read_study(folder: Path) -> StudyRecord:
     for sheet in document["sheets"]:
         if any(len(row) != len(sheet["columns"]) for row in sheet["rows"]):
             raise ResultError(f'{path}: a row of the table "{sheet["name"]}" does not fit its columns.')
+    for at, row in enumerate(document["comparison"]):
+        low, high = row["measured_low"], row["measured_high"]
+        if low is not None and high is not None and low > high:
+            raise ResultError(
+                f"{path}: comparison[{at}].measured_low = {low:g} is above measured_high, {high:g}."
+            )
     rows = tuple(
         Outcome.from_dict(row, source=f"{path}: rows[{at}]") for at, row in enumerate(document["rows"])
     )

@@ -326,6 +326,16 @@ def test_comparison_with_a_text_for_a_number_is_refused(study):
         read_study(study)
 
 
+def test_an_interval_whose_ends_are_exchanged_is_refused(study):
+    rows = result_maker.comparison(("t2",))
+    rows[0] |= {"measured_low": 0.5, "measured_high": 0.25}
+    edit(study, comparison=rows)
+    with pytest.raises(
+        ResultError, match=r"comparison\[0\]\.measured_low = 0.5 is above measured_high, 0.25"
+    ):
+        read_study(study)
+
+
 def test_truncated_study_is_refused(study):
     text = (study / "study.json").read_text()
     (study / "study.json").write_text(text[: len(text) // 2])
