@@ -15,8 +15,11 @@ from .errors import ShapeError, refuse
 from .slenderness import slenderness
 from .turned import CORNER
 
-LEVEL = 1e-9
-"""Share of the length within which places count as equally low."""
+LEVEL = 1e-6
+"""Share of the length within which places count as equally low, and places on a straight line as in it.
+
+Coordinates in a text file of six digits or more lie so near to where they should.
+"""
 HEIGHTS = 400
 """Heights at which the width of the body is tabulated."""
 
@@ -53,7 +56,7 @@ class Faceted:
     def __post_init__(self) -> None:
         if not (self.parts[:, 2] > 0).all() or not np.isfinite(self.parts).all():
             raise ShapeError("each part of a body needs a mass above 0, and finite moments")
-        object.__setattr__(self, "_outline", _hull(self.points[:, [0, 2]]))
+        object.__setattr__(self, "_outline", _hull(self.points[:, [0, 2]], LEVEL * self.length))
         object.__setattr__(self, "_half_widths", self._widths())
 
     @property
@@ -143,14 +146,22 @@ class Faceted:
     def curvature_around(self, alpha: float) -> float:
         """Radius of curvature, m, across the plane of motion at the lowest point; inf along a straight edge.
 
-        It is the largest that a node of a facet there stands for, b^2 / (2 n) at b beside and n above it.
+        It is the largest that a node of a facet there stands for, b^2 / (2 n) at b beside and n above it; of
+        a body on two feet beside its plane of symmetry, b is measured from a foot.
         """
-        height = self.heights(alpha)
-        here = np.flatnonzero((height < LEVEL * self.length) & (self.points[:, 1] <= LEVEL * self.length))
+        height, level, away = self.heights(alpha), LEVEL * self.length, self.beside(alpha)
+        b = np.abs(self.points[:, 1] - away)
+        here = np.flatnonzero((height < level) & (b <= level))
         near = np.unique(self.facets[np.isin(self.facets, here).any(axis=1)])
-        near = near[self.points[near, 1] > LEVEL * self.length]
-        ratio = self.points[near, 1] ** 2 / np.maximum(2.0 * height[near], 1e-300)
-        return math.inf if (height[near] < LEVEL * self.length).any() else float(ratio.max(initial=0.0))
+        near = near[b[near] > level]
+        ratio = b[near] ** 2 / np.maximum(2.0 * height[near], 1e-300)
+        return math.inf if (height[near] < level).any() else float(ratio.max(initial=0.0))
+
+    def beside(self, alpha: float) -> float:
+        """How far, m, the lowest point lies beside the plane of symmetry; 0 but of a body on two feet."""
+        low = self.points[self.heights(alpha) < LEVEL * self.length, 1]
+        least = float(low.min())
+        return least if least > LEVEL * self.length else 0.0
 
     def heights(self, alpha: float) -> Floats:
         """(k,) heights, m, of the nodes of the surface over the lowest of them."""
@@ -158,17 +169,21 @@ class Faceted:
         return np.asarray(height - height.min())
 
     def spread(self, alpha: float, height: float, radii: tuple[float, float]) -> tuple[float, float, float]:
-        """How far, m, nodes no higher than `height`, m, lie beyond a round surface: along -t, t and b.
+        """How far, m, a body no higher than `height`, m, goes beyond a round surface: along -t, t and b.
 
-        `radii` are its principal radii, m, along t and b.
+        `radii` are its principal radii, m, along t and b. Along t corners of the outline count, so that nodes
+        within a straight flank do not.
         """
-        over = self.heights(alpha)
-        low = over <= max(height, LEVEL * self.length)
-        near, (along, side) = self.points[low], np.sqrt(2.0 * np.outer(radii, over[low]))
-        x, z = (float(part) for part in self.contact_point(alpha))
-        t = (near[:, 0] - x) * math.cos(alpha) + (near[:, 2] - z) * math.sin(alpha)
-        beyond = (-t - along, t - along, near[:, 1] - side)
-        back, ahead, beside = (max(float(part.max()), 0.0) for part in beyond)
+        limit = max(height, LEVEL * self.length)
+        sin, cos = math.sin(alpha), math.cos(alpha)
+        t, over = self._outline @ (cos, sin), self._outline @ (-sin, cos)
+        lowest = int(self._lowest(np.array(alpha)))
+        t, over = t - t[lowest], over - over.min()
+        t, along = t[over <= limit], np.sqrt(2.0 * radii[0] * over[over <= limit])
+        nodes = self.heights(alpha)
+        low = nodes <= limit
+        side = self.points[low, 1] - np.sqrt(2.0 * radii[1] * nodes[low])
+        back, ahead, beside = (max(float(part.max()), 0.0) for part in (-t - along, t - along, side))
         return back, ahead, beside
 
     def radius(self, z: Floats) -> Floats:
@@ -197,18 +212,35 @@ class Faceted:
         return np.asarray(np.argmax(np.where(low, x, -np.inf), axis=-1))
 
     def _widths(self) -> tuple[Floats, Floats]:
-        """Return heights and the half width along x there, m, of the facets that cross them."""
+        """Return heights and the half width along x there, m, of the edges of facets that cross them."""
         z = np.linspace(0.0, self.length, HEIGHTS)
-        corners = self.points[self.facets]
-        low, high = corners[:, :, 2].min(axis=1), corners[:, :, 2].max(axis=1)
-        wide = np.abs(corners[:, :, 0]).max(axis=1)
-        slack = 0.5 * self.length / HEIGHTS
-        crossed = (low - slack <= z[:, None]) & (z[:, None] <= high + slack)
-        return z, np.where(crossed, wide, 0.0).max(axis=1)
+        ends = np.stack([self.facets, np.roll(self.facets, -1, axis=1)], axis=-1).reshape(-1, 2)
+        (x, _, low), (u, _, high) = np.moveaxis(self.points[ends], (1, 2), (0, 1))
+        width, slack = np.zeros(HEIGHTS), LEVEL * self.length
+        for k, height in enumerate(z):
+            crossed = (np.minimum(low, high) - slack <= height) & (height <= np.maximum(low, high) + slack)
+            a, b, rise = x[crossed], u[crossed], (high - low)[crossed]
+            level = np.abs(rise) <= slack
+            share = np.clip((height - low[crossed]) / np.where(level, 1.0, rise), 0.0, 1.0)
+            wide = np.where(level, np.maximum(np.abs(a), np.abs(b)), np.abs(a + share * (b - a)))
+            width[k] = wide.max(initial=0.0)
+        return z, width
 
 
-def _hull(places: Floats) -> Floats:
-    """Return the vertices (k, 2) of the convex hull of places (x, z), m, in order around it."""
+def _hull(places: Floats, level: float) -> Floats:
+    """Return the vertices (k, 2) of the convex hull of places (x, z), m, in order around it.
+
+    Those that lie nearer than `level`, m, to the line between their neighbours are left out.
+    """
     from scipy.spatial import ConvexHull
 
-    return np.asarray(places[ConvexHull(places).vertices])
+    line = np.asarray(places[ConvexHull(places).vertices])
+    while len(line) > 3:
+        before, after = np.roll(line, 1, axis=0), np.roll(line, -1, axis=0)
+        (x, z), (u, w) = (after - before).T, (line - before).T
+        away = np.abs(x * w - z * u) / np.hypot(x, z)
+        nearest = int(np.argmin(away))
+        if away[nearest] >= level:
+            break
+        line = np.delete(line, nearest, axis=0)
+    return line

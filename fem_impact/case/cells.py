@@ -43,6 +43,7 @@ ERROR = {"elastic": 0.08, "yielding": 0.25}  # of e and of mu, times the number 
 RIM = 0.4  # cells by which the nodes that are pressed reach beyond the estimated radius, of 38 runs
 COARSEST = 0.7  # of the body's cells: larger ones leave the tip without a fine zone
 THIN = 10.0  # median thickness of a user's cells over that of one that makes the step small
+SAME_PLACE = 1e-6  # of the length, as far as nodes of a user's mesh may lie from where they touch
 FINEST = TIP_SIZE.low  # m
 
 
@@ -78,7 +79,8 @@ def rod_cell(bodies: Bodies) -> float:
     if mesh is None:
         return body_cell(bodies)
     half, (x, z) = mesh.half(), bodies.body.contact_point(bodies.scene.impact.angle)
-    at_contact = np.linalg.norm(half.points - [x, 0.0, z], axis=1) < 1e-9 * bodies.rod.length
+    away = np.hypot(half.points[:, 0] - float(x), half.points[:, 2] - float(z))
+    at_contact = away <= max(float(away.min()), SAME_PLACE * bodies.rod.length)
     touching = np.flatnonzero(at_contact[half.cells].any(axis=1))
     return float(meshes.edge_lengths(half, touching).mean())
 

@@ -87,7 +87,7 @@ def build_geometry(
         rod = meshes.without_slices(rod, rest_points(bodies, rod.body_start))
     points = (rod.mesh.points - lowest) @ turn.T
     if bodies.mesh_inclination > 0:  # an upright body has no side that could strike
-        _require_tip_first(points, zones.base)
+        _require_tip_first(points, zones.base, bodies.rod.own_mesh is not None)
     points[:, 2] += gap if zones.conforming else gap - points[:, 2].min()
     touching, fine = _touching(rod.mesh, points, zones)
     may_yield = {
@@ -137,9 +137,12 @@ def _rod(bodies: Bodies, lowest: Array, zones: list[Zone]) -> RodMesh:
         raise SceneError(f"cannot be meshed: {error}.", key="projectile", remedy=_OTHERWISE) from None
 
 
-def _require_tip_first(points: Array, base: float) -> None:
-    """Raise SceneError where the side of an inclined rod, a polygon in the mesh, lies lower than its tip."""
-    tip = np.hypot(points[:, 0], points[:, 1]) < 1.5 * base
+def _require_tip_first(points: Array, base: float, on_feet: bool) -> None:
+    """Raise SceneError where the side of an inclined rod, a polygon in the mesh, lies lower than its tip.
+
+    A mesh of a user's own may stand ``on_feet`` beside the plane of symmetry.
+    """
+    tip = np.hypot(points[:, 0], 0.0 if on_feet else points[:, 1]) < 1.5 * base
     ahead = float(points[tip, 2].min() - points[:, 2].min())
     if ahead > 1e-6 * base:
         raise SceneError(

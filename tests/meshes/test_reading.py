@@ -190,3 +190,28 @@ def test_middles_of_edges_shape_the_body(tmp_path, ending):
     assert len(body.half.cells) == 8
     # the facets between 12 mm and 14 mm: the mean width is 13 mm
     assert 2e9 * meshes.volume(body.half) == pytest.approx(13.0 * 12.0 * 60.0, rel=1e-9)
+
+
+@pytest.mark.parametrize("kind", ["hexahedron", "tetra", "wedge"])
+def test_nodes_numbered_the_other_way_round_are_put_right_where_all_agree(tmp_path, kind):
+    """As in MED, of which Salome numbers hexahedra with the upper face first."""
+    points, cells = cells_of(kind)
+    order = {"hexahedron": [4, 5, 6, 7, 0, 1, 2, 3], "tetra": [0, 2, 1, 3], "wedge": [3, 4, 5, 0, 1, 2]}[kind]
+    body = read_own(decks.write(tmp_path / "bar.med", points, cells[:, order]), 1e-3)
+    plain = read_own(decks.write(tmp_path / "bar.vtu", points, cells), 1e-3)
+    assert summary(body.half) == pytest.approx(summary(plain.half), abs=1e-12)
+    assert f"the order of the nodes of each {kind} is turned round" in body.told
+
+
+def test_a_missing_library_has_its_own_exit_code(tmp_path, monkeypatch):
+    from fem_impact.errors import MissingLibraryError
+    from fem_impact.scene.own_mesh import OwnMesh
+
+    points, cells = cells_of("hexahedron")
+    mesh = OwnMesh.of(str(decks.write(tmp_path / "bar.exo", points, cells)), "mm")
+    monkeypatch.setitem(__import__("sys").modules, "h5py", None)
+    with pytest.raises(
+        MissingLibraryError, match=r"bar\.exo: a file \.exo is read by the library h5py"
+    ) as told:
+        mesh.body()
+    assert told.value.exit_code == 7

@@ -96,3 +96,49 @@ def test_a_part_without_mass_is_refused():
     one = bar()
     with pytest.raises(ShapeError, match="a mass above 0"):
         Faceted(one.points, one.facets, one.parts * [1, 1, 0, 1, 1, 1, 1])
+
+
+def chamfered(steps):
+    """A bar of 20 mm by 100 mm with chamfers of 3 mm at 45 degrees, with nodes all along them."""
+    slope = np.linspace(0.0, 3e-3, steps + 1)
+    side = np.column_stack([7e-3 + slope, slope])
+    outline = np.vstack([side, [[1e-2, 0.1], [-1e-2, 0.1]], side[::-1] * [-1, 1]])
+    # in a file of six digits
+    outline = (outline + 1e-8 * np.cos(7.0 * np.arange(len(outline)))[:, None]).round(8)
+    outline[:, 1] -= outline[:, 1].min()
+    points = np.concatenate([np.insert(outline, 1, y, axis=1) for y in (0.0, 1e-2)])
+    count = len(outline)
+    ring = np.arange(count)
+    faces = np.stack([ring, np.roll(ring, -1), np.roll(ring, -1) + count, ring + count], axis=1)
+    m = RHO * 2e-6
+    return Faceted(points, faces, np.array([[0.0, 0.1, m, 0.0, 0.05 * m, 3e-5 * m, 3.3e-3 * m]]))
+
+
+@pytest.mark.parametrize("degrees", [10.0, 30.0])
+def test_nodes_within_a_straight_flank_change_nothing(degrees):
+    alpha = np.radians(degrees)
+    coarse, fine = chamfered(1), chamfered(12)
+    assert fine.contact_point(alpha) == pytest.approx(coarse.contact_point(alpha), abs=3e-8)
+    assert fine.tip_curvature(alpha) == coarse.tip_curvature(alpha) == 0.0
+    assert fine.reaches(alpha, 2e-5) == pytest.approx(coarse.reaches(alpha, 2e-5), rel=0.02)
+    for height in (1e-5, 1e-4, 1e-3):
+        many, few = (body.spread(alpha, height, (1e-4, 0.2)) for body in (fine, coarse))
+        assert many == pytest.approx(few, abs=1e-6)
+
+
+def test_a_body_on_two_feet_touches_beside_its_plane():
+    one = bar()
+    points = one.points.copy()
+    points[(points[:, 1] == 0.0) & (points[:, 2] == 0.0), 2] = 2e-4
+    feet, alpha = Faceted(points, one.facets, one.parts), np.radians(10.0)
+    assert one.beside(alpha) == 0.0
+    assert feet.beside(alpha) == pytest.approx(0.01)
+    over = 2e-4 * np.cos(alpha)  # of the middle of the edge over its ends
+    assert feet.curvature_around(alpha) == pytest.approx(0.01**2 / (2 * over), rel=1e-9)
+
+
+def test_the_width_of_a_chamfer_is_that_at_its_height():
+    body = chamfered(1)
+    assert body.radius(np.array([0.0, 1.5e-3, 3e-3, 50e-3])) == pytest.approx(
+        [7e-3, 8.5e-3, 1e-2, 1e-2], abs=1e-4
+    )

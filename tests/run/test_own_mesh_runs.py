@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from own_bodies import taper, write
+from own_bodies import box, taper, write
 
 import meshes
 from fem_impact.case.case import Case
@@ -148,3 +148,21 @@ def test_a_body_that_is_all_nose_is_refused_without_vibration(tmp_path):
     with pytest.raises(SceneError, match="leaves nothing behind the fine zone"):
         Case.of(scene(own, ["friction", "barrier-elastic"], tip_size="0.5 mm"))
     assert Case.of(scene(own, ["vibration", "barrier-elastic"], tip_size="0.5 mm")).slots.vibrating
+
+
+def test_a_quarter_a_half_and_all_of_a_bar_give_one_outcome(tmp_path):
+    """The same cells, given as three files: equal within round-off."""
+    outcomes = []
+    for part, low in (("whole", (-6e-3, -6e-3)), ("half", (-6e-3, 0.0)), ("quarter", (0.0, 0.0))):
+        counts = [2 if side < 0 else 1 for side in low]
+        points, cells = box(*counts, 6, (*low, 0.0), (6e-3, 6e-3, 48e-3))
+        path = write(tmp_path / f"{part}.vtu", points, cells)
+        own = {"mesh": str(path), "mesh_symmetry": part, "material": "rod-steel"}
+        stated = scene(own, ["vibration", "friction", "barrier-rigid"], tip_size="3 mm")
+        outcomes.append(simulate(stated))
+    first = outcomes[0]
+    for again in outcomes[1:]:
+        assert again.restitution.impulse.e == pytest.approx(first.restitution.impulse.e, rel=1e-8)
+        assert again.restitution.mu == pytest.approx(first.restitution.mu, rel=1e-8)
+        assert again.motion.Omega == pytest.approx(first.motion.Omega, rel=1e-8)
+        assert again.energy.vibration == pytest.approx(first.energy.vibration, rel=1e-7)

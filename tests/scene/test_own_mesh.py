@@ -157,3 +157,33 @@ def test_the_same_mesh_is_read_once_and_found_by_its_content(scene, tmp_path):
     mesh = OwnMesh.of(str(tmp_path / "bar.vtu"), "mm")
     assert mesh == scene.projectile.own_mesh
     assert mesh.half() is scene.projectile.own_mesh.half()
+
+
+def chamfered(steps):
+    """A bar of 12 x 12 x 60 mm with chamfers of 2 mm at 45 degrees, so many cells along each."""
+    points, cells = taper(end=1.0, cells=(2 * steps + 2, 2, 8))
+    width = np.concatenate([np.linspace(-6e-3, -4e-3, steps + 1), [0.0], np.linspace(4e-3, 6e-3, steps + 1)])
+    old = np.linspace(-6e-3, 6e-3, len(width))
+    points[:, 0] = np.interp(points[:, 0], old, width)
+    up = np.maximum(np.abs(points[:, 0]) - 4e-3, 0.0)
+    points[:, 2] += up * (1.0 - points[:, 2] / 60e-3)
+    return points, cells
+
+
+def test_a_chamfer_is_accepted_however_fine_its_cells(tmp_path):
+    """Nodes along a chamfer do not lie on the barrier, though they are low."""
+    estimates = []
+    for steps in (1, 4, 12):
+        scene = stated(write(tmp_path / f"bar{steps}.vtu", *chamfered(steps)))
+        bodies = Case.of(scene).bodies
+        estimates.append((bodies.estimate.depth, bodies.estimate.a_t, bodies.estimate.a_b))
+    assert estimates[1] == pytest.approx(estimates[0], rel=1e-6)
+    assert estimates[2] == pytest.approx(estimates[0], rel=1e-6)
+
+
+def test_a_body_on_two_feet_is_planned_with_its_feet_in_the_fine_zone(tmp_path):
+    points, cells = taper(end=1.0, cells=(2, 1, 5))
+    points[(points[:, 1] == 0.0) & (points[:, 2] == 0.0), 2] = 2e-4
+    case = Case.of(stated(write(tmp_path / "feet.vtu", points, cells)))
+    assert case.zones.half[1] > 6e-3
+    assert case.zones.rod_base == pytest.approx(8e-3, rel=0.1)
