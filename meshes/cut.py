@@ -36,6 +36,7 @@ def without_slices(rod: RodMesh, points: FloatArray) -> RodMesh:
         tie=sp.csr_matrix(sp.block_diag([mesh.tie[kept][:, kept], sp.identity(len(points))])),
         faces=new[mesh.faces[outer]],
         face_tag=mesh.face_tag[outer],
+        region=None if mesh.region is None else mesh.region[nose],
     )
     nothing = np.zeros((0, 0), dtype=np.int64)
     layer = new[rod.interface]

@@ -46,6 +46,8 @@ class HexMesh:
         Outer faces, outward normal by the right-hand rule.
     face_tag : (k,) int8
         SKIN, SYMMETRY (plane y = b = 0) or OUTER (artificial boundary of a block).
+    region : (m,) int64 or None
+        Number of the material of each cell; None: all are of one.
     """
 
     points: FloatArray
@@ -54,6 +56,7 @@ class HexMesh:
     tie: sp.csr_matrix
     faces: IntArray
     face_tag: npt.NDArray[np.int8]
+    region: IntArray | None = None
 
     @property
     def is_hanging(self) -> npt.NDArray[np.bool_]:

@@ -81,7 +81,8 @@ def refine(
     outer = forest.tags >= 0
     tie = tie_matrix(len(forest.points), hanging)
     faces, tags = forest.cells[:, FACES][outer], forest.tags[outer]
-    return HexMesh(forest.points, forest.cells, forest.level.astype(np.int8), tie, faces, tags)
+    region = None if mesh.region is None else mesh.region[forest.root]
+    return HexMesh(forest.points, forest.cells, forest.level.astype(np.int8), tie, faces, tags, region)
 
 
 def _marks(forest: Forest, zones: Sequence[Zone], level: int, buffer: int) -> BoolArray:

@@ -100,13 +100,17 @@ def place(
 
 @dataclass(slots=True)
 class Forest:
-    """The mesh while it is refined: its unsplit cells (leaves), and all edges and faces that were split."""
+    """The mesh while it is refined: its unsplit cells (leaves), and all edges and faces that were split.
+
+    ``root`` (m,) is the cell of the mesh in which each leaf lies.
+    """
 
     points: FloatArray
     cells: IntArray
     level: IntArray
     tags: npt.NDArray[np.int8]
     frozen: BoolArray
+    root: IntArray
     snap: Snap | None
     edges: KeyMap = field(default_factory=KeyMap)
     quads: KeyMap = field(default_factory=KeyMap)
@@ -116,7 +120,8 @@ class Forest:
     def plant(cls, mesh: HexMesh, snap: Snap | None, frozen: BoolArray) -> "Forest":
         """Start from an unrefined mesh."""
         tags = match_faces(mesh)
-        return cls(mesh.points.copy(), mesh.cells, mesh.level.astype(np.int64), tags, frozen, snap)
+        level, root = mesh.level.astype(np.int64), np.arange(len(mesh.cells))
+        return cls(mesh.points.copy(), mesh.cells, level, tags, frozen, root, snap)
 
     def on_skin(self) -> BoolArray:
         """(n,) True for nodes of SKIN faces of the leaves."""
@@ -145,6 +150,7 @@ class Forest:
         tags = np.where(CHILD_KEEPS_FACE[None], self.tags[marked][:, None, :], np.int8(-1))
         self.cells = np.concatenate([self.cells[~marked], nodes[:, CHILDREN].reshape(-1, 8)])
         self.level = np.concatenate([self.level[~marked], np.repeat(self.level[marked] + 1, 8)])
+        self.root = np.concatenate([self.root[~marked], np.repeat(self.root[marked], 8)])
         self.tags = np.concatenate([self.tags[~marked], tags.reshape(-1, 6)])
         self.frozen = np.concatenate([self.frozen[~marked], np.zeros(8 * len(parents), np.bool_)])
         self.place_all(np.zeros(len(self.points), np.bool_), first_birth)

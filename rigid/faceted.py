@@ -194,14 +194,16 @@ class Faceted:
         """Whether points at distances `rho` from the axis and heights `z`, m, lie within the outer width."""
         return np.asarray((rho <= self.radius(z)) & (z >= 0.0) & (z <= self.length))
 
-    def sections(self, z: Floats) -> Floats:
+    def sections(self, z: Floats, factor: Floats | float = 1.0) -> Floats:
         """Mass, kg/m, and second moment over x about its centre, kg m, of a metre, (k, 2), of the whole body.
 
-        They are means between heights `z` (k + 1,), m; each part is spread evenly over its own height.
+        They are means between heights `z` (k + 1,), m; each part is spread evenly over its own height. A
+        `factor` of each part (n,) gives other sums than that of masses, such as stiffness.
         """
         low, high = self.parts[:, 0], self.parts[:, 1]
         share = np.clip((np.asarray(z)[:, None] - low) / (high - low), 0.0, 1.0)
-        mass, x, xx = 2.0 * (np.diff(share @ self.parts[:, [2, 3, 5]], axis=0) / np.diff(z)[:, None]).T
+        moments = self.parts[:, [2, 3, 5]] * np.broadcast_to(factor, len(low))[:, None]
+        mass, x, xx = 2.0 * (np.diff(share @ moments, axis=0) / np.diff(z)[:, None]).T
         return np.column_stack([mass, xx - x**2 / mass])
 
     def _lowest(self, alpha: Floats) -> NDArray[np.int64]:

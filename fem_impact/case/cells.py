@@ -31,6 +31,7 @@ from math import ceil, log2, sqrt
 import numpy as np
 
 import meshes
+from fem_impact.arrays import Ints
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.mesh import no_mesh
 from fem_impact.scene.fields import TIP_SIZE
@@ -78,11 +79,17 @@ def rod_cell(bodies: Bodies) -> float:
     mesh = bodies.rod.own_mesh
     if mesh is None:
         return body_cell(bodies)
+    return float(meshes.edge_lengths(mesh.half(), touching_cells(bodies)).mean())
+
+
+def touching_cells(bodies: Bodies) -> Ints:
+    """Return the numbers of the cells of a mesh of its own at the place that touches first."""
+    mesh = bodies.rod.own_mesh
+    assert mesh is not None, "only a mesh has cells of its own"
     half, (x, z) = mesh.half(), bodies.body.contact_point(bodies.scene.impact.angle)
     away = np.hypot(half.points[:, 0] - float(x), half.points[:, 2] - float(z))
     at_contact = away <= max(float(away.min()), SAME_PLACE * bodies.rod.length)
-    touching = np.flatnonzero(at_contact[half.cells].any(axis=1))
-    return float(meshes.edge_lengths(half, touching).mean())
+    return np.flatnonzero(at_contact[half.cells].any(axis=1))
 
 
 @lru_cache(maxsize=256)

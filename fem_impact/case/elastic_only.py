@@ -60,7 +60,7 @@ def require_crushing_named(scene: Scene) -> None:
     named = AUTO not in effects or any(name in effects for name in ("barrier-elastic", "barrier-rigid"))
     for _, material in scene.barrier.strata:
         _refuse_crushed("barrier", material, named, '"barrier-elastic"')
-    for material in [part.material for part in rod.segments] or [rod.material]:
+    for material in rod.materials:
         elastic = AUTO not in effects or "-rod-plasticity" in effects
         _refuse_crushed("projectile", material, elastic, '"-rod-plasticity"')
 

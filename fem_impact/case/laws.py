@@ -27,13 +27,15 @@ def laws(bodies: Bodies) -> dict[str, str]:
 
 def _law(place: str, metal: Material, bodies: Bodies) -> str:
     body = "rod" if place.startswith("projectile") else "barrier"
-    effects, inner = bodies.effects, ".segments[" in place and place != FIRST
+    later, effects = ".segments[" in place and place != FIRST, bodies.effects
+    inner = later or ".mesh_materials." in place
     if body == "barrier" and not bodies.contact.compliant:
         return "rigid, the effect barrier-rigid is on"
     if not metal.yields:
         return "elastic, it states no yield stress"
     if inner or YIELDS[body] not in effects:
-        why = "only the first segment may yield" if inner else f"the effect {YIELDS[body]} is off"
+        first = "first segment" if later else "material that touches"
+        why = f"only the {first} may yield" if inner else f"the effect {YIELDS[body]} is off"
         return f"elastic: {why}"
     rate = _rate(metal.rate) if "rate-hardening" in effects else ", at any strain rate"
     return f"{_curve(metal)}{rate}"

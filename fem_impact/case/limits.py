@@ -7,6 +7,7 @@ from collections.abc import Collection
 from dataclasses import replace
 
 from fem_impact.case.bodies import Bodies
+from fem_impact.case.cells import touching_cells
 from fem_impact.case.plates import is_wider, thin_plate
 from fem_impact.errors import SceneError
 from fem_impact.outcome.limitation import Limitation, limitations
@@ -258,7 +259,19 @@ def require_own_mesh(bodies: Bodies, fidelity: str) -> None:
 
 
 def _require_tip(bodies: Bodies, body: Faceted) -> None:
-    """Refuse a mesh that lays its side along the barrier, or stands upright on a tip beside its axis."""
+    """Refuse a mesh that lays its side along the barrier, or stands upright on a tip beside its axis.
+
+    One that touches with cells of another material than the projectile's is refused too.
+    """
+    if regions := bodies.rod.regions:
+        of = bodies.rod.cell_materials()[touching_cells(bodies)]
+        if of.all():
+            name = regions[int(of[0]) - 1].name
+            raise SceneError(
+                "touches the barrier first, but only the projectile's material may.",
+                key=f"projectile.mesh_materials.{name}",
+                remedy="State its material as projectile.material, and those of the other sets here.",
+            )
     scene, size = bodies.scene, bodies.contact.round_contact
     value, remedy = f"{math.degrees(scene.impact.angle):.4g} deg", "Give another angle, or change the mesh."
     if scene.impact.angle == 0 and body.off_axis() > BESIDE_AXIS * body.diameter:

@@ -279,7 +279,9 @@ def _material_line(scene: Scene) -> str:
     rod = scene.projectile
     parts = [f"{part.material.name} up to {1e3 * part.to:.4g} mm" for part in rod.segments]
     size = f"{1e3 * rod.length:.4g} mm x {1e3 * rod.diameter:.4g} mm"
-    return f"{size} of {', '.join(parts) or rod.material.name}"
+    parts += [f"{one.material.name} ({one.name})" for one in rod.regions]
+    main = [] if rod.segments else [rod.material.name]
+    return f"{size} of {', '.join(main + parts)}"
 
 
 def _contact_lines(case: Case) -> Iterator[str]:

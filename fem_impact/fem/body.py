@@ -109,6 +109,14 @@ def of_materials(body: MeshedBody, place: Array, parts: tuple[tuple[float, Mater
     return replace(body, others=others)
 
 
+def of_regions(body: MeshedBody, region: Ints, materials: list[Material]) -> MeshedBody:
+    """Return a body whose cells of ``region`` (m,) k are of the k-th of ``materials``, 0 of its own."""
+    others = tuple((material, region == number) for number, material in enumerate(materials, 1))
+    for material, here in others:
+        body.mass[here] *= material.rho / body.material.rho
+    return replace(body, others=others)
+
+
 def crossing_of(body: MeshedBody, own: Material) -> Array:
     """Return the time (m,), s, in which a pressure wave crosses each cell of a body of materials."""
     crossing = crossing_times(body.mesh, body.points, own)
@@ -243,6 +251,9 @@ class MeshedBodies:
         parts = self.scene.projectile.segments or (Segment(np.inf, steel),)
         z = g.rod.mesh.points[g.rod.mesh.cells, 2].mean(axis=1)
         rod = of_materials(rod, z, tuple((part.to, part.material) for part in parts))
+        if g.rod.mesh.region is not None:
+            regions = self.scene.projectile.regions
+            rod = of_regions(rod, g.rod.mesh.region, [region.material for region in regions])
         rod, cut = replace(rod, touching=g.touching), self.cut_off
         missing = self.case.bodies.body.mass / 2 - rod.mass.sum() - self.rest_mass
         if cut.any():

@@ -15,6 +15,7 @@ from fem_impact.case.layers import block_of, moved_rows
 from fem_impact.case.size import no_rest
 from fem_impact.case.zones import BUFFER, Corners, Zones
 from fem_impact.errors import SceneError
+from fem_impact.scene.own_mesh import cell_regions
 from meshes import HexMesh, RodMesh, Zone
 from rigid import Projectile, Turned
 
@@ -120,6 +121,8 @@ def _rod(bodies: Bodies, lowest: Array, zones: list[Zone]) -> RodMesh:
     try:
         if own := bodies.rod.own_mesh:
             half = own.half()
+            if names := tuple(region.name for region in bodies.rod.regions):
+                half = replace(half, region=cell_regions(own, names))
             return RodMesh.plain(meshes.refine(half, zones, buffer=BUFFER) if zones else half)
         if isinstance(body, Turned):
             return meshes.turned(
@@ -153,7 +156,9 @@ def _require_tip_first(points: Array, base: float, on_feet: bool) -> None:
 
 
 def _first_segment(bodies: Bodies, mesh: HexMesh) -> Bools:
-    """Return the mask (m,) of the rod's cells in the segment that touches; the others stay elastic."""
+    """Return the mask (m,) of the rod's cells of the material that touches; the others stay elastic."""
+    if mesh.region is not None:
+        return np.asarray(mesh.region == 0)
     segments = bodies.rod.segments
     end = segments[0].to if segments else np.inf
     return np.asarray(mesh.points[mesh.cells, 2].mean(axis=1) < end)

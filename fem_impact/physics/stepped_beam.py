@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fem_impact.arrays import Array
+from fem_impact.arrays import Array, Ints
 
 if TYPE_CHECKING:
     from fem_impact.scene.material import Material
@@ -74,7 +74,7 @@ def sections(rod: ProjectileSpec) -> Sections:
     bore = np.array([z for z, _ in rod.bore])
     z = np.unique(np.concatenate([np.linspace(0.0, rod.length, ELEMENTS + 1), ends[:-1], bore]).round(12))
     if isinstance(body, Faceted):
-        return _faceted(body, z, ends, steels)
+        return _faceted(body, z, rod.materials, rod.cell_materials())
     x, weight = np.polynomial.legendre.leggauss(3)
     place = 0.5 * (z[1:] + z[:-1])[:, None] + 0.5 * np.diff(z)[:, None] * x
     outer, inner = body.radius(place), body.inner_radius(place)
@@ -86,13 +86,16 @@ def sections(rod: ProjectileSpec) -> Sections:
     return Sections(z, *(mean @ weight / 2 for mean in means))
 
 
-def _faceted(body: Faceted, z: Array, ends: Array, steels: list[Material]) -> Sections:
-    """Return the elements of a body of any section, with the shear coefficient of a solid round one."""
-    of = np.minimum(np.searchsorted(ends, 0.5 * (z[1:] + z[:-1])), len(steels) - 1)
+def _faceted(body: Faceted, z: Array, steels: list[Material], of: Ints) -> Sections:
+    """Return the elements of a body of any section, with the shear coefficient of a solid round one.
+
+    ``of`` (m,) says of which of ``steels`` each of its parts is; those side by side bend about the axis of
+    their stiffness.
+    """
     E, nu, rho = (np.array([getattr(steel, key) for steel in steels])[of] for key in ("E", "nu", "rho"))
-    mass, turning = body.sections(z).T
+    (mass, turning), (EA, EI) = body.sections(z).T, body.sections(z, E / rho).T
     shear = shear_coefficient(nu, np.zeros_like(nu)) / (2 * (1 + nu))
-    return Sections(z, E * turning / rho, E * mass / rho, shear * E * mass / rho, mass, turning)
+    return Sections(z, EI, EA, body.sections(z, shear * E / rho)[:, 0], mass, turning)
 
 
 @lru_cache(maxsize=32)

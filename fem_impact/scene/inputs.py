@@ -43,9 +43,11 @@ def materials_of(scene: Scene) -> dict[str, Material]:
     """Return every material of a scene by the dotted key of its section."""
     rod, barrier = scene.projectile, scene.barrier
     parts = {f"projectile.segments[{at}].material": part.material for at, part in enumerate(rod.segments, 1)}
+    regions = {f"projectile.mesh_materials.{one.name}": one.material for one in rod.regions}
     layers = {f"barrier.layers[{at}].material": part.material for at, part in enumerate(barrier.layers, 1)}
     return {
         **(parts or {"projectile.material": rod.material}),
+        **regions,
         **layers,
         "barrier.material": barrier.material,
     }

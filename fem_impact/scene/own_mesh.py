@@ -15,13 +15,13 @@ from fem_impact.scene.checks import check_choice, check_text
 from fem_impact.scene.units import DIMENSIONS
 
 if TYPE_CHECKING:
-    from fem_impact.arrays import Array
+    from fem_impact.arrays import Array, Ints
     from meshes import HexMesh, OwnBody
     from rigid import Faceted
 
 UNITS = tuple(unit.symbol for unit in DIMENSIONS["length"].units)
 PARTS = ("whole", "half", "quarter", "eighth")
-KEYS = ("mesh", "mesh_unit", "mesh_content", "mesh_symmetry", "mesh_tip", "mesh_sets")
+KEYS = ("mesh", "mesh_unit", "mesh_content", "mesh_symmetry", "mesh_tip", "mesh_sets", "mesh_materials")
 TIPS = ("-z", "+z", "-x", "+x", "-y", "+y")
 
 
@@ -139,13 +139,46 @@ def _body(mesh: OwnMesh) -> OwnBody:
 
 
 @lru_cache(maxsize=8)
-def faceted_body(mesh: OwnMesh, density: tuple[tuple[float, float], ...]) -> Faceted:
-    """Return the rigid body of a mesh with densities, kg/m3, up to their ends, m from the tip.
+def cell_regions(mesh: OwnMesh, names: tuple[str, ...]) -> Ints:
+    """Return for each cell (m,) of the half the number, from 1, of the set that holds it; 0 where none does.
 
     Raises
     ------
     SceneError
-        If a cell lies on both sides of the end of a segment.
+        If the file has no such set of cells of the body, or two of them hold one cell.
+    """
+    import numpy as np
+
+    half, sets = mesh.half(), {name.upper(): here for name, here in mesh.body().sets.items()}
+    region = np.zeros(len(half.cells), dtype=np.int64)
+    for number, name in enumerate(names, 1):
+        if name.upper() not in sets:
+            known = ", ".join(sorted(mesh.body().sets)[:12]) or "none"
+            remedy = f"It has {known}."
+            raise SceneError("is no set of cells of the mesh.", key=f"mesh_materials.{name}", remedy=remedy)
+        here = sets[name.upper()]
+        if region[here].any():
+            remedy = f"Leave one of {name} and {names[int(region[here].max()) - 1]} out."
+            problem = f"holds {int((region[here] > 0).sum())} cells that another set holds too."
+            raise SceneError(problem, key=f"mesh_materials.{name}", remedy=remedy)
+        region[here] = number
+    return region
+
+
+@lru_cache(maxsize=8)
+def faceted_body(
+    mesh: OwnMesh,
+    density: tuple[tuple[float, float], ...],
+    regions: tuple[tuple[str, float], ...] = (),
+) -> Faceted:
+    """Return the rigid body of a mesh with densities, kg/m3, up to their ends, m from the tip.
+
+    Sets of the file may have ``regions``, pairs of a name and a density, of their own.
+
+    Raises
+    ------
+    SceneError
+        If a cell lies on both sides of the end of a segment, or as `cell_regions`.
     """
     import numpy as np
 
@@ -158,6 +191,8 @@ def faceted_body(mesh: OwnMesh, density: tuple[tuple[float, float], ...]) -> Fac
     _require_joints(part.low, part.high, ends[:-1])
     middle = 0.5 * (part.low + part.high)
     rho = np.array([value for _, value in density])[np.searchsorted(ends[:-1], middle)]
+    of = cell_regions(mesh, tuple(name for name, _ in regions))
+    rho = np.where(of > 0, np.array([0.0, *(value for _, value in regions)])[of], rho)
     moments = [rho * moment for moment in (part.volume, part.x, part.z, part.xx, part.zz)]
     quads = half.faces_with(meshes.SKIN)
     nodes, facets = np.unique(quads, return_inverse=True)

@@ -12,7 +12,7 @@ from fem_impact.errors import SceneError
 from fem_impact.scene import fields
 from fem_impact.scene.checks import check_choice, check_numbers
 from fem_impact.scene.material import Material
-from fem_impact.scene.own_mesh import OwnMesh, faceted_body
+from fem_impact.scene.own_mesh import OwnMesh, cell_regions, faceted_body
 from fem_impact.scene.shapes import (
     NamedShape,
     Point,
@@ -24,7 +24,7 @@ from fem_impact.scene.shapes import (
 )
 
 if TYPE_CHECKING:
-    from fem_impact.arrays import Array
+    from fem_impact.arrays import Array, Ints
     from rigid import Body, Faceted, Turned
 
 SECTIONS = 400  # over the length, at which a wall is looked at
@@ -45,12 +45,20 @@ class Segment:
 
 
 @dataclass(frozen=True, slots=True)
+class Region:
+    """Cells of a mesh of a material of their own: the set of the file that holds them."""
+
+    name: str
+    material: Material
+
+
+@dataclass(frozen=True, slots=True)
 class ProjectileSpec:
     """The projectile: length, diameter and tip_radius in m; tip A (round nose), B (rounded edge) or plain.
 
     A ``shape`` of its own takes the place of the tip, see `turned` and `meshed`; ``bore`` holds points
     (z, radius), m, of the inner surface. ``segments`` follow each other from the tip; ``material`` is that of
-    the first.
+    the first. Cells of a mesh that are in one of ``regions`` are of its material, the others of ``material``.
     """
 
     length: float
@@ -61,6 +69,7 @@ class ProjectileSpec:
     shape: NamedShape | Profile | OwnMesh | None = None
     bore: tuple[Point, ...] = ()
     segments: tuple[Segment, ...] = ()
+    regions: tuple[Region, ...] = ()
 
     @classmethod
     def turned(
@@ -76,12 +85,19 @@ class ProjectileSpec:
         return cls(length, diameter, "shape", 0.0, material, shape, bore, segments)
 
     @classmethod
-    def meshed(cls, mesh: OwnMesh, material: Material, segments: tuple[Segment, ...] = ()) -> ProjectileSpec:
+    def meshed(
+        cls,
+        mesh: OwnMesh,
+        material: Material,
+        segments: tuple[Segment, ...] = (),
+        regions: tuple[Region, ...] = (),
+    ) -> ProjectileSpec:
         """Return a projectile whose shape is a mesh; length and largest width follow from it."""
         points = mesh.half().points
         wide = max(float(points[:, 0].max() - points[:, 0].min()), 2.0 * float(points[:, 1].max()))
         try:
-            return cls(float(points[:, 2].max()), wide, "shape", 0.0, material, mesh, (), segments)
+            length = float(points[:, 2].max())
+            return cls(length, wide, "shape", 0.0, material, mesh, (), segments, regions)
         except SceneError as error:
             if error.key not in ("length", "diameter"):
                 raise
@@ -131,12 +147,30 @@ class ProjectileSpec:
         bored = inner > 0
         return z[bored], body.radius(z[bored]), inner[bored]
 
+    @property
+    def materials(self) -> list[Material]:
+        """Return all materials, that which touches first."""
+        parts = [part.material for part in self.segments] or [self.material]
+        return parts + [region.material for region in self.regions]
+
+    def cell_materials(self) -> Ints:
+        """Return which of `materials` each cell (m,) of the half of a mesh is of."""
+        import numpy as np
+
+        assert isinstance(self.shape, OwnMesh), "only a mesh has cells of its own"
+        half = self.shape.half()
+        ends = np.array([part.to for part in self.segments[:-1]])
+        of = np.searchsorted(ends, half.points[half.cells, 2].mean(axis=1))
+        regions = cell_regions(self.shape, tuple(region.name for region in self.regions))
+        return np.asarray(np.where(regions > 0, max(len(self.segments), 1) - 1 + regions, of))
+
     def body(self) -> Turned | Faceted:
         """Return the rigid body."""
         parts = self.segments or (Segment(self.length, self.material),)
         density = tuple((part.to, part.material.rho) for part in parts)
         if isinstance(self.shape, OwnMesh):
-            return faceted_body(self.shape, density)
+            of = tuple((region.name, region.material.rho) for region in self.regions)
+            return faceted_body(self.shape, density, of)
         shape = self.shape or RodTip(self.length, self.diameter, self.tip, self.tip_radius)
         return turned_body(shape, self.bore, density)
 

@@ -16,8 +16,9 @@ from fem_impact.scene.barrier import Barrier, Layer
 from fem_impact.scene.checks import check_names
 from fem_impact.scene.impact import WAYS, Impact, the_way
 from fem_impact.scene.library import read_material
+from fem_impact.scene.material import Material
 from fem_impact.scene.pairs import pair_surface
-from fem_impact.scene.projectile import ProjectileSpec, Segment
+from fem_impact.scene.projectile import ProjectileSpec, Region, Segment
 from fem_impact.scene.shapes import (
     HEIGHT,
     RADIUS,
@@ -271,8 +272,21 @@ def _of_mesh(table: Table, own: dict[str, Any]) -> ProjectileSpec:
     check_keys(table, (*own_mesh.KEYS, "material"))
     if own["bore"]:
         raise SceneError("stands beside a mesh, which has its own.", key="bore", remedy="Leave it out.")
-    mesh = own_mesh.stated(table)
-    return ProjectileSpec.meshed(mesh, within(table, "material", read_material), own["segments"])
+    mesh, stated = own_mesh.stated(table), table.get("mesh_materials", {})
+    if not isinstance(stated, Mapping):
+        remedy = 'Write mesh_materials = { CORE = "lead" }, a set of the file and its material.'
+        raise SceneError("must be a table.", key="mesh_materials", value=stated, remedy=remedy)
+    if stated and own["segments"]:
+        raise SceneError("stands beside segments.", key="mesh_materials", remedy="State one of them.")
+    regions = tuple(Region(name, _region(stated[name], name)) for name in stated)
+    return ProjectileSpec.meshed(mesh, within(table, "material", read_material), own["segments"], regions)
+
+
+def _region(material: Any, name: str) -> Material:
+    try:
+        return within({"material": material}, "material", read_material)
+    except SceneError as error:
+        raise error.under(f"mesh_materials.{name}") from None
 
 
 def _named_shape(table: Table, own: dict[str, Any]) -> ProjectileSpec:

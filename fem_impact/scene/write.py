@@ -82,7 +82,9 @@ def _shape(rod: ProjectileSpec) -> dict[str, Any]:
     if isinstance(shape, OwnMesh):
         named = {"mesh_symmetry": shape.symmetry, "mesh_tip": shape.tip, "mesh_sets": list(shape.sets)}
         file = {"mesh": shape.path, "mesh_unit": shape.unit, "mesh_content": shape.content}
-        return file | {key: value for key, value in named.items() if value}
+        regions = {one.name: _material(one.material) for one in rod.regions}
+        materials = {"mesh_materials": regions} if regions else {}
+        return file | {key: value for key, value in named.items() if value} | materials
     return {"tip": rod.tip, **_written(rod, fields.PROJECTILE)}
 
 

@@ -18,6 +18,7 @@ from fem_impact.fem.hexmodes import reference_gradients
 from fem_impact.scene.material import Material
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
+from meshes import HexMesh
 
 
 def modes_of(model: Model, count: int = DEFAULT_COUNT) -> RodModes:
@@ -108,14 +109,17 @@ def centre_gradients(points: Array, cells: Ints) -> Array:
     return np.asarray(np.einsum("ai,mji->maj", centre, np.linalg.inv(J)))
 
 
-def cell_shear(bodies: Bodies, z: Array, depth: Array) -> Array:
-    """Return the shear moduli, Pa, of the rod's cells at ``z`` (k,), m, then the barrier's at ``depth``."""
-    rod = bodies.rod
-    metals = [part.material for part in rod.segments] or [rod.material]
-    strata = bodies.barrier.strata
+def cell_shear(bodies: Bodies, mesh: HexMesh, depth: Array) -> Array:
+    """Return the shear moduli, Pa, of the cells of the rod's mesh, then of the barrier's at ``depth``, m."""
+    rod, strata = bodies.rod, bodies.barrier.strata
+    z, metals = mesh.points[mesh.cells, 2].mean(axis=1), rod.materials
+    if mesh.region is not None:
+        own = np.array([lame_constants(m.E, m.nu)[1] for m in metals])[mesh.region]
+    else:
+        own = _shear([part.to for part in rod.segments[:-1]], metals, z)
     return np.concatenate(
         [
-            _shear([part.to for part in rod.segments[:-1]], metals, z),
+            own,
             _shear([end for end, _ in strata[:-1]], [material for _, material in strata], depth),
         ]
     )
@@ -169,7 +173,7 @@ class FieldSampler:
             points = np.concatenate([points, g.barrier.points])
             places = np.concatenate([places, model.layout.barrier])
         body = (np.arange(len(cells)) >= len(g.rod.mesh.cells)).astype(np.int8)
-        shear = cell_shear(bodies, g.rod.mesh.points[g.rod.mesh.cells, 2].mean(axis=1), depth)
+        shear = cell_shear(bodies, g.rod.mesh, depth)
         return cls(model, view, shear, points, cells, body, places, centre_gradients(points, cells))
 
     def sample(self, state: State) -> tuple[dict[str, Array], dict[str, Array]]:
