@@ -8,6 +8,7 @@ from functools import cached_property
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.cells import coarse_tip, thin_cells
 from fem_impact.case.choose import Decision, all_effects, choices, decide, neglected, require_approach
+from fem_impact.case.effects.loss import require_closed_form
 from fem_impact.case.effects.registry import AUTO, EFFECTS, NAMES, check_effects
 from fem_impact.case.effects.slots import ModelSpec
 from fem_impact.case.elastic_only import require_crushing_named
@@ -74,6 +75,7 @@ class Case:
         require_point(case.bodies)
         slots = case.slots
         require_layers(case.bodies, fidelity)
+        require_closed_form(case.bodies, slots, fidelity)
         if fidelity == "solid":
             case._require_mesh(slots)
         return case

@@ -20,32 +20,38 @@ LEFT_OUT = {
     "brittle": "A ceramic or a glass cracks instead of yielding; cracks are not followed, nor the energy "
     "that they take.",
     "ground": f"Concrete, rock and soil are crushed and crack; neither is followed, {UPPER}.",
-    "plastic": "A plastic is viscous, and flows where it is pressed hard: the energy that this takes is "
-    f"left out, {UPPER}.",
-    "rubber": "Rubber does not crack: it is viscous, and its stiffness changes with strain and rate. What "
-    f"it loses inside is left out, {UPPER}.",
+    "plastic": "A plastic is viscous, and flows where it is pressed hard.",
+    "rubber": "Rubber does not crack: it is viscous, and its stiffness changes with strain and rate.",
     "wood": "Wood is viscous, and another material along the grain than across; here it is the same in all "
-    f"directions. What it loses inside is left out, {UPPER}.",
+    "directions.",
 }
 SOFT = (1e8, 2e10)  # Pa: E up to which a body is as soft as a rubber, or as a plastic or a wood
 UNSORTED = (
-    "A body so soft is viscous, as rubbers and foams are, and does not crack: what it loses inside is left "
-    f"out, {UPPER}.",
-    "So soft are plastics, woods and weak concretes: they are viscous, or are crushed. What that takes is "
-    f"left out, {UPPER}.",
+    "A body so soft is viscous, as rubbers and foams are, and does not crack.",
+    "So soft are plastics, woods and weak concretes: they are viscous, or are crushed.",
     "A metal flows, a ceramic, a glass or a rock cracks: neither is followed, nor the energy that it "
     f"takes, {UPPER}.",
 )
+VISCOUS = ("plastic", "rubber", "wood")
+NOT_TAKEN = f" What it loses inside is left out, {UPPER}."
+NOT_STATED = NOT_TAKEN + " State loss_factor, which the rigid and the reduced model take."
+TAKEN = " Its loss_factor says what it loses inside; nothing else of this is followed."
 CRUSHED = (
     "crushes and cracks under a contact, and no law of that is known here. An elastic answer leaves out "
     f"crushing, cracks and spall with the energy that they take, {UPPER} and forces are too high."
 )
 
 
-def left_out(material: Material) -> str:
-    """Return what an elastic answer leaves out of a material, by its family, or by how soft it is."""
+def left_out(material: Material, taken: bool = False) -> str:
+    """Return what an elastic answer leaves out of a material, by its family, or by how soft it is.
+
+    `taken` says whether the model takes the material's loss factor.
+    """
     kind = kind_of(family_of(material))
-    return LEFT_OUT[kind] if kind else UNSORTED[sum(material.E > limit for limit in SOFT)]
+    nature = LEFT_OUT[kind] if kind else UNSORTED[sum(material.E > limit for limit in SOFT)]
+    if not (kind in VISCOUS or nature in UNSORTED[:2]):
+        return nature
+    return nature + (NOT_STATED if material.loss_factor is None else TAKEN if taken else NOT_TAKEN)
 
 
 def require_crushing_named(scene: Scene) -> None:

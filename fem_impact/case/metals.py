@@ -45,7 +45,8 @@ def _metals(bodies: Bodies) -> dict[str, Material]:
 def _body(body: str, metal: Material, bodies: Bodies) -> str:
     used, effects = body == "rod" or bodies.contact.compliant, bodies.scene.effects
     if used and not metal.yields:
-        return f"The {body} ({metal.name}) has no yield stress and stays elastic. {left_out(metal)}"
+        lost = left_out(metal, "contact-loss" in bodies.effects)
+        return f"The {body} ({metal.name}) has no yield stress and stays elastic. {lost}"
     rate_wanted = "rate-hardening" in effects or ("auto" in effects and "-rate-hardening" not in effects)
     if YIELDS[body] in bodies.effects and rate_wanted and rate_law(metal) is None:
         return (

@@ -55,7 +55,7 @@ class ModalResult:
     force : largest normal force, N
     finished, reason : whether the impact is over, and why the march ended
     separated : whether the tip had left the barrier for good, or until another point struck
-    record : (m, 15) what moved over time, see `fem_impact.modal.motion`; no rows where none was wanted
+    record : (m, 16) what moved over time, see `fem_impact.modal.motion`; no rows where none was wanted
     step, steps, wall, cpu : s, -, s, s
     """
 
@@ -69,6 +69,7 @@ class ModalResult:
     friction: float
     plastic: float
     skin: float
+    viscous: float
     stored: float
     plate: float
     barrier: float
@@ -109,7 +110,10 @@ def solve(
         progress(setting_up(case.max_time, case.scene.id))
         if not compiled_before("march.integrate_impact"):
             progress(compiling(case.max_time, COMPILE))
-    rod, law = modal_rod(case.bodies, case.slots.vibrating), contact_law(case.contact)
+    rod, law = (
+        modal_rod(case.bodies, case.slots.vibrating),
+        contact_law(case.contact, case.slots.contact_loss),
+    )
     flow = flow_law(case.contact, case.slots.rod_law, case.slots.barrier_law)
     contacts = np.zeros((MOST_CONTACTS, 4))
     start, modes = _start(case, rod), Modes(rod.omega, rod.along_t, rod.along_n)
@@ -119,7 +123,7 @@ def solve(
     dt = step * min(case.estimate.duration / STEPS, FASTEST / fastest)
     bounds = Bounds(dt, horizon(case.scene.projectile), case.max_time, widest)
     # compiles, or fetches what was compiled before, so that times are times of the impact
-    record = np.zeros((MOST_ROWS if recorded else 0, 15))
+    record = np.zeros((MOST_ROWS if recorded else 0, 16))
     integrate_impact(start, law, flow, modes, rod.others, bounds._replace(horizon=0.0), contacts, record[:0])
     wall, cpu = time.perf_counter(), time.process_time()
     end = integrate_impact(start, law, flow, modes, rod.others, bounds, contacts, record)
@@ -146,7 +150,15 @@ def _result(
     barrier = 0.5 * (scene.barrier.mass or 0.0) * float(base_n**2 + base_t**2)
     barrier += 0.5 * (scene.barrier.inertia or 0.0) * float(base_spin**2)
     given = barrier + tally[SUM.plate]
-    spent = _kinetic(rod, *motion) + energies.sum() + friction + plastic + sum(end.held) + given
+    spent = (
+        _kinetic(rod, *motion)
+        + energies.sum()
+        + friction
+        + plastic
+        + tally[SUM.viscous]
+        + sum(end.held)
+        + given
+    )
     fell = fall(case.slots.gravity, end.time, contacts[: end.touches, :2])
     V_n, V_t = motion[0] + fell * cos(scene.impact.angle), motion[1] + fell * sin(scene.impact.angle)
     kinetic = _kinetic(rod, V_n, V_t, motion[2])
@@ -161,6 +173,7 @@ def _result(
         friction=friction,
         plastic=plastic,
         skin=skin,
+        viscous=tally[SUM.viscous],
         stored=sum(end.held),
         plate=tally[SUM.plate],
         barrier=barrier,

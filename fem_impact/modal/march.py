@@ -34,11 +34,16 @@ from fem_impact.physics.flow_law import FlowLaw
 
 
 @inlined
-def press(depth: float, law: ContactLaw) -> tuple[float, float]:
-    """Return Hertz' normal force, N, and contact radius, m."""
+def press(depth: float, rate: float, law: ContactLaw) -> tuple[float, float, float]:
+    """Return the normal force, N, contact radius, m, and the part of the force that is viscous, N.
+
+    The whole is Hertz' and the viscous one at a ``rate`` of the depth, m/s, or 0 where that would pull.
+    """
     if depth <= 0.0:
-        return 0.0, 0.0
-    return law.stiffness * depth**1.5, np.sqrt(law.R * depth)
+        return 0.0, 0.0, 0.0
+    elastic = law.stiffness * depth**1.5
+    viscous = max(1.5 * law.stiffness * law.lag * np.sqrt(depth) * rate, -elastic) if law.lag > 0.0 else 0.0
+    return elastic + viscous, np.sqrt(law.R * depth), viscous
 
 
 @allocating_kernel
@@ -69,9 +74,9 @@ def grip(springs: Springs, moved: float, F: float, a: float, law: ContactLaw) ->
 
 
 @inlined
-def stored(depth: float, F: float, springs: Springs, law: ContactLaw) -> tuple[float, float]:
-    """Return the energies, J, that the contact holds: Hertz' above the crater, and that of its springs."""
-    total = 0.0
+def stored(depth: float, springs: Springs, law: ContactLaw) -> tuple[float, float]:
+    """Return the energies, J, that the contact holds: Hertz', and that of its springs."""
+    total, F = 0.0, law.stiffness * max(depth, 0.0) ** 1.5
     for i in range(len(springs.shift)):
         total += springs.width[i] * springs.shift[i] ** 2
     return 0.4 * F * depth, 0.25 * law.shear * total
@@ -192,19 +197,24 @@ def ahead(
     others: Others,
     turns: tuple[Array, Array],
     bounds: Bounds,
+    law: ContactLaw,
     flow: FlowLaw,
     groove: Groove,
+    depth: float,
 ) -> tuple[int, int]:
-    """Fly on until something strikes or to the horizon; return the steps and what strikes.
+    """Fly on from a depth, m, until something strikes or to the horizon; return the steps and what strikes.
 
-    Gravity has no part in that: a rod that falls back strikes anew.
+    A viscous contact that has parted is no strike as its dent swells behind it. Gravity has no part in that:
+    a rod that falls back strikes anew.
     """
     steps = 0
     while steps * bounds.step < bounds.horizon:
         fly(now, modes.omega, turns, bounds.step, 0.0, 0.0)
         steps += 1
+        before = depth
         _, depth, place = followed(now, start, modes)
-        if meets(groove, depth, place, flow) if flow.yields else depth > 0.0:
+        swelling = press(depth, (depth - before) / bounds.step, law)[0] <= 0.0
+        if meets(groove, depth, place, flow) if flow.yields else not swelling:
             return steps, TIP
         if steps % LOOK == 0:
             struck = strikes(now, others)
@@ -220,16 +230,18 @@ def meet(
     springs: Springs,
     groove: Groove,
     depth: float,
+    rate: float,
     place: float,
     moved: float,
 ) -> tuple[float, float]:
     """Return normal and tangential force, N, at a depth and place, m, of a tip that has ``moved``, m.
 
-    The first is 0 where nothing touches, and below 0 where friction on a steep flank holds a leaving tip.
+    ``rate``, m/s, is that of the depth. The first is 0 where nothing touches, and below 0 where friction on
+    a steep flank holds a leaving tip.
     """
     if flow.yields:
         return slide(groove, depth, place, flow)
-    F, a = press(depth, law)
+    F, a, _ = press(depth, rate, law)
     return (F, -grip(springs, moved, F, a, law)) if F > 0.0 else (0.0, 0.0)
 
 
@@ -304,10 +316,10 @@ def integrate_impact(
     """Follow a rod from first contact until nothing strikes in the free flight ahead, or another point does.
 
     ``contacts`` (MOST_CONTACTS, 4), zeros, are filled with start, end, s, and impulses along n and t, N s;
-    ``record`` (m, 15), zeros, with what moved over time; it may have no rows.
+    ``record`` (m, 16), zeros, with what moved over time; it may have no rows.
     """
     rows, every = 0, 1
-    dt, k, tally = bounds.step, len(modes.omega), np.zeros(9)
+    dt, k, tally = bounds.step, len(modes.omega), np.zeros(10)
     turns = np.cos(modes.omega * dt), np.sin(modes.omega * dt)
     rigid = np.zeros(13)
     rigid[:4] = start.v_n, start.v_t, start.omega, start.radius - start.centre_n
@@ -316,18 +328,23 @@ def integrate_impact(
     springs, groove = springs_over(bounds.reach), smooth(bounds.reach)
     gap, before, pressed, wait = max(MERGE_GAP, 1.5 * dt), 0.0, False, 0.0
     time, last, steps, count, struck, late = 0.0, 0.0, 0, 0, NOTHING, False
-    depth, force = 0.0, (0.0, 0.0)
+    depth, drag, force = 0.0, 0.0, (0.0, 0.0)
     while time - last < bounds.horizon:
+        was, dragged = depth, drag
         arm, depth, place = followed(now, start, modes)
-        force = meet(law, flow, springs, groove, depth, place, place - before)
+        rate = (depth - was) / dt if steps else 0.0
+        force = meet(law, flow, springs, groove, depth, rate, place, place - before)
+        drag = press(depth, rate, law)[2]
+        tally[SUM.viscous] += 0.5 * (drag + dragged) * (depth - was)
         struck = strikes(now, others) if steps % LOOK == LOOK - 1 else NOTHING
         touches = force[0] != 0.0
         late = touches and time > bounds.latest
         if len(record) and steps % every == 0:
             row = record[rows]
             work = enter(row, now, start, modes, arm, (dt * force[0], dt * force[1]), tally)
-            held = stored_energy(groove, flow) if flow.yields else stored(depth, force[0], springs, law)
+            held = stored_energy(groove, flow) if flow.yields else stored(depth, springs, law)
             enter_contact(row, time, force, held, groove.works, work[1], flow.yields)
+            row[ROW.viscous] = tally[SUM.viscous]
             rows, every = thinned(record, rows + 1, every)
         if touches:
             span = 0.5 * dt if late or struck != NOTHING else dt  # a half brings v to the time of the places
@@ -345,7 +362,7 @@ def integrate_impact(
             break
         if pressed and not touches:
             flight = ModalState(rigid.copy(), now.q.copy(), now.rate.copy())
-            flown, struck = ahead(flight, start, modes, others, turns, bounds, flow, groove)
+            flown, struck = ahead(flight, start, modes, others, turns, bounds, law, flow, groove, depth)
             steps += flown
             if struck != TIP:
                 wait = flown * dt
@@ -354,11 +371,14 @@ def integrate_impact(
         tally[SUM.gravity] += start.mass * fly(now, modes.omega, turns, dt, start.g_t, start.g_n)
         time += dt
         steps += 1
-    held = stored_energy(groove, flow) if flow.yields else stored(depth, force[0], springs, law)
+    held = stored_energy(groove, flow) if flow.yields else stored(depth, springs, law)
     if flow.yields:
         tally[SUM.flow : SUM.friction + 1] = groove.works
     else:
         # the normal spring gives back what it stores by itself, the tangential ones out of friction
         tally[SUM.friction] = -tally[SUM.work_t] - held[1]
     over = struck in (NOTHING, TIP) and not late
+    if over and law.lag > 0.0:  # the dent that is left swells without a push
+        tally[SUM.viscous] += held[0]
+        held = (0.0, held[1])
     return ModalEnd(now, tally, held, time, steps, count, struck, wait, over, rows)

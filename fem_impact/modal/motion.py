@@ -39,10 +39,10 @@ class MotionIndex(NamedTuple):
 
 
 class TallyIndex(NamedTuple):
-    """Where each sum of a march stands in its array (9,).
+    """Where each sum of a march stands in its array (10,).
 
     The largest depth, m, and force, N; works, J, of the normal and the tangential force, of gravity, on a
-    plate, of normal flow, of shear flow under the contact, and of friction.
+    plate, of normal flow, of shear flow under the contact, of friction, and of a viscous contact.
     """
 
     depth: int = 0
@@ -54,14 +54,15 @@ class TallyIndex(NamedTuple):
     flow: int = 6
     shear: int = 7
     friction: int = 8
+    viscous: int = 9
 
 
 class RowIndex(NamedTuple):
-    """Where each number stands in a row (15,) of the record.
+    """Where each number stands in a row (16,) of the record.
 
     Time, s, forces, N, velocities of the rod, m/s and rad/s; energies, J, of its rigid motion, of the motion
     and the strain of its modes; plastic work, friction, what the contact holds, the barrier's motion, what a
-    plate took, and the work of gravity, J.
+    plate took, the work of gravity, and what a viscous contact took, J.
     """
 
     time: int = 0
@@ -79,6 +80,7 @@ class RowIndex(NamedTuple):
     barrier: int = 12
     plate: int = 13
     gravity: int = 14
+    viscous: int = 15
 
 
 AT, SUM, ROW = MotionIndex(), TallyIndex(), RowIndex()
@@ -170,7 +172,7 @@ class ModalEnd(NamedTuple):
     Attributes
     ----------
     motion : then
-    tally : (9,) largest depth and force, works, see `TallyIndex`
+    tally : (10,) largest depth and force, works, see `TallyIndex`
     held : energy in the contact and in its springs, J, 0 but for a run that was cut off
     time, steps, touches : s, number of steps, of contacts
     struck : place in `Others` of the point that strikes first, or `NOTHING`; after ``wait``, s

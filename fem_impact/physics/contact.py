@@ -120,6 +120,12 @@ class ContactPair:
         """The materials that deform: a rigid barrier has no share in the contact's compliance."""
         return [self.rod] + [self.barrier] * self.compliant
 
+    @property
+    def loss_factor(self) -> float:
+        """Loss factor of the contact: those of the materials by their shares of its compliance."""
+        soft = [(metal, (1 - metal.nu**2) / metal.E) for metal in self.deforming]
+        return sum((metal.loss_factor or 0.0) * part for metal, part in soft) / sum(part for _, part in soft)
+
     @cached_property
     def arms(self) -> tuple[float, float]:
         """(d_c, d_d), m; an upright rod strikes with its whole face, so d_c is 0."""

@@ -12,6 +12,7 @@ from math import inf, pi, sqrt
 from typing import NamedTuple
 
 from fem_impact.physics.contact import LIMIT_PRESSURE, ContactPair
+from fem_impact.physics.viscous import relaxation
 
 # s: contacts with a shorter gap count as one; a few passages of a wave across the tip
 MERGE_GAP = 10e-6
@@ -30,6 +31,7 @@ class ContactLaw(NamedTuple):
     slope : dF/dd beyond it, N/m
     shear : tangential stiffness over contact radius, N/m2
     friction : Coulomb's f
+    lag : theta of a viscous contact, s, see `fem_impact.physics.viscous`; 0 without loss
     """
 
     R: float
@@ -41,17 +43,20 @@ class ContactLaw(NamedTuple):
     slope: float
     shear: float
     friction: float
+    lag: float = 0.0
 
 
-def contact_law(pair: ContactPair) -> ContactLaw:
-    """Return the contact law of two bodies."""
+def contact_law(pair: ContactPair, loss_factor: float | None = None) -> ContactLaw:
+    """Return the contact law of two bodies, viscous with a loss factor."""
     size, E_star, soft = pair.estimate, pair.modulus, pair.softer
     R = sqrt(size.R1 * size.R2)
     limit = LIMIT_PRESSURE * soft.yield_stress if soft else inf
     stiffness = 4 / 3 * E_star * sqrt(R)
     depth = (pi * limit / (2 * E_star)) ** 2 * R
     force = stiffness * depth**1.5
-    return ContactLaw(R, E_star, limit, stiffness, depth, force, pi * limit * R, pair.shear_stiffness, pair.f)
+    slope, shear = pi * limit * R, pair.shear_stiffness
+    lag = relaxation(loss_factor, pair.elastic.estimate.duration) if loss_factor else 0.0
+    return ContactLaw(R, E_star, limit, stiffness, depth, force, slope, shear, pair.f, lag)
 
 
 def restitution(law: ContactLaw, mass: float, speed: float) -> float:

@@ -6,7 +6,7 @@ import time
 from dataclasses import replace
 from functools import partial
 from math import isinf
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import rigid
 from fem_impact.case.effects.heating import halves
@@ -14,9 +14,10 @@ from fem_impact.outcome.groups import Energy, Heat, Markers, RodMotion, RunCost
 from fem_impact.outcome.keys import Unknown, known, unknown
 from fem_impact.outcome.limitation import limitations
 from fem_impact.outcome.record import Outcome
-from fem_impact.physics.contact_law import contact_law
+from fem_impact.physics.contact_law import ContactLaw, contact_law
 from fem_impact.physics.contact_law import restitution as thornton
 from fem_impact.physics.flash import closed_form
+from fem_impact.physics.viscous import viscous_restitution
 from fem_impact.run.assemble import ImpactEnd, Reduction
 from fem_impact.run.common import MASSIVE, after, heat, plastic_shares
 
@@ -45,8 +46,8 @@ ASSUMPTIONS = (
 def rigid_outcome(case: Case) -> Outcome:
     """Return the outcome by rigid impulse-momentum theory; what the theory does not give is unknown."""
     rod = case.bodies.body
-    e, source = _normal_restitution(case)
-    path, wall, cpu = _timed_path(case.contact, e)
+    loss = _normal_loss(case)
+    path, wall, cpu = _timed_path(case.contact, loss.e)
     V_n, V_t, Omega = (float(velocity) for velocity in path.motion)
     base = _barrier_gain(case, V_n, V_t)
     reduction = Reduction.of(
@@ -66,7 +67,7 @@ def rigid_outcome(case: Case) -> Outcome:
             reason="A rigid impact is over at once.",
         ),
     )
-    energy = _energy(case, path, reduction.motion, base)
+    energy = _energy(case, path, loss.viscous, reduction.motion, base)
     thermal = unknown(Heat, UNKNOWN)
     if case.slots.heat:
         friction_work = known(energy.friction) * energy.E_0
@@ -82,7 +83,7 @@ def rigid_outcome(case: Case) -> Outcome:
         choices=Unknown(UNKNOWN),
         unmeshed=UNKNOWN,
         omitted=OMITTED,
-        limited=limitations("model", source, *ASSUMPTIONS, *plate, *heated),
+        limited=limitations("model", loss.source, *ASSUMPTIONS, *plate, *heated),
     )
 
 
@@ -104,21 +105,43 @@ def _timed_path(pair: ContactPair, e: float) -> tuple[rigid.SlidingPath, float, 
     return path, time.perf_counter() - wall, time.process_time() - cpu
 
 
-def _normal_restitution(case: Case) -> tuple[float, str]:
-    """Return the energetic restitution and the sentence that names its source."""
+class NormalLoss(NamedTuple):
+    """Energetic restitution, the viscous part of the loss along the normal, and where they come from."""
+
+    e: float
+    viscous: float
+    source: str
+
+
+def _normal_loss(case: Case) -> NormalLoss:
+    """Return the stated restitution, or Thornton's of what flows times that of a viscous contact."""
     restitution, law = case.scene.restitution, contact_law(case.contact)
     if restitution is not None:
-        return restitution, f"Restitution {restitution:g} (energetic) is the scene's own."
-    if isinf(law.limit):
-        return 1.0, "Restitution 1: no body of the scene may yield, and Hertz' contact loses nothing."
-    e = thornton(law, case.contact.effective_mass, case.contact.approach)
-    return e, (
-        f"Restitution {e:.3f} (energetic) by Thornton's law (1997, doi:10.1115/1.2787319) with the limiting "
-        f"pressure {law.limit / 1e6:.0f} MPa, 2.8 times the softer yield stress."
+        return NormalLoss(restitution, 0.0, f"Restitution {restitution:g} (energetic) is the scene's own.")
+    loss, flows = case.slots.contact_loss, not isinf(law.limit)
+    plastic = thornton(law, case.contact.effective_mass, case.contact.approach) if flows else 1.0
+    e = plastic * viscous_restitution(loss or 0.0)
+    viscous = (plastic**2 - e**2) / (1 - e**2) if loss else 0.0
+    return NormalLoss(e, viscous, _told(e, law, loss))
+
+
+def _told(e: float, law: ContactLaw, loss: float | None) -> str:
+    """Return where a restitution comes from."""
+    thorntons = (
+        "by Thornton's law (1997, doi:10.1115/1.2787319) with the limiting "
+        f"pressure {law.limit / 1e6:.0f} MPa, 2.8 times the softer yield stress"
     )
+    viscous = f"by the viscous loss of the contact, loss factor {loss:.3g} (Willert 2020)" if loss else ""
+    if isinf(law.limit) and not loss:
+        return "Restitution 1: no body of the scene may yield, and Hertz' contact loses nothing."
+    ways = [thorntons] * (not isinf(law.limit)) + [viscous] * bool(loss)
+    return f"Restitution {e:.3f} (energetic) {', and '.join(ways)}."
 
 
-def _energy(case: Case, path: rigid.SlidingPath, m: RodMotion, base: tuple[float, float]) -> Energy:
+def _energy(
+    case: Case, path: rigid.SlidingPath, viscous: float, m: RodMotion, base: tuple[float, float]
+) -> Energy:
+    """Return the shares of E_0; ``viscous`` is the part of the loss along the normal that does not flow."""
     before, body = case.scene.relative, {"mass": m.mass, "k2": m.k_squared}
     start = rigid.kinetic_energy(before.v_n, before.v_t, before.omega, **body)
     V_n, V_t, Omega = after(m)
@@ -126,7 +149,8 @@ def _energy(case: Case, path: rigid.SlidingPath, m: RodMotion, base: tuple[float
     pushed = 0.5 * (case.scene.barrier.mass or 0.0) * (base[0] ** 2 + base[1] ** 2)
     mass = case.contact.reduced[0]
     normal, tangential = (mass * sum(w) for w in (path.normal_work, path.tangential_work))
-    plastic_rod, plastic_barrier = plastic_shares(case, float(-normal / start))
+    lost = float(-normal / start)
+    plastic_rod, plastic_barrier = plastic_shares(case, (1 - viscous) * lost)
     return replace(
         unknown(Energy, UNKNOWN),
         E_0=float(start),
@@ -134,6 +158,7 @@ def _energy(case: Case, path: rigid.SlidingPath, m: RodMotion, base: tuple[float
         friction=float(-tangential / start),
         plastic_rod=plastic_rod,
         plastic_barrier=plastic_barrier,
+        damping=viscous * lost if case.slots.contact_loss else Unknown(UNKNOWN),
         barrier=MASSIVE if case.scene.barrier.mass is None else float(pushed / start),
         residual=float((start + normal + tangential - end - pushed) / start),
     )

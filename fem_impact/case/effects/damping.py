@@ -11,25 +11,32 @@ if TYPE_CHECKING:
     from fem_impact.case.bodies import Bodies
 
 
-# upper end of 2e-4 to 6e-4 for iron, Cremer, Heckl & Petersson 2005, doi:10.1007/b137728 (read as quoted in
-# manuals of engineering programs, halved to viscous ratios)
+# where the rod's material states none: upper end of 2e-4 to 6e-4 for iron, Cremer, Heckl & Petersson 2005,
+# doi:10.1007/b137728 (read as quoted in manuals of engineering programs, halved to viscous ratios)
 LOSS_FACTOR = 6e-4
+
+
+def loss_factor(bodies: Bodies) -> float:
+    """Return the loss factor of the rod's modes: the largest that its materials state, or that of iron."""
+    rod = bodies.rod
+    stated = [part.material.loss_factor for part in rod.segments] or [rod.material.loss_factor]
+    return max((one for one in stated if one is not None), default=LOSS_FACTOR)
 
 
 def number(bodies: Bodies) -> float:
     """Return the share of the vibration that is damped while the impact lasts, eta omega_1 (tau + T1)."""
     period = bodies.bending_period
-    return 2 * pi * LOSS_FACTOR * (bodies.estimate.duration + period) / period
+    return 2 * pi * loss_factor(bodies) * (bodies.estimate.duration + period) / period
 
 
 def fill(bodies: Bodies, spec: ModelSpec) -> None:
     """Set the loss factor."""
-    spec.loss_factor = LOSS_FACTOR
+    spec.loss_factor = loss_factor(bodies)
 
 
 EFFECT = Effect(
     "material-damping",
-    f"The rod's modes are damped (loss factor {LOSS_FACTOR:g}).",
+    f"The rod's modes are damped (the loss factor of its material, or {LOSS_FACTOR:g}).",
     "The rod's material does not damp.",
     "eta omega_1 (tau + T1), damped share of the vibration",
     0.05,

@@ -10,6 +10,7 @@ from fem_impact.case.effects import (
     friction,
     gravity,
     heating,
+    loss,
     plasticity,
     plate,
     radiation,
@@ -38,6 +39,7 @@ EFFECTS: dict[str, Effect] = {
         gravity.EFFECT,
         rotation.EFFECT,
         damping.EFFECT,
+        loss.EFFECT,
         heating.EFFECT,
     )
 }

@@ -28,6 +28,7 @@ class ModelSpec:
     bending : phase speed, m/s, of the bending waves that leave at the edges of one that is, or None
     gravity : acceleration, m/s2, or None
     loss_factor : of the rod's vibration, or None
+    contact_loss : loss factor of the contact, or None
     heat : the contact's heat is computed
     turning_frame : the rod's linear part follows its rotation
     """
@@ -44,6 +45,7 @@ class ModelSpec:
     bending: float | None = None
     gravity: float | None = None
     loss_factor: float | None = None
+    contact_loss: float | None = None
     heat: bool = False
     turning_frame: bool = False
 

@@ -82,8 +82,13 @@ def all_on(scene: Scene) -> Scene:
 
 def _impossible(scene: Scene) -> set[str]:
     """Return the effects of which the scene does not state what they are about."""
-    skin = set() if scene.surface.skin_depth else {"machined-skin"}
-    return skin if scene.barrier.bends else skin | {"plate-bending"}
+    viscous = scene.projectile.material.loss_factor or scene.barrier.material.loss_factor
+    has = {
+        "machined-skin": bool(scene.surface.skin_depth),
+        "contact-loss": bool(viscous),
+        "plate-bending": scene.barrier.bends,
+    }
+    return {name for name, stated in has.items() if not stated}
 
 
 def row(name: str, auto: Outcome, whole: Outcome) -> list[Cell]:

@@ -169,4 +169,5 @@ def test_thresholds_are_those_that_the_page_names():
         "large-rotation": 0.01,
         "material-damping": 0.05,
         "contact-heating": 0.1,
+        "contact-loss": 0.02,
     }
