@@ -15,6 +15,7 @@ from meshes.hexmesh import OUTER, SKIN, SYMMETRY, HexMesh
 from meshes.moments import CellMoments, cell_moments
 from meshes.own import TIPS, OwnBody, Stated, own_body, read_own
 from meshes.quality import Quality, edge_lengths, quality, thicknesses, volume
+from meshes.reading.includes import included
 from meshes.refine import refine
 from meshes.rod import RodMesh, rod
 from meshes.sphere import pole_edge, sphere
@@ -44,6 +45,7 @@ __all__ = [
     "contact_radius",
     "drawn_depths",
     "edge_lengths",
+    "included",
     "own_body",
     "pole_edge",
     "quality",

@@ -11,6 +11,7 @@ import numpy as np
 from meshes.arrays import BoolArray, FloatArray, IntArray
 from meshes.errors import MeshError
 from meshes.gauss import jacobians_of
+from meshes.reading.stored import counted
 from meshes.split import edge_keys
 from meshes.topology import CORNERS, FACES
 
@@ -126,15 +127,30 @@ def as_hexahedra(points: FloatArray, blocks: tuple[tuple[str, IntArray], ...]) -
             f"its {count} cells ({', '.join(names)}) are split about their middles into "
             f"{sum(len(cells) for _, cells, _ in made)} hexahedra"
         )
-    cells = []
-    for kind in KINDS.values():
-        own = [one for one, here, _ in ((c, k, n) for k, c, n in made) if here is kind]
-        if own and _inside_out(points, np.concatenate(own)):
-            told.append(f"the order of the nodes of each {kind.name} is turned round")
-            made = [(k, c[:, TURNED] if k is kind else c, n) for k, c, n in made]
-    cells = [here for _, here, _ in made]
-    numbers = [here for _, _, here in made]
-    return Hexahedra(points, np.concatenate(cells), np.concatenate(numbers), tuple(told))
+    cells, parent = (np.concatenate([part[k] for part in made]) for k in (1, 2))
+    of = np.concatenate([np.full(len(part), list(KINDS.values()).index(kind)) for kind, part, _ in made])
+    outside_in = (np.linalg.det(jacobians_of(points, cells)) < 0.0).all(axis=1)
+    for number, kind in enumerate(KINDS.values()):
+        turned = _agreed(outside_in & (of == number), of == number, parent, kind)
+        if turned.any():
+            cells[turned] = cells[turned][:, TURNED]
+            count = len(np.unique(parent[turned]))
+            all_ = len(np.unique(parent[of == number]))
+            which = f"each {kind.name}" if count == all_ else f"{count} of {all_} cells of type {kind.name}"
+            told.append(f"the order of the nodes of {which} is turned round")
+    return Hexahedra(points, cells, parent, tuple(told))
+
+
+def _agreed(outside_in: BoolArray, own: BoolArray, parent: IntArray, kind: _Kind) -> BoolArray:
+    """Return the mask (m,) of the hexahedra of a kind whose order of nodes may be put right.
+
+    A tetrahedron or wedge whose parts are all inside out is numbered the other way round, whatever the others
+    are. Hexahedra of a file that are inside out are that only if all of them are.
+    """
+    if kind is HEXAHEDRON:
+        return outside_in if outside_in.sum() == own.sum() else np.zeros_like(own)
+    parts, bad = (np.bincount(parent[here], minlength=parent.max() + 1) for here in (own, outside_in))
+    return np.asarray(own & ((parts > 0) & (parts == bad))[parent])
 
 
 def _starts(blocks: tuple[tuple[str, IntArray], ...]) -> list[int]:
@@ -146,10 +162,7 @@ def _groups(block: tuple[str, IntArray], first: int) -> list[tuple[_Kind, IntArr
     name, cells = block
     numbers = first + np.arange(len(cells))
     if name.startswith("pyramid"):
-        raise MeshError(
-            f"holds {len(cells)} pyramids, which cannot be split into hexahedra. Mesh the body with "
-            "hexahedra, wedges or tetrahedra alone."
-        )
+        raise _no_pyramids(len(cells))
     kind = next(kind for kind in KINDS.values() if name.startswith(kind.name))
     if kind is not HEXAHEDRON:
         return [(kind, cells, numbers)]
@@ -162,12 +175,22 @@ def _groups(block: tuple[str, IntArray], first: int) -> list[tuple[_Kind, IntArr
         if len(here):
             low = np.array([_tetra(cells[k]) if count == 4 else _wedge(cells[k]) for k in here])
             found.append((TETRA if count == 4 else WEDGE, low, numbers[here]))
+    if pyramids := int((distinct == 5).sum()):
+        raise _no_pyramids(pyramids)
     if other := int((~np.isin(distinct, (4, 6, 8))).sum()):
         raise MeshError(
-            f"holds {other} hexahedra whose nodes fall together, but not to a wedge or a tetrahedron. Mesh "
-            "the body with hexahedra, wedges or tetrahedra alone."
+            f"holds {counted(other, 'cell')} of eight nodes that fall together, but not to a wedge or a "
+            "tetrahedron. Mesh the body with hexahedra, wedges or tetrahedra alone."
         )
     return found
+
+
+def _no_pyramids(count: int) -> MeshError:
+    told = counted(count, "pyramid")
+    return MeshError(
+        f"holds {told}, which cannot be split into hexahedra. Mesh the body with hexahedra, wedges or "
+        "tetrahedra alone."
+    )
 
 
 def _tetra(cell: IntArray) -> list[int]:
@@ -202,7 +225,9 @@ def _split(
     for (kind, cells, _), here in zip(groups, at, strict=True):
         count = len(kind.edges)
         if cells.shape[1] >= kind.corners + count:  # curved: the file's own middles
-            middles[here] = points[cells[:, kind.corners : kind.corners + count]]
+            own_middles = cells[:, kind.corners : kind.corners + count]
+            given = own_middles >= 0
+            middles[here[given]] = points[own_middles[given]]
     first_edge, first_face = len(points), len(points) + len(edges)
     faces = _Faces(points, middles)
     shares = [faces.add(kind, cells, here) for (kind, cells, _), here in zip(groups, at, strict=True)]
@@ -273,10 +298,3 @@ class _Faces:
         """Return for each face added the number of its middle, and the middles (k, 3)."""
         _, first, at = np.unique(np.concatenate(self.keys), axis=0, return_index=True, return_inverse=True)
         return at.reshape(-1), np.concatenate(self.places)[first]
-
-
-def _inside_out(points: FloatArray, cells: IntArray) -> bool:
-    """Return whether all of the hexahedra have a negative volume about each Gauss point."""
-    volume: FloatArray = np.linalg.det(jacobians_of(points, cells))
-    negative: BoolArray = volume < 0.0
-    return bool(negative.all())

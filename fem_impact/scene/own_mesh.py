@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -110,13 +109,13 @@ def stated(table: Mapping[str, Any]) -> OwnMesh:
 
 
 def _content(path: str) -> str:
-    """Return the SHA-256 of a file, and of the file of an XDMF that holds its numbers."""
+    """Return the SHA-256 of a file and of those that it takes parts from."""
+    from meshes import included
+
     try:
         content = Path(path).read_bytes()
-        if Path(path).suffix.lower() in (".xdmf", ".xmf"):
-            for name in sorted(set(re.findall(rb">\s*([^<>:]+\.h5):", content))):
-                content += Path(path).with_name(name.decode()).read_bytes()
-        return hashlib.sha256(content).hexdigest()
+        parts = [one.read_bytes() for one in included(Path(path))]
+        return hashlib.sha256(b"".join([content, *parts])).hexdigest()
     except OSError as error:
         reason = "there is no such file" if isinstance(error, FileNotFoundError) else str(error.strerror)
         remedy = "Name a mesh file, from the place of the scene's file."

@@ -8,6 +8,7 @@ import numpy as np
 
 from meshes.arrays import FloatArray
 from meshes.errors import MeshError
+from meshes.reading.includes import full_text
 from meshes.reading.stored import NODES, Elements, StoredMesh, number_of, whole_number
 
 __all__ = ["abaqus"]
@@ -31,7 +32,6 @@ MAKERS = (
     "NMAP",
     "ELGEN",
     "ELCOPY",
-    "SUBMODEL",
     "IMPORT",
     "SYMMETRIC MODEL GENERATION",
 )
@@ -71,10 +71,10 @@ def abaqus(path: Path) -> StoredMesh:
     Raises
     ------
     MeshError
-        If the deck makes nodes or cells by rules, includes other files, or names what is not there.
+        If the deck makes nodes or cells by rules, or names what is not there.
     """
     deck = _Deck()
-    for card in _cards(path.read_text(encoding="latin-1")):
+    for card in _cards(full_text(path, "abaqus")):
         deck.take(card)
     return deck.stored()
 
@@ -127,7 +127,7 @@ class _Deck:
                 f"makes nodes or cells by *{name}, which is not read. Write the deck with all of them, as "
                 "Abaqus/CAE and PrePoMax do."
             )
-        if name == "INCLUDE" or ("INPUT" in card.options and name in ("NODE", "ELEMENT", "ELSET")):
+        if "INPUT" in card.options and name in ("NODE", "ELEMENT", "ELSET"):
             other = card.options.get("INPUT", "")
             raise MeshError(
                 f"takes a part of the mesh from another file by *{name}, {other!r}. Name that file as mesh "
@@ -246,6 +246,9 @@ class _Deck:
             named = {n: m for n, sets in self.assembly_sets.items() for to, m in sets if to == name}
             bodies.append((name, own, one.moves, part.sets | named))
         used = {one.part for one in self.instances.values()}
+        if not self.instances:  # a part alone stands where its nodes are
+            bodies += [(name, part, [], part.sets) for name, part in self.parts.items()]
+            used = set(self.parts)
         more += [f"the part {name}, of which there is no instance" for name in self.parts if name not in used]
         for name, body, moves, sets in bodies:
             points.append(
@@ -265,7 +268,9 @@ def _placed(
     for one, numbers in sets.items():
         for number in set(numbers):
             members.setdefault(number, []).append(one)
-    for number, (kind, nodes) in body.cells.items():
+    for number, (kind, all_nodes) in body.cells.items():
+        # CalculiX gives nodes of its own to the incompatible modes of C3D8I
+        nodes = all_nodes[:8] if kind == "C3D8I" else all_nodes
         told = _volume(kind, len(nodes))
         if told is None:
             found.leave(f"cell of type {kind}", mass=kind.startswith(MASSES))
@@ -328,8 +333,9 @@ def _volume(kind: str, nodes: int) -> str | None:
             raise MeshError(f"holds {what} cells ({kind}), which are no solid. Leave them out of the file.")
     if not kind:
         raise MeshError("has *ELEMENT without TYPE. Name the type of its cells, such as C3D8.")
-    if kind.startswith("C3D") or _count_of(kind):
-        if nodes not in BY_COUNT:
-            raise MeshError(f"has a cell of type {kind} with {nodes} nodes, which is no solid that is known.")
-        return BY_COUNT[nodes]
-    return None
+    count = _count_of(kind)
+    if not kind.startswith("C3D") and not count:
+        return None
+    if nodes != count:
+        raise MeshError(f"has a cell of type {kind} with {nodes} nodes, which is no solid that is known.")
+    return BY_COUNT[count]

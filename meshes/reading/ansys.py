@@ -53,7 +53,8 @@ def ansys(path: Path) -> StoredMesh:
         words = [word.strip() for word in line.split("!")[0].split(",")]
         name = words[0].upper()
         if name == "ET":
-            archive.types[whole_number(words[1], "ET")] = whole_number(re.sub(r"\D", "", words[2]), "ET")
+            if words[1].isdigit():  # those of contact are numbered by a parameter
+                archive.types[int(words[1])] = whole_number(re.sub(r"\D", "", words[2]), "ET")
         elif name == "ETBLOCK":
             _types(lines, archive)
         elif name == "NBLOCK":
@@ -151,7 +152,8 @@ def _stored(archive: _Archive) -> StoredMesh:
                 f"cell of type {kind}" if kind else "cell outside of solid blocks", mass=kind in MASSES
             )
             continue
-        found.add(told, tuple(archive.nodes[node] for node in nodes), *sets.get(number, []))
+        numbers = tuple(archive.nodes[node] if node else -1 for node in nodes)
+        found.add(told, numbers, *sets.get(number, []))
     return found.stored(np.array(archive.points, dtype=np.float64).reshape(-1, 3))
 
 

@@ -7,13 +7,14 @@ from pathlib import Path
 import numpy as np
 
 from meshes.errors import MeshError
+from meshes.reading.includes import full_text
 from meshes.reading.stored import Elements, StoredMesh, number_of, whole_number
 
 __all__ = ["lsdyna"]
 
 REFUSED = {
-    "INCLUDE": "takes a part of the mesh from another file by *{0}. Name that file as mesh if it holds all "
-    "nodes and cells, or copy its lines into this one.",
+    "INCLUDE_": "takes a part of the mesh from another file by *{0}, which is not read. Copy its lines into "
+    "this one.",
     "NODE_TRANSFORM": "moves nodes by *{0}. Write the deck with the nodes where they are.",
     "NODE_MERGE": "merges nodes by *{0}. Write the deck with merged nodes.",
     "NODE_SCALAR": "has nodes by *{0}, which are not read. Leave them out.",
@@ -38,7 +39,7 @@ def lsdyna(path: Path) -> StoredMesh:
     titles: dict[int, str] = {}
     solids: list[tuple[int, list[int]]] = []
     found = Elements()
-    for name, long, lines in _keywords(path.read_text(encoding="latin-1")):
+    for name, long, lines in _keywords(full_text(path, "lsdyna")):
         for start, problem in REFUSED.items():
             if name.startswith(start):
                 raise MeshError(problem.format(name))

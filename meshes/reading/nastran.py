@@ -8,6 +8,7 @@ import numpy as np
 
 from meshes.arrays import FloatArray
 from meshes.errors import MeshError
+from meshes.reading.includes import full_text
 from meshes.reading.stored import Elements, StoredMesh, number_of, whole_number
 
 __all__ = ["nastran"]
@@ -23,25 +24,6 @@ SOLIDS = {
 REORDERED = {
     "hexahedron20": (*range(12), *range(16, 20), *range(12, 16)),
     "wedge15": (*range(9), 12, 13, 14, 9, 10, 11),
-}
-EDGES = {  # corners at the ends of each middle node, in VTK's order
-    "hexahedron20": (
-        (0, 1),
-        (1, 2),
-        (2, 3),
-        (3, 0),
-        (4, 5),
-        (5, 6),
-        (6, 7),
-        (7, 4),
-        (0, 4),
-        (1, 5),
-        (2, 6),
-        (3, 7),
-    ),
-    "wedge15": ((0, 1), (1, 2), (2, 0), (3, 4), (4, 5), (5, 3), (0, 3), (1, 4), (2, 5)),
-    "tetra10": ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)),
-    "pyramid13": ((0, 1), (1, 2), (2, 3), (3, 0), (0, 4), (1, 4), (2, 4), (3, 4)),
 }
 MASSES = ("CONM1", "CONM2", "CMASS1", "CMASS2", "CMASS3", "CMASS4")
 SURFACES = (
@@ -64,7 +46,6 @@ SURFACES = (
     "CFAST",
 )
 REFUSED = {
-    "INCLUDE": "takes a part of the mesh from another file by INCLUDE. Copy its lines into this file.",
     "BEGIN SUPER": "holds superelements. Write it as one bulk section.",
     "SEBULK": "holds superelements. Write it as one bulk section.",
     "EGRID": "makes nodes by EGRID. Write it with all of its GRID cards.",
@@ -101,7 +82,7 @@ def nastran(path: Path) -> StoredMesh:
     MeshError
         If the file includes others, or names what is not there.
     """
-    cards = list(_cards(path.read_text(encoding="latin-1")))
+    cards = list(_cards(full_text(path, "nastran")))
     grids, defined, found = {}, {}, Elements()
     default = next((fields[1] for name, fields in cards if name == "GRDSET"), "")
     for name, fields in cards:
@@ -116,15 +97,14 @@ def nastran(path: Path) -> StoredMesh:
     systems = _Systems(defined, grids)
     points = np.array([systems.place(number) for number in grids]).reshape(-1, 3)
     numbered = {number: k for k, number in enumerate(grids)}
-    edges: list[FloatArray] = []  # middles of edges that have no node of their own
     for name, fields in cards:
         if name in SOLIDS:
-            _add(name, fields, numbered, points, found, edges)
+            _add(name, fields, numbered, found)
         elif name in MASSES:
             found.leave(f"mass ({name})", mass=True)
         elif name.startswith(SURFACES):
             found.leave(f"cell of type {name}")
-    return found.stored(np.concatenate([points, *(edge[None] for edge in edges)]))
+    return found.stored(points)
 
 
 def _cards(text: str) -> Iterator[tuple[str, list[str]]]:
@@ -215,15 +195,8 @@ class _Systems:
         return self.known[number]
 
 
-def _add(
-    name: str,
-    fields: list[str],
-    place: dict[int, int],
-    points: FloatArray,
-    found: Elements,
-    edges: list[FloatArray],
-) -> None:
-    """Add a solid element; middles that are left out of one that has others lie halfway."""
+def _add(name: str, fields: list[str], place: dict[int, int], found: Elements) -> None:
+    """Add a solid element; middles of edges that are left out have no place."""
     corners, kind, all_nodes, fine = SOLIDS[name]
     nodes = [whole_number(text, f"{name} {fields[0]}") if text else 0 for text in fields[2 : 2 + all_nodes]]
     missing = [node for node in nodes if node and node not in place]
@@ -235,10 +208,5 @@ def _add(
         found.add(kind, tuple(place[node] for node in nodes[:corners]), *names)
         return
     nodes += [0] * (all_nodes - len(nodes))
-    nodes = [nodes[k] for k in REORDERED.get(fine, range(all_nodes))]
-    numbers = [place[node] if node else -1 for node in nodes]
-    for k, (a, b) in enumerate(EDGES[fine], corners):
-        if numbers[k] < 0:
-            numbers[k] = len(points) + len(edges)
-            edges.append(0.5 * (points[numbers[a]] + points[numbers[b]]))
+    numbers = [place[nodes[k]] if nodes[k] else -1 for k in REORDERED.get(fine, range(all_nodes))]
     found.add(fine, tuple(numbers), *names)

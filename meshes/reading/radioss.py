@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from meshes.errors import MeshError
+from meshes.reading.includes import full_text
 from meshes.reading.stored import Elements, StoredMesh, number_of, whole_number
 
 __all__ = ["radioss"]
@@ -20,7 +21,6 @@ MASSES = ("ADMAS",)
 REFUSED = {
     "TRANSFORM": "moves nodes by /{0}. Write the deck with the nodes where they are.",
     "SUBMODEL": "holds a submodel by /{0}. Write it as one model.",
-    "SUBSET/INCLUDE": "takes a part of the mesh from another file by /{0}. Copy its lines into this one.",
 }
 
 
@@ -37,7 +37,7 @@ def radioss(path: Path) -> StoredMesh:
     titles: dict[str, str] = {}
     solids: list[tuple[str, list[int]]] = []
     found = Elements()
-    for name, lines in _blocks(path.read_text(encoding="latin-1")):
+    for name, lines in _blocks(full_text(path, "radioss")):
         for start, problem in REFUSED.items():
             if name.removeprefix("/").startswith(start):
                 raise MeshError(problem.format(name))
@@ -72,10 +72,6 @@ def _blocks(text: str) -> Iterator[tuple[str, list[str]]]:
     """Yield each keyword, without its leading stroke, with its lines."""
     name, lines = "", list[str]()
     for line in text.splitlines():
-        if line.startswith("#include"):
-            raise MeshError(
-                "takes a part of the mesh from another file by #include. Copy its lines into this one."
-            )
         if line.startswith("#") or not line.strip():
             continue
         if not line.startswith("/"):

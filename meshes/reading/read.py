@@ -61,6 +61,7 @@ CONVERTED = {
         ".wkt",
     ): "is not read. Convert it to .vtu, with ParaView or meshio for example.",
 }
+POINTER = "version https://git-lfs"
 ENOUGH = 4000  # letters of a file that show its format
 
 
@@ -114,6 +115,8 @@ def _reader(source: Path) -> Reader | None:
     with source.open("rb") as file:
         start = file.read(ENOUGH)
     text = start.decode("latin-1")
+    if text.startswith(POINTER):
+        raise MeshError("is a pointer of Git LFS, not the file itself. Fetch it: git lfs pull.")
     ending = source.suffix.lower()
     upper = text.upper()
     if ending in (".inp", ".dat", ".txt", ".msh"):

@@ -31,7 +31,8 @@ class StoredMesh:
     Attributes
     ----------
     points : (n, 3) float64, in the unit of the file
-    blocks : pairs of a kind, a key of `NODES`, and its cells, (m, k) int64
+    blocks : pairs of a kind, a key of `NODES`, and its cells, (m, k) int64; the middle of an edge is -1 where
+        the file leaves it out
     sets : by name, numbers of cells, counted through all blocks
     ignored : what the file holds beside the cells and is left out, one phrase each
     masses : what of that has a mass

@@ -101,7 +101,8 @@ def test_reference_points_and_shells_are_told_and_masses_refused(tmp_path):
     ("line", "reason"),
     [
         ("*NGEN\n1, 5, 1", r"makes nodes or cells by \*NGEN"),
-        ("*INCLUDE, INPUT=mesh.inp", r"from another file by \*INCLUDE, 'mesh.inp'"),
+        ("*INCLUDE, INPUT=mesh.inp", r"takes a part from the file 'mesh.inp', which is not beside it"),
+        ("*NODE, INPUT=nodes.txt", r"from another file by \*NODE, 'nodes.txt'"),
         ("*ELEMENT, TYPE=C3D8\n999, 1, 2, 3, 4, 5, 6, 7, 9999", "a cell 999 that names the node 9999"),
         ("*ELEMENT, TYPE=CIN3D8\n999, 1, 2, 3, 4, 5, 6, 7, 8", "infinite cells"),
     ],
@@ -215,3 +216,74 @@ def test_a_missing_library_has_its_own_exit_code(tmp_path, monkeypatch):
     ) as told:
         mesh.body()
     assert told.value.exit_code == 7
+
+
+@pytest.mark.parametrize("ending", [".inp", ".bdf", ".rad", ".k"])
+def test_included_files_are_read_and_part_of_the_content(tmp_path, ending):
+    from fem_impact.scene.own_mesh import OwnMesh
+
+    points, cells = square()
+    text = decks.write(tmp_path / f"bar{ending}", points, cells).read_text()
+    mark = {".inp": "*element", ".bdf": "CHEXA,1,", ".rad": "/PART", ".k": "*ELEMENT_SOLID"}[ending]
+    line = {
+        ".inp": "*Include, input=more.txt\n",
+        ".bdf": "INCLUDE 'more.txt'\n",
+        ".rad": "#include more.txt\n",
+        ".k": "*INCLUDE\n$ the cells\nmore.txt\n",
+    }[ending]
+    first, _, more = text.partition(mark)
+    main, other = tmp_path / f"main{ending}", tmp_path / "more.txt"
+    other.write_text(mark + more)
+    main.write_text(first + line)
+    assert volume_of(main) == pytest.approx(8640.0)
+    before = OwnMesh.of(str(main), "mm").content
+    other.write_text(mark + more + "\n")
+    assert OwnMesh.of(str(main), "mm").content != before
+    other.unlink()
+    with pytest.raises(MeshError, match=r"takes a part from the file 'more.txt', which is not beside it"):
+        read_own(main, 1e-3)
+
+
+def test_tetrahedra_may_be_numbered_either_way_round_in_one_file(tmp_path):
+    points, cells = cells_of("tetra")
+    mixed = np.where(np.arange(len(cells))[:, None] % 3 == 0, cells[:, [0, 2, 1, 3]], cells)
+    body = read_own(decks.write(tmp_path / "bar.inp", points, mixed), 1e-3)
+    plain = read_own(decks.write(tmp_path / "bar.vtu", points, cells), 1e-3)
+    assert summary(body.half) == pytest.approx(summary(plain.half), abs=1e-12)
+    assert any("60 of 180 cells of type tetra is turned round" in one for one in body.told)
+
+
+def test_middles_that_are_left_out_lie_halfway_and_pyramids_are_refused(tmp_path):
+    points, cells = cells_of("hexahedron")
+    text = decks.nastran(points, cells)
+    fine = text.replace("CHEXA,1,7,", "CHEXA,1,7,", 1).splitlines()
+    at = next(k for k, line in enumerate(fine) if line.startswith("CHEXA,1,"))
+    fine[at + 1] += ",,,,,,"  # the continuation holds the last corners; one middle follows
+    middle = points[cells[0, :2]].mean(axis=0).tolist()
+    fine[at + 1] = ",".join([*fine[at + 1].split(",")[:3], "999"])
+    fine.insert(4, f"GRID*,999,,{middle[0]!r},{middle[1]!r}\n*,{middle[2]!r}")
+    (tmp_path / "m.bdf").write_text("\n".join(fine))
+    body = read_own(tmp_path / "m.bdf", 1e-3)
+    assert len(body.half.cells) == 8 * len(cells)
+    pyramid = "*ELEMENT, TYPE=C3D5\n9999, 1, 2, 3, 4, 9\n"
+    (tmp_path / "p.inp").write_text(decks.abaqus(points, cells) + pyramid)
+    with pytest.raises(MeshError, match="holds 1 pyramid, which cannot be split"):
+        read_own(tmp_path / "p.inp", 1e-3)
+
+
+def test_the_type_of_a_cell_says_how_many_of_its_nodes_are_its_corners(tmp_path):
+    points, cells = square()
+    text = decks.abaqus(points, cells)
+    lines = text.replace("C3D8R", "C3D8I").replace("c3d8r", "c3d8i").splitlines()
+    more = [line + ", 1, 2" if line.count(",") == 8 else line for line in lines]
+    (tmp_path / "i.inp").write_text("\n".join(more))
+    assert volume_of(tmp_path / "i.inp") == pytest.approx(8640.0)
+    (tmp_path / "r.inp").write_text("\n".join(more).replace("C3D8I", "C3D8R"))
+    with pytest.raises(MeshError, match=r"has a cell of type C3D8R with 10 nodes"):
+        read_own(tmp_path / "r.inp", 1e-3)
+
+
+def test_a_pointer_of_git_lfs_is_told_as_one(tmp_path):
+    (tmp_path / "bar.vtu").write_text("version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 9\n")
+    with pytest.raises(MeshError, match="is a pointer of Git LFS, not the file itself"):
+        read_own(tmp_path / "bar.vtu")
