@@ -124,7 +124,7 @@ def as_hexahedra(points: FloatArray, blocks: tuple[tuple[str, IntArray], ...]) -
         names = sorted({kind.name for kind, _, _ in groups})
         count = sum(len(cells) for _, cells, _ in groups)
         told.append(
-            f"its {count} cells ({', '.join(names)}) are split about their middles into "
+            f"{counted(count, 'cell')} ({', '.join(names)}) split about the middles into "
             f"{sum(len(cells) for _, cells, _ in made)} hexahedra"
         )
     cells, parent = (np.concatenate([part[k] for part in made]) for k in (1, 2))

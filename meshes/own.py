@@ -21,6 +21,7 @@ from meshes.topology import FACES
 __all__ = ["TIPS", "OwnBody", "Stated", "own_body", "read_own"]
 
 SAME = 1e-6  # of the shortest edge: nodes so near to each other are one place
+SLENDER = 2.0  # second moment along z over that along x, from which on a body has an axis
 LEAN = 1.0  # deg between the axis of least inertia and z, from which on it is told
 # the axes of the file, and their signs, that become x, y and z where the tip points along one of them; y
 # stays the normal of the plane of symmetry where it can
@@ -283,7 +284,7 @@ def _leaning(mesh: HexMesh) -> tuple[str, ...]:
     x, z = place[:, 0], place[:, 2]
     x, z = x - weight @ x / weight.sum(), z - weight @ z / weight.sum()
     lean = 0.5 * np.rad2deg(np.arctan2(2.0 * (weight @ (x * z)), weight @ (z**2) - weight @ (x**2)))
-    if abs(lean) < LEAN:
+    if not LEAN <= abs(lean) <= 45.0 or weight @ z**2 < SLENDER * (weight @ x**2):
         return ()
     return (f"its axis of least inertia leans by {lean:.3g} deg from z towards x",)
 

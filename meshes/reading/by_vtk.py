@@ -29,9 +29,10 @@ def by_vtk(path: Path) -> StoredMesh:
     """
     import pyvista
 
-    found = pyvista.read(path)
-    if isinstance(found, pyvista.MultiBlock):
-        found = found.combine(merge_points=False)
+    with pyvista.vtk_verbosity("off"):  # what is wrong with the cells is told by what follows
+        found = pyvista.read(path)
+        if isinstance(found, pyvista.MultiBlock):
+            found = found.combine(merge_points=False)
     if not isinstance(found, pyvista.UnstructuredGrid):
         if not hasattr(found, "cast_to_unstructured_grid"):
             raise MeshError(f"holds a {type(found).__name__}, which is no mesh of cells.")

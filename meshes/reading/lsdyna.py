@@ -108,7 +108,11 @@ def _solids(name: str, lines: list[str], width: int) -> Iterator[tuple[int, list
         raise MeshError(f"holds cells of *{name}, which is not read. Write them as *ELEMENT_SOLID.")
     more, at = LINES_MORE.get(option, 0), 0
     while at < len(lines):
-        head = [whole_number(text, name) for text in _split(lines[at], [width] * 10) if text]
+        line = lines[at]
+        while line.rstrip().endswith(",") and at + 1 < len(lines):
+            at += 1
+            line += lines[at]
+        head = [whole_number(text, name) for text in _split(line, [width] * 10) if text]
         at += 1
         if len(head) <= 2:
             if at >= len(lines):

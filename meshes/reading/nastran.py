@@ -199,6 +199,8 @@ def _add(name: str, fields: list[str], place: dict[int, int], found: Elements) -
     """Add a solid element; middles of edges that are left out have no place."""
     corners, kind, all_nodes, fine = SOLIDS[name]
     nodes = [whole_number(text, f"{name} {fields[0]}") if text else 0 for text in fields[2 : 2 + all_nodes]]
+    if any(fields[2 + all_nodes :]):
+        raise MeshError(f"has a cell {name} {fields[0]} of more than {all_nodes} nodes, which is none.")
     missing = [node for node in nodes if node and node not in place]
     if missing or len(nodes) < corners or not all(nodes[:corners]):
         what = f"the node {missing[0]}, which is not there" if missing else f"fewer than {corners} corners"

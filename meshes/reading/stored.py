@@ -65,7 +65,15 @@ class Elements:
     masses: dict[str, int] = field(default_factory=dict)
 
     def add(self, kind: str, nodes: tuple[int, ...], *names: str) -> int:
-        """Add a cell that is in sets of those names; return its place."""
+        """Add a cell that is in sets of those names; return its place.
+
+        Raises
+        ------
+        MeshError
+            If it has another number of nodes than its kind.
+        """
+        if len(nodes) != NODES[kind]:
+            raise MeshError(f"has a cell of type {kind} with {len(nodes)} nodes instead of {NODES[kind]}.")
         place = len(self.kinds)
         self.kinds.append(kind)
         self.nodes.append(nodes)

@@ -1,6 +1,7 @@
 """A mesh written in the form of each program and read back: mass, inertia and lowest point are the same."""
 
 import decks
+import meshio
 import numpy as np
 import pytest
 from own_bodies import taper
@@ -287,3 +288,47 @@ def test_a_pointer_of_git_lfs_is_told_as_one(tmp_path):
     (tmp_path / "bar.vtu").write_text("version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 9\n")
     with pytest.raises(MeshError, match="is a pointer of Git LFS, not the file itself"):
         read_own(tmp_path / "bar.vtu")
+
+
+@pytest.mark.parametrize("version", ["gmsh22", "gmsh", "parametric", "first"])
+@pytest.mark.parametrize("kind", ["hexahedron", "tetra"])
+def test_text_files_of_every_version_of_gmsh_are_read(tmp_path, version, kind):
+    points, cells = cells_of(kind)
+    marks = np.ones(len(cells), np.int32)
+    stored = meshio.Mesh(points, [(kind, cells)])
+    stored.cell_data = {"gmsh:physical": [7 * marks], "gmsh:geometrical": [marks]}
+    path, form = (
+        tmp_path / "bar.msh",
+        "gmsh22" if version == "first" else version.replace("parametric", "gmsh"),
+    )
+    meshio.write(path, stored, file_format=form, binary=False)
+    text = path.read_text()
+    if version == "parametric":  # each node with two more numbers, its place on a surface
+        head, _, rest = text.partition("$Nodes\n")
+        nodes, _, rest = rest.partition("$EndNodes")
+        nodes = "\n".join(f"{line} 0.1 0.2" if line.count(".") == 3 else line for line in nodes.splitlines())
+        text = f"{head}$Nodes\n{nodes}\n$EndNodes{rest}"
+    if version == "first":
+        code = {"hexahedron": 5, "tetra": 4}[kind]
+        node = [f"{n} {x!r} {y!r} {z!r}" for n, (x, y, z) in decks.numbered(points)]
+        cell = [f"{n} {code} 7 1 {len(c)} {' '.join(map(str, c))}" for n, c in decks.numbered(cells + 1)]
+        lines = ["$NOD", str(len(points)), *node, "$ENDNOD", "$ELM", str(len(cells)), *cell, "$ENDELM"]
+        text = "\n".join(lines)
+    path.write_text(text)
+    plain = read_own(decks.write(tmp_path / "bar.vtu", points, cells), 1e-3)
+    assert summary(read_own(path, 1e-3).half) == pytest.approx(summary(plain.half), abs=1e-12)
+
+
+def test_cells_with_more_nodes_than_their_type_has_are_refused(tmp_path):
+    points, cells = cells_of("hexahedron")
+    text = decks.universal(points, cells).replace(f"{7:10d}{8:10d}\n", f"{7:10d}{9:10d}\n", 1)
+    first = "".join(f"{v:10d}" for v in cells[0] + 1)
+    (tmp_path / "u.unv").write_text(text.replace(first, first + f"{1:10d}", 1))
+    with pytest.raises(MeshError, match="a cell of type hexahedron with 9 nodes instead of 8"):
+        read_own(tmp_path / "u.unv")
+    bulk = decks.nastran(points, cells).splitlines()
+    at = next(k for k, line in enumerate(bulk) if line.startswith("CHEXA,1,"))
+    bulk[at + 1] += ",1,2,3,4,5,6\n,1,2,3,4,5,6,7,8\n,1,2"
+    (tmp_path / "n.bdf").write_text("\n".join(bulk))
+    with pytest.raises(MeshError, match="CHEXA 1 of more than 20 nodes"):
+        read_own(tmp_path / "n.bdf")

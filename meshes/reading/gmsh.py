@@ -1,0 +1,143 @@
+"""Text files of Gmsh (.msh) of the versions 1, 2, 4.0 and 4.1: nodes, cells, physical groups."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from meshes.errors import MeshError
+from meshes.reading.stored import NODES, Elements, StoredMesh
+
+__all__ = ["gmsh", "is_text"]
+
+KINDS = {4: "tetra", 5: "hexahedron", 6: "wedge", 7: "pyramid", 11: "tetra10", 12: "hexahedron27"}
+KINDS |= {17: "hexahedron20", 18: "wedge15", 19: "pyramid13"}
+FLAT = {1: "line", 2: "triangle", 3: "quad", 8: "line", 9: "triangle", 10: "quad", 15: "point", 16: "quad"}
+# the middles of edges in VTK's order, by their places in Gmsh's
+REORDERED = {
+    "tetra10": (0, 1, 2, 3, 4, 5, 6, 7, 9, 8),
+    "hexahedron20": (*range(8), 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15),
+    "wedge15": (*range(6), 6, 9, 7, 12, 14, 13, 8, 10, 11),
+}
+REORDERED["hexahedron27"] = (*REORDERED["hexahedron20"], *range(20, 27))
+
+
+def is_text(start: str) -> bool:
+    """Return whether a file begins as a text file of Gmsh."""
+    words = start.split()
+    if words[:1] == ["$NOD"]:
+        return True
+    return words[:1] == ["$MeshFormat"] and words[2:3] == ["0"]
+
+
+def gmsh(path: Path) -> StoredMesh:
+    """Read the volume cells; a set is a physical group of volumes, or "VOLUME" and a number.
+
+    Raises
+    ------
+    MeshError
+        If a cell is of no kind that is read, or names what is not there.
+    """
+    sections = dict(_sections(path.read_text(encoding="latin-1")))
+    version = sections["MeshFormat"][0].split()[0] if "MeshFormat" in sections else "1"
+    names = {}
+    for line in sections.get("PhysicalNames", [])[1:]:
+        dimension, number, name = line.split(maxsplit=2)
+        if dimension == "3":
+            names[int(number)] = name.strip().strip('"')
+    numbered: dict[int, list[float]]
+    if version.startswith("4"):
+        numbered = _nodes_4(sections["Nodes"], version)
+        cells = _cells_4(sections["Elements"], version)
+        groups = _groups(sections.get("Entities", []))
+    else:
+        lines = sections.get("NOD") or sections["Nodes"]
+        rows = (line.split() for line in lines[1 : 1 + int(lines[0])])
+        numbered = {int(row[0]): [float(part) for part in row[1:4]] for row in rows}
+        cells = _cells_2(sections.get("ELM") or sections["Elements"], "ELM" in sections)
+        groups = {}
+    place = {number: k for k, number in enumerate(numbered)}
+    found = Elements()
+    for kind, nodes, volume, marks in cells:
+        if kind in FLAT:
+            found.leave(f"cell of type {FLAT[kind]}")
+            continue
+        if kind not in KINDS:
+            raise MeshError(f"holds cells of Gmsh's type {kind}, which are not read. Save them of order 1.")
+        missing = [node for node in nodes if node not in place]
+        if missing:
+            raise MeshError(f"has a cell that names the node {missing[0]}, which is not there.")
+        name = KINDS[kind]
+        nodes = [nodes[k] for k in REORDERED.get(name, range(NODES[name]))]
+        physical = [*marks, *groups.get(volume, [])]
+        sets = {f"VOLUME {volume}", *(names.get(mark, f"PHYSICAL {mark}") for mark in physical if mark)}
+        found.add(name, tuple(place[node] for node in nodes), *sets)
+    return found.stored(np.array(list(numbered.values()), dtype=np.float64).reshape(-1, 3))
+
+
+def _sections(text: str) -> Iterator[tuple[str, list[str]]]:
+    """Yield the name and the lines of each section."""
+    name, lines = "", list[str]()
+    for line in text.splitlines():
+        bare = line.strip()
+        if bare.startswith("$") and not name:
+            name, lines = bare[1:], []
+        elif bare.startswith("$E"):
+            yield name, lines
+            name = ""
+        elif bare:
+            lines.append(bare)
+
+
+def _cells_2(lines: list[str], first_version: bool) -> Iterator[tuple[int, list[int], int, list[int]]]:
+    """Yield type, nodes, volume and physical groups of each cell of versions 1 and 2."""
+    for line in lines[1 : 1 + int(lines[0])]:
+        row = [int(part) for part in line.split()]
+        if first_version:  # number, type, physical, elementary, count, nodes
+            yield row[1], row[5:], row[3], [row[2]]
+        else:
+            tags = row[3 : 3 + row[2]]
+            yield row[1], row[3 + row[2] :], (*tags, 0, 0)[1], tags[:1]
+
+
+def _nodes_4(lines: list[str], version: str) -> dict[int, list[float]]:
+    """Return the nodes of version 4 by number; coordinates on their curve or surface are left out."""
+    numbered: dict[int, list[float]] = {}
+    blocks, at = int(lines[0].split()[0]), 1
+    for _ in range(blocks):
+        count = int(lines[at].split()[3])
+        at += 1
+        if version == "4.1":
+            numbers, places = lines[at : at + count], lines[at + count : at + 2 * count]
+            at += 2 * count
+            rows = [[number, *line.split()] for number, line in zip(numbers, places, strict=True)]
+        else:
+            rows = [line.split() for line in lines[at : at + count]]
+            at += count
+        for row in rows:
+            numbered[int(row[0])] = [float(part) for part in row[1:4]]
+    return numbered
+
+
+def _cells_4(lines: list[str], version: str) -> Iterator[tuple[int, list[int], int, list[int]]]:
+    blocks, at = int(lines[0].split()[0]), 1
+    for _ in range(blocks):
+        one, two, kind, count = (int(part) for part in lines[at].split())
+        entity = two if version == "4.1" else one
+        for line in lines[at + 1 : at + 1 + count]:
+            row = [int(part) for part in line.split()]
+            yield kind, row[1:], entity, []
+        at += 1 + count
+
+
+def _groups(lines: list[str]) -> dict[int, list[int]]:
+    """Return the physical groups of each volume of version 4."""
+    if not lines:
+        return {}
+    counts = [int(part) for part in lines[0].split()]
+    found = {}
+    for line in lines[1 + sum(counts[:3]) : 1 + sum(counts)]:
+        parts = line.split()
+        groups = int(parts[7])
+        found[int(parts[0])] = [abs(int(part)) for part in parts[8 : 8 + groups]]
+    return found
