@@ -134,10 +134,8 @@ def as_hexahedra(points: FloatArray, blocks: tuple[tuple[str, IntArray], ...]) -
         turned = _agreed(outside_in & (of == number), of == number, parent, kind)
         if turned.any():
             cells[turned] = cells[turned][:, TURNED]
-            count = len(np.unique(parent[turned]))
-            all_ = len(np.unique(parent[of == number]))
-            which = f"each {kind.name}" if count == all_ else f"{count} of {all_} cells of type {kind.name}"
-            told.append(f"the order of the nodes of {which} is turned round")
+            if (turned == (of == number)).all():
+                told.append(f"the order of the nodes of each {kind.name} is turned round")
     return Hexahedra(points, cells, parent, tuple(told))
 
 

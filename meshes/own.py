@@ -10,8 +10,10 @@ import scipy.sparse as sp
 from meshes.arrays import BoolArray, FloatArray, IntArray
 from meshes.errors import MeshError
 from meshes.gauss import jacobians
+from meshes.halving import halved_tetrahedra, straight
 from meshes.hexahedra import as_hexahedra
 from meshes.hexmesh import SYMMETRY, HexMesh, face_keys, from_cells, half_body_tags
+from meshes.moments import cell_moments
 from meshes.quality import edge_lengths, scaled_jacobians
 from meshes.reading.read import stored_mesh
 from meshes.reading.stored import StoredMesh
@@ -96,13 +98,16 @@ def read_own(path: str | Path, unit: float = 1.0, stated: Stated | None = None) 
             f"holds {' and '.join(stored.masses)}: mass without volume, which the body would lack. Leave it "
             "out, or state by mesh_sets the sets whose cells are the body."
         )
-    made = as_hexahedra(stored.points * unit, _blocks(stored, chosen))
-    parent = np.flatnonzero(chosen)[made.parent]
+    points, blocks, of, cut = _halved(stored.points * unit, _blocks(stored, chosen), stated)
+    made = as_hexahedra(points, blocks)
+    parent = np.flatnonzero(chosen)[of[made.parent]]
+    if cut:
+        stated = replace(stated, symmetry="half", tip="-z" if stated.tip else None)
     body = _own(Part(made.points, made.cells, parent), stated, _set_hint(stored))
     ignored = (f"left out: {', '.join(stored.ignored)}",) if stored.ignored else ()
     sets = {name: np.isin(body[1], cells) for name, cells in stored.sets.items()}
     present = {name: here for name, here in sets.items() if here.any()}
-    return replace(body[0], sets=present, told=(*ignored, *made.told, *body[0].told))
+    return replace(body[0], sets=present, told=(*ignored, *cut, *made.told, *body[0].told))
 
 
 def own_body(points: FloatArray, cells: IntArray, stated: Stated | None = None) -> OwnBody:
@@ -151,6 +156,29 @@ def _blocks(stored: StoredMesh, chosen: BoolArray) -> tuple[tuple[str, IntArray]
         if here.any():
             blocks.append((kind, cells[here]))
     return tuple(blocks)
+
+
+def _halved(
+    points: FloatArray, blocks: tuple[tuple[str, IntArray], ...], stated: Stated
+) -> tuple[FloatArray, tuple[tuple[str, IntArray], ...], IntArray, tuple[str, ...]]:
+    """Return tetrahedra of a whole body cut in y = 0, or all cells; where each lies; what is told."""
+    numbers = np.arange(sum(len(cells) for _, cells in blocks))
+    turned = _axes(points, stated.tip)
+    y = turned[:, 1]
+    used = np.unique(np.concatenate([cells.ravel() for _, cells in blocks]))
+    near = NEAR * float(np.ptp(turned[used][:, :2], axis=0).max())
+    if any(not kind.startswith("tetra") for kind, _ in blocks) or stated.symmetry not in (None, "whole"):
+        return points, blocks, numbers, ()
+    parts = [straight(cells) for _, cells in blocks]
+    cells = np.concatenate([part for part, _ in parts])
+    own = np.repeat(numbers, np.concatenate([np.full(len(part) // times, times) for part, times in parts]))
+    low, high = y[cells].min(axis=1), y[cells].max(axis=1)
+    across = int(((low < -near) & (high > near)).sum())
+    if not across:
+        return points, blocks, numbers, ()
+    places, made, of = halved_tetrahedra(turned, cells)
+    told = f"{across} of {len(cells)} tetrahedra across the plane y = 0 are cut there"
+    return places, tuple(made.items()), own[np.concatenate([of["tetra"], of["wedge"]])], (told,)
 
 
 def _set_hint(stored: StoredMesh) -> str:
@@ -260,9 +288,13 @@ def _require_closed(mesh: HexMesh) -> None:
 
 def _turned(part: Part, tip: str) -> Part:
     """Return a part turned so that its tip, which points along an axis of the file, points to -z."""
-    (x, sx), (y, sy), (z, sz) = TIPS[tip]
-    points = part.points[:, [x, y, z]] * [sx, sy, sz] + 0.0
-    return Part(points, part.cells, part.parent, part.told)
+    return Part(_axes(part.points, tip), part.cells, part.parent, part.told)
+
+
+def _axes(points: FloatArray, tip: str | None) -> FloatArray:
+    """Return points (n, 3) of the file in axes in which the tip points to -z."""
+    (x, sx), (y, sy), (z, sz) = TIPS[tip or "-z"]
+    return np.asarray(points[:, [x, y, z]] * [sx, sy, sz] + 0.0)
 
 
 def _require_upright(part: Part, times: float) -> None:
@@ -291,8 +323,8 @@ def _leaning(mesh: HexMesh) -> tuple[str, ...]:
 
 def _placed(mesh: HexMesh) -> HexMesh:
     """Return the half with the tip at z = 0 and the centre of its volume at x = 0."""
-    share = np.linalg.det(jacobians(mesh)).sum(axis=1)
-    centre = float(share @ mesh.points[mesh.cells, 0].mean(axis=1) / share.sum())
+    part = cell_moments(mesh)
+    centre = float(part.x.sum() / part.volume.sum())
     moved = abs(centre) > NEAR * float(np.ptp(mesh.points[:, 0]))
     shift = np.array([centre if moved else 0.0, 0.0, mesh.points[:, 2].min()])
     return from_cells(mesh.points - shift, mesh.cells, half_body_tags)

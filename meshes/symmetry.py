@@ -7,6 +7,7 @@ import numpy as np
 from meshes.arrays import BoolArray, FloatArray, IntArray
 from meshes.errors import MeshError
 from meshes.gauss import SHAPES, jacobians_of
+from meshes.halving import halved_layer
 from meshes.hexmesh import outer_faces
 from meshes.topology import FACES
 
@@ -220,16 +221,18 @@ def _cut(part: Part) -> Part:
     points, near = part.points, part.near
     y = points[part.cells][:, :, 1]
     across = np.flatnonzero((y.min(axis=1) < 0.0) & (y.max(axis=1) > 0.0))
-    if len(across):
+    made = halved_layer(points, part.cells)
+    if made is None:
         where = place_text(points[part.cells[across[0]]].mean(axis=0))
         raise MeshError(
             f"has {len(across)} cells across the plane y = 0, the first about {where}. The plane of symmetry "
             "must lie between cells: give a mesh with faces there, or the half y >= 0."
         )
     _require_mirrored(points, part.cells, near)
-    kept = y.max(axis=1) > 0.0
-    used, new = np.unique(part.cells[kept], return_inverse=True)
-    return Part(points[used], new.reshape(-1, 8), part.parent[kept], part.told)
+    places, cells, kept = made
+    used, new = np.unique(cells[kept], return_inverse=True)
+    half = Part(places[used], new.reshape(-1, 8), part.parent[kept], part.told)
+    return half.tell(f"{len(across)} cells across the plane y = 0 are cut there") if len(across) else half
 
 
 def _require_mirrored(points: FloatArray, cells: IntArray, near: float) -> None:

@@ -1,0 +1,179 @@
+"""The half y >= 0 of a whole body whose cells lie across the plane y = 0: layers of hexahedra, tetrahedra."""
+
+import numpy as np
+
+from meshes.arrays import BoolArray, FloatArray, IntArray
+from meshes.errors import MeshError
+from meshes.split import edge_keys
+from meshes.topology import CORNERS, EDGES
+
+__all__ = ["halved_layer", "halved_tetrahedra", "straight"]
+
+# of the mean length of the edges at a node of tetrahedra: at least so far from the plane it is moved along y,
+# so that none of the cells that are cut is thin; by symmetry the surface there runs along y
+CLEAR = 0.3
+LEFT = 0.2  # of the volume of a tetrahedron, that it must keep
+ROUNDS = 40
+ALIKE = 0.05  # of their mean, by which volumes and moments of both sides of a symmetric body may differ
+THREE = np.array([[0, 1, 2, 3], [1, 2, 3, 4], [2, 3, 4, 5]])  # tetrahedra of a wedge
+EIGHT = np.array(  # tetrahedra about the middles of the edges of one, four at its corners
+    [[0, 4, 6, 7], [1, 5, 4, 8], [2, 6, 5, 9], [3, 7, 9, 8]]
+    + [[4, 9, a, b] for a, b in ((5, 6), (6, 7), (7, 8), (8, 5))]
+)
+SIX = np.array([[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]])
+
+
+def halved_layer(points: FloatArray, cells: IntArray) -> tuple[FloatArray, IntArray, BoolArray] | None:
+    """Return nodes and hexahedra of the half y >= 0, and the mask of the cells that are in it.
+
+    A cell across the plane has one face on its one side and the opposite one on its other side, and is cut
+    between them; None where one has not.
+    """
+    y = points[cells][:, :, 1]
+    across = np.flatnonzero((y.min(axis=1) < 0.0) & (y.max(axis=1) > 0.0))
+    found = np.full(len(across), -1)
+    for axis in range(3):
+        low = CORNERS[:, axis] == 0
+        one, other = y[across][:, low], y[across][:, ~low]
+        apart = ((one < 0).all(axis=1) & (other > 0).all(axis=1)) | (
+            (one > 0).all(axis=1) & (other < 0).all(axis=1)
+        )
+        found[apart] = axis
+    if (found < 0).any():
+        return None
+    made = cells.copy()
+    edges = np.concatenate(
+        [cells[across[found == axis]][:, EDGES[_along(axis)]].reshape(-1, 2) for axis in range(3)]
+    )
+    keys, first = np.unique(edge_keys(edges), return_index=True)
+    places = _crossings(points, edges[first])
+    for axis in range(3):
+        here = across[found == axis]
+        for a, b in EDGES[_along(axis)]:
+            node = len(points) + np.searchsorted(keys, edge_keys(cells[here][:, [a, b]]))
+            for corner in (a, b):
+                below = points[cells[here, corner], 1] < 0.0
+                made[here[below], corner] = node[below]
+    return np.concatenate([points, places]), made, y.max(axis=1) > 0.0
+
+
+def _along(axis: int) -> BoolArray:
+    """Return which edges (12,) of a hexahedron run along an axis of its unit cell."""
+    return np.asarray(CORNERS[EDGES[:, 0], axis] != CORNERS[EDGES[:, 1], axis])
+
+
+def _crossings(points: FloatArray, edges: IntArray) -> FloatArray:
+    """Return where edges (k, 2) cross the plane y = 0, (k, 3)."""
+    a, b = points[edges[:, 0]], points[edges[:, 1]]
+    share = a[:, 1] / (a[:, 1] - b[:, 1])
+    places = a + share[:, None] * (b - a)
+    places[:, 1] = 0.0
+    return np.asarray(places)
+
+
+def halved_tetrahedra(
+    points: FloatArray, cells: IntArray
+) -> tuple[FloatArray, dict[str, IntArray], dict[str, IntArray]]:
+    """Return nodes, tetrahedra and wedges of the half y >= 0 of tetrahedra (m, 4), and the cell each lies in.
+
+    Raises
+    ------
+    MeshError
+        If both sides differ in volume, centre or inertia, or cells fold when nodes give way to the plane.
+    """
+    half = _upper(points, cells)
+    mirrored = _upper(points * [1.0, -1.0, 1.0], cells)
+    _require_alike([half[:2], mirrored[:2]])
+    return half
+
+
+def straight(cells: IntArray) -> tuple[IntArray, int]:
+    """Return tetrahedra with straight edges, (m, 4), and how many of them a cell of the given ones makes.
+
+    One with nodes in the middle of its edges makes eight, between these.
+    """
+    if cells.shape[1] == 4:
+        return cells, 1
+    if (cells < 0).any():
+        raise MeshError(
+            "has tetrahedra that lack the middles of edges. Write it of first or of second order."
+        )
+    return cells[:, EIGHT].reshape(-1, 4), 8
+
+
+def _upper(
+    points: FloatArray, cells: IntArray
+) -> tuple[FloatArray, dict[str, IntArray], dict[str, IntArray]]:
+    """Return nodes, cells above the plane, and the tetrahedron in which each lies."""
+    places = _clear(points, cells)
+    above = places[cells][:, :, 1] > 0.0
+    count = above.sum(axis=1)
+    edges = np.sort(cells[:, SIX].reshape(-1, 2), axis=1)
+    crossing = (places[edges, 1] > 0.0).sum(axis=1) == 1
+    keys, first = np.unique(edge_keys(edges[crossing]), return_index=True)
+    cuts = _crossings(places, edges[crossing][first])
+
+    def cut(a: IntArray, b: IntArray) -> IntArray:
+        return np.asarray(len(places) + np.searchsorted(keys, edge_keys(np.stack([a, b], axis=1))))
+
+    order = np.argsort(~above, axis=1, kind="stable")  # the corners above the plane first
+    a, b, c, d = np.take_along_axis(cells, order, axis=1).T
+    one, two, three = (count == k for k in (1, 2, 3))
+    tips = (
+        np.stack([a, cut(a, b), cut(a, c), cut(a, d)], axis=1)[one]
+        if one.any()
+        else np.zeros((0, 4), np.int64)
+    )
+    beams = np.stack([a, cut(a, c), cut(a, d), b, cut(b, c), cut(b, d)], axis=1)[two]
+    stumps = np.stack([a, b, c, cut(a, d), cut(b, d), cut(c, d)], axis=1)[three]
+    numbers = np.arange(len(cells))
+    blocks = {"tetra": np.concatenate([cells[count == 4], tips]), "wedge": np.concatenate([beams, stumps])}
+    parents = {
+        "tetra": np.concatenate([numbers[count == 4], numbers[one]]),
+        "wedge": np.concatenate([numbers[two], numbers[three]]),
+    }
+    return np.concatenate([places, cuts]), blocks, parents
+
+
+def _volumes(points: FloatArray, cells: IntArray) -> FloatArray:
+    x = points[cells]
+    return np.asarray(np.linalg.det(x[:, 1:] - x[:, :1]) / 6.0)
+
+
+def _clear(points: FloatArray, cells: IntArray) -> FloatArray:
+    """Return the nodes, those near the plane moved away from it along y, so far as no cell folds."""
+    pairs = cells[:, SIX].reshape(-1, 2)
+    length = np.repeat(np.linalg.norm(points[pairs[:, 0]] - points[pairs[:, 1]], axis=1), 2)
+    number = np.bincount(pairs.ravel(), minlength=len(points))
+    clear = CLEAR * np.bincount(pairs.ravel(), length, len(points)) / np.maximum(number, 1)
+    before = _volumes(points, cells)
+    for _ in range(ROUNDS):
+        places, y = points.copy(), points[:, 1]
+        places[:, 1] = np.where(np.abs(y) < clear, np.where(y < 0.0, -clear, clear), y)
+        thin = _volumes(places, cells) * np.sign(before) < LEFT * np.abs(before)
+        if not thin.any():
+            return places
+        clear[np.unique(cells[thin])] *= 0.7
+    raise MeshError(
+        f"has {int(thin.sum())} tetrahedra at the plane y = 0 that are too flat to be cut there. Mesh "
+        "the half y >= 0 of the body."
+    )
+
+
+def _require_alike(sides: list[tuple[FloatArray, dict[str, IntArray]]]) -> None:
+    """Refuse a body whose two sides of y = 0, one of them mirrored, differ in volume or moments."""
+    sums = []
+    for points, blocks in sides:
+        wedges = blocks["wedge"][:, THREE].reshape(-1, 4)
+        cells = np.concatenate([blocks["tetra"], wedges])
+        volume, place = np.abs(_volumes(points, cells)), points[cells].mean(axis=1)
+        sums.append([volume.sum(), *(volume @ place), *(volume @ place**2)])
+    one, other = np.array(sums)
+    size = np.sqrt(0.5 * (one + other)[4:] / (0.5 * (one + other)[0]))  # radii of gyration about the axes, m
+    scale = 0.5 * (one + other)[0] * np.array([1.0, *size, *size**2])
+    away = float((np.abs(one - other) / scale).max())
+    if away > ALIKE:
+        raise MeshError(
+            f"is not symmetric about the plane y = 0: volume and moments of its sides differ by "
+            f"{100 * away:.2g} %. The model holds half of a symmetric body: turn or move the mesh."
+        )
