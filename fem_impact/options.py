@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from fem_impact.progress import Progress
+    from fem_impact.progress import Notice, Progress
 
 
 FIDELITIES = ("rigid", "modal", "solid")  # models of a scene, the cheapest first
@@ -30,7 +30,7 @@ class RunOptions:
     """
 
     out: Path | None = None
-    progress: Callable[[Progress], None] | None = None
+    progress: Callable[[Progress | Notice], None] | None = None
     resume: bool = False
     checkpoint_s: float = CHECKPOINT_INTERVAL
     stamp: str = ""

@@ -21,7 +21,7 @@ from meshes.rod import RodMesh, rod
 from meshes.sphere import pole_edge, sphere
 from meshes.symmetry import PARTS
 from meshes.turned import contact_radius, turned
-from meshes.zone import Zone
+from meshes.zone import Cloud, Zone
 
 __all__ = [
     "OUTER",
@@ -31,6 +31,7 @@ __all__ = [
     "TIPS",
     "CellMoments",
     "ClosedEndError",
+    "Cloud",
     "HexMesh",
     "MeshError",
     "MeshFile",

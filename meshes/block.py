@@ -11,7 +11,7 @@ from meshes.hexmesh import OUTER, SKIN, SYMMETRY, HexMesh, from_cells
 from meshes.quality import require_positive
 from meshes.refine import refine
 from meshes.topology import CORNERS
-from meshes.zone import Zone
+from meshes.zone import Cloud, Zone
 
 __all__ = [
     "block",
@@ -28,7 +28,7 @@ def block(
     low: Sequence[float] | FloatArray,
     high: Sequence[float] | FloatArray,
     size: float,
-    zones: Sequence[Zone] = (),
+    zones: Sequence[Zone | Cloud] = (),
     *,
     buffer: int = 2,
 ) -> HexMesh:

@@ -10,7 +10,7 @@ from meshes.hexmesh import HexMesh
 from meshes.split import Forest, Snap
 from meshes.ties import hanging_births, tie_matrix
 from meshes.topology import FACES
-from meshes.zone import Zone
+from meshes.zone import Cloud, Zone
 
 __all__ = ["reach", "refine"]
 
@@ -37,7 +37,7 @@ def reach(size: FloatArray | float, level: int, finest: int, buffer: int = 2) ->
 
 def refine(
     mesh: HexMesh,
-    zones: Sequence[Zone],
+    zones: Sequence[Zone | Cloud],
     snap: Snap | None = None,
     *,
     buffer: int = 2,
@@ -85,7 +85,7 @@ def refine(
     return HexMesh(forest.points, forest.cells, forest.level.astype(np.int8), tie, faces, tags, region)
 
 
-def _marks(forest: Forest, zones: Sequence[Zone], level: int, buffer: int) -> BoolArray:
+def _marks(forest: Forest, zones: Sequence[Zone | Cloud], level: int, buffer: int) -> BoolArray:
     """(m,) True for the leaves to split for one level, those for the 2:1 balance included."""
     corners = forest.points[forest.cells]
     diagonals = corners[:, [0, 1, 2, 3]] - corners[:, [6, 7, 4, 5]]

@@ -13,7 +13,7 @@ from meshes.nose import NoseMesh, inner_corner, lay_nose
 from meshes.quality import require_positive
 from meshes.refine import reach, refine
 from meshes.section import Section, section
-from meshes.zone import Zone
+from meshes.zone import Cloud, Zone
 
 __all__ = ["RodMesh", "rod"]
 
@@ -74,7 +74,7 @@ def rod(
     length: float,
     across: int = 8,
     slice_length: float | None = None,
-    zones: Sequence[Zone] = (),
+    zones: Sequence[Zone | Cloud] = (),
     *,
     contact: FloatArray | None = None,
     nose: bool = True,
@@ -136,7 +136,7 @@ def rod(
 
 
 def _body_start(
-    shape: Meridian, split: float, plug: float, pitch: float, zones: Sequence[Zone], buffer: int
+    shape: Meridian, split: float, plug: float, pitch: float, zones: Sequence[Zone | Cloud], buffer: int
 ) -> float:
     """Height z, m, at which the slices begin: above the tip's shape and all cells that are to be split."""
     inner = float(inner_corner(shape, split, plug)[1])

@@ -12,7 +12,7 @@ from meshes.quality import require_positive
 from meshes.refine import refine
 from meshes.section import core_and_rings
 from meshes.topology import FACES
-from meshes.zone import Zone
+from meshes.zone import Cloud, Zone
 
 __all__ = ["pole_edge", "sphere"]
 
@@ -21,7 +21,7 @@ CORE = 0.45
 BULGE = 0.35
 
 
-def sphere(radius: float, across: int = 8, zones: Sequence[Zone] = (), *, buffer: int = 2) -> HexMesh:
+def sphere(radius: float, across: int = 8, zones: Sequence[Zone | Cloud] = (), *, buffer: int = 2) -> HexMesh:
     """Mesh the half y >= 0 of a ball that touches the plane z = 0 at the origin.
 
     Parameters

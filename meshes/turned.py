@@ -15,7 +15,7 @@ from meshes.quality import require_positive, scaled_jacobians
 from meshes.refine import reach, refine
 from meshes.rod import RodMesh, nose_cells
 from meshes.section import Section, bored_section, section
-from meshes.zone import Zone
+from meshes.zone import Cloud, Zone
 
 __all__ = ["contact_radius", "turned"]
 
@@ -105,7 +105,7 @@ class _Body:
 def turned(
     outline: FloatArray,
     across: int = 8,
-    zones: Sequence[Zone] = (),
+    zones: Sequence[Zone | Cloud] = (),
     *,
     bore: FloatArray | None = None,
     planes: Sequence[float] = (),
@@ -214,7 +214,7 @@ def _mirrored(line: FloatArray) -> FloatArray:
     return np.asarray(np.stack([line[::-1, 0], line[-1, 1] - line[::-1, 1]], axis=1))
 
 
-def _reached(body: _Body, tip: ShapeEnd, zones: Sequence[Zone], buffer: int) -> tuple[float, float]:
+def _reached(body: _Body, tip: ShapeEnd, zones: Sequence[Zone | Cloud], buffer: int) -> tuple[float, float]:
     """Return the range of z, m, in which cells may be split."""
     if not zones:
         return 0.0, tip.start
@@ -298,7 +298,7 @@ def _finished(
     parts: list[tuple[IntArray, IntArray]],
     heights: FloatArray,
     exact: tuple[tuple[float, float], ...],
-    zones: Sequence[Zone],
+    zones: Sequence[Zone | Cloud],
     buffer: int,
 ) -> RodMesh:
     """Put the parts together, the cells that stay whole first; refine; find the slices."""
@@ -336,7 +336,7 @@ def _finished(
 
 
 def _refined(
-    body: _Body, mesh: HexMesh, zones: Sequence[Zone], buffer: int, frozen: BoolArray | None = None
+    body: _Body, mesh: HexMesh, zones: Sequence[Zone | Cloud], buffer: int, frozen: BoolArray | None = None
 ) -> HexMesh:
     """Refine; where that folds a cell beside the bore, whose facets are wider than it, keep these facets."""
     fine = refine(mesh, zones, body.snap, buffer=buffer, frozen=frozen)

@@ -1,4 +1,4 @@
-"""The zone around which a mesh is refined: an oriented box."""
+"""Zones around which a mesh is refined: an oriented box, or a cloud of points."""
 
 from dataclasses import dataclass
 
@@ -7,7 +7,7 @@ import numpy as np
 from meshes.arrays import FloatArray
 from meshes.errors import MeshError
 
-__all__ = ["Zone"]
+__all__ = ["Cloud", "Zone"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,3 +72,59 @@ class Zone:
         """(8, 3) corners of the box, m."""
         pick = np.array([[i, j, k] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
         return self.centre + np.where(pick == 0, self.low, self.high) @ self.axes
+
+
+@dataclass(frozen=True, slots=True)
+class Cloud:
+    """All places within given distances of points, such as where a body touched or flowed.
+
+    Attributes
+    ----------
+    points : (k, 3) float64, m
+    radii : (k,) float64, m
+        Distance from each point up to which a place belongs to the zone.
+
+    Raises
+    ------
+    MeshError
+        If there is no point, or not one radius for each.
+    """
+
+    points: FloatArray
+    radii: FloatArray
+
+    def __post_init__(self) -> None:
+        """Refuse a cloud without points, or with radii of another number."""
+        if not len(self.points) or self.radii.shape != (len(self.points),):
+            raise MeshError(
+                f"a cloud needs points, each with a radius, not {self.points.shape} and {self.radii.shape}"
+            )
+
+    @property
+    def centre(self) -> FloatArray:
+        """(3,) mean of the points, m."""
+        return np.asarray(self.points.mean(axis=0))
+
+    def gap(self, corners: FloatArray, skin: FloatArray) -> FloatArray:
+        """Distance from the cloud to the bounding boxes of cells, from the point nearest to their middles.
+
+        Parameters and result are those of `Zone.gap`.
+        """
+        from scipy.spatial import KDTree  # .1 s, for which no help text should wait
+
+        low, high = corners.min(axis=1), corners.max(axis=1)
+        nearest = np.full(len(corners), np.inf)
+        for radius in np.unique(self.radii):
+            points = self.points[self.radii == radius]
+            _, found = KDTree(points).query(0.5 * (low + high))
+            apart = np.maximum(low - points[found], points[found] - high) + skin[:, None]
+            away = np.linalg.norm(np.maximum(apart, 0.0), axis=-1)
+            nearest = np.minimum(nearest, np.maximum(away - radius, 0.0))
+        return np.asarray(nearest)
+
+    def corners(self) -> FloatArray:
+        """(8, 3) corners of the box around the cloud, m."""
+        low = (self.points - self.radii[:, None]).min(axis=0)
+        high = (self.points + self.radii[:, None]).max(axis=0)
+        pick = np.array([[i, j, k] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
+        return np.asarray(np.where(pick == 0, low, high))

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from itertools import chain, islice
+from math import inf
 from typing import Any
 
 from fem_impact.answers.cost.stored import ChosenSetting, NotMeasured, choose_setting
@@ -17,6 +18,7 @@ from fem_impact.answers.refine.budget import (
     longest_s,
     side_by_side,
 )
+from fem_impact.answers.refine.chain import LevelChain
 from fem_impact.answers.refine.extrapolate import ALONE, ONE_RUN, MeshRuns, mesh_limits, target_limits
 from fem_impact.answers.refine.levels import FEW_OFFSETS, at_offsets
 from fem_impact.answers.refine.loop import Level, RefinementLoop, Stop, levels_at_offsets
@@ -227,6 +229,25 @@ def settle(
     return RefinementPlan.of(scene, BUDGET if budget_s is None else budget_s, workers, reason)
 
 
+def compiled(scene: Scene, fidelity: str) -> Case:
+    """Return the case of a scene that gives a mesh, after all that can be refused before any work.
+
+    Raises
+    ------
+    UsageError, SceneError
+        As `Case.of`, of levels that of the first one.
+    """
+    if not _on_levels(scene, fidelity):
+        return Case.of(scene, fidelity)
+    case = Case(scene)
+    LevelChain(case).pilot()
+    return case
+
+
+def _on_levels(scene: Scene, fidelity: str) -> bool:
+    return fidelity == "solid" and scene.accuracy.levels > 1
+
+
 def simulate(
     scene: Scene,
     fidelity: str | None = None,
@@ -251,6 +272,8 @@ def simulate(
         As `fem_impact.run.simulate.simulate` and `settle`.
     """
     if scene.accuracy.target is None:
+        if _on_levels(scene, fidelity or "solid"):
+            return LevelChain(case or Case(scene), options, inf if budget_s is None else budget_s).run()
         return run.simulate(scene, fidelity or "solid", options, case)
     chosen = chosen or settle(scene, fidelity, workers, budget_s)
     with nullcontext() if options.out is None else directory_lock(options.out):

@@ -24,6 +24,8 @@ from fem_impact.case.limits import (
 from fem_impact.case.mesh import require_mesh
 from fem_impact.case.metals import unknowns
 from fem_impact.case.plates import is_thin, require_plate, require_plate_mesh
+from fem_impact.case.record import ContactRecord
+from fem_impact.case.recorded import AnyZones, recorded_zones
 from fem_impact.case.size import RunSize, require_memory, require_rest, run_size
 from fem_impact.case.zones import Zones, require_fine_zone, require_layer, zones_of
 from fem_impact.errors import UsageError, did_you_mean
@@ -45,13 +47,16 @@ class Case:
     ----------
     scene : as stated
     fidelity : rigid, modal or solid
+    record : where the bodies touched and flowed in a coarser run, or may at first; the zones of the meshes
+        follow it. Without one they follow the estimate of one contact
     """
 
     scene: Scene
     fidelity: str = "solid"
+    record: ContactRecord | None = None
 
     @classmethod
-    def of(cls, scene: Scene, fidelity: str = "solid") -> Case:
+    def of(cls, scene: Scene, fidelity: str = "solid", record: ContactRecord | None = None) -> Case:
         """Return the case of a scene that the fidelity can compute.
 
         Raises
@@ -66,13 +71,14 @@ class Case:
         if fidelity not in FIDELITIES:
             hint = did_you_mean(fidelity, FIDELITIES, f"Use one of {', '.join(FIDELITIES)}.")
             raise UsageError("is not a fidelity.", key="fidelity", value=fidelity, remedy=hint)
-        case = cls(scene, fidelity)
+        case = cls(scene, fidelity, record)
         require_crushing_named(scene)
         require_still(scene.barrier, fidelity)
         require_own_mesh(case.bodies, fidelity)
         require_round(case.bodies, fidelity)
         require_plate(case.bodies, case.meshed_through)
-        require_point(case.bodies)
+        if record is None:
+            require_point(case.bodies)
         slots = case.slots
         require_layers(case.bodies, fidelity)
         require_closed_form(case.bodies, slots, fidelity)
@@ -83,16 +89,17 @@ class Case:
     def _require_mesh(self, slots: ModelSpec) -> None:
         """Refuse what cannot be meshed, or needs more memory than there is (SceneError)."""
         require_shallow(self.bodies)
-        require_fine_zone(self.bodies)
+        if self.record is None:
+            require_fine_zone(self.bodies)
         require_mesh(self.scene.projectile, self.scene.across)
         if self.meshed_through:
             require_plate_mesh(self.bodies, self.zones.base, block_of(self.bodies, self.zones))
         if not slots.vibrating:
-            require_rest(self.bodies, self.zones)
+            require_rest(self.bodies, self._estimated)
         if slots.skin and slots.barrier_law:
-            require_layer(slots.skin, self.zones)
+            require_layer(slots.skin, self.zones.barrier_size, self.zones.skin_rows)
         if self.scene.accuracy.target is None:  # a target chooses its own mesh
-            require_memory(slots, self.bodies, self.zones)
+            require_memory(slots, self.bodies, self._estimated)
 
     @cached_property
     def decision(self) -> Decision:
@@ -153,8 +160,13 @@ class Case:
         return slots
 
     @cached_property
-    def zones(self) -> Zones:
-        """The sizes of the fine zones of the meshes (solid)."""
+    def zones(self) -> AnyZones:
+        """The fine zones of the meshes (solid)."""
+        return self._estimated if self.record is None else recorded_zones(self.bodies, self.record)
+
+    @cached_property
+    def _estimated(self) -> Zones:
+        """The fine zones about the estimated contact, by which size and memory of a run are estimated."""
         return zones_of(self.bodies)
 
     @property
@@ -185,4 +197,4 @@ class Case:
     @cached_property
     def size(self) -> RunSize:
         """About what a run of the solid fidelity takes: elements, memory, steps, time."""
-        return run_size(self.slots, self.bodies, self.zones)
+        return run_size(self.slots, self.bodies, self._estimated)

@@ -142,6 +142,11 @@ def size_for(bodies: Bodies, cells: float, radius: float | None = None) -> float
     return min((contact_radius(bodies) if radius is None else radius) / (cells - RIM), widest)
 
 
+def level_size(bodies: Bodies, radius: float) -> float:
+    """Return the edge, m, of cells of which as many as advised lie over the radius, m, of a contact."""
+    return max(radius / (ADVISED[kind(bodies)] - RIM), FINEST)
+
+
 def advice(bodies: Bodies, radius: float | None = None) -> str:
     """Return what to give so that a contact, of a radius, m, if that is known, is resolved.
 

@@ -9,7 +9,8 @@ import numpy as np
 from fem_impact.arrays import Array
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.plates import rows_through
-from fem_impact.case.zones import Corners, Zones, zones_of
+from fem_impact.case.recorded import AnyZones
+from fem_impact.case.zones import Corners, zones_of
 from fem_impact.errors import SceneError
 from meshes import drawn_depths
 
@@ -26,7 +27,7 @@ def interfaces(bodies: Bodies) -> Array:
     return np.array([depth for depth, _ in bodies.barrier.strata if depth < inf])
 
 
-def block_of(bodies: Bodies, zones: Zones) -> Corners:
+def block_of(bodies: Bodies, zones: AnyZones) -> Corners:
     """Return the corners of the barrier's block, before its rows are moved.
 
     It holds all layers, is `AROUND` times as much wider than its fine zone, and has rows as high as wide. A
@@ -43,7 +44,7 @@ def block_of(bodies: Bodies, zones: Zones) -> Corners:
     return low, high
 
 
-def moved_rows(bodies: Bodies, zones: Zones) -> tuple[Array, Array]:
+def moved_rows(bodies: Bodies, zones: AnyZones) -> tuple[Array, Array]:
     """Return depths (k,), m, of rows of whole cells before and after they are moved to the interfaces.
 
     The first is the surface, the last the bottom, which moves to the underside of a plate that is meshed
@@ -81,7 +82,7 @@ def require_layers(bodies: Bodies, fidelity: str) -> None:
             raise _too_thin(bodies, zones, share)
 
 
-def _too_thin(bodies: Bodies, zones: Zones, share: float) -> SceneError:
+def _too_thin(bodies: Bodies, zones: AnyZones, share: float) -> SceneError:
     thin = int(np.argmin([layer.thickness for layer in bodies.barrier.layers]))
     thickness = bodies.barrier.layers[thin].thickness
     across = 2 * ceil(0.5 * bodies.scene.across * zones.base * FLATTEST / thickness * 1.5)

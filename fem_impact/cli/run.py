@@ -16,7 +16,7 @@ from fem_impact.cli.paths import checked_out, shown_path, told_kept
 from fem_impact.cli.scene_options import add_scene, changed_scene, say_kept
 from fem_impact.cli.terminal import chosen_meter, headed, limitation_lines, print_table, size_text
 from fem_impact.errors import RunError, UsageError
-from fem_impact.files.run_directory import CHECKPOINT
+from fem_impact.files.run_directory import is_resumable
 from fem_impact.jobs.executors import cores
 from fem_impact.options import CHECKPOINT_INTERVAL, FIDELITIES, RunOptions
 from fem_impact.outcome.keys import Num, Unknown, known, or_none
@@ -53,8 +53,8 @@ def add_options(parser: CommandParser) -> None:
         "solid: finite elements (default)",
     )
     budget = (
-        "wall time on the cores used, one or two, for a scene that states its error, if no similar "
-        "scene was measured (default: 2 min)"
+        "wall time: no level of meshes begins that would exceed it (default: none; 2 min for a scene that "
+        "states its error, if no similar scene was measured)"
     )
     add_text(parser, "--budget", "TIME", budget)
     add_out(parser, "results/SCENE")
@@ -81,29 +81,32 @@ def _seconds(text: str) -> float:
 
 def run(options: Options) -> int:
     """Compute one scene, write its results and print them."""
-    from fem_impact.answers.wanted_error import simulate
-    from fem_impact.case.case import Case
-
     scene = changed_scene(options.scene, options.changes)
     if options.resume and options.fidelity in ("rigid", "modal"):
         problem = f"is for finite elements only: a {options.fidelity} run takes seconds."
         raise UsageError(problem, key="--resume", remedy="Leave it out.")
+    from fem_impact.answers.wanted_error import compiled, simulate
+    from fem_impact.case.case import Case
+
     say_kept(scene, options)
     chosen = _setting(scene, options)
-    case = Case(scene) if chosen else Case.of(scene, options.fidelity or "solid")
+    case = Case(scene) if chosen else compiled(scene, options.fidelity or "solid")
     _say_plan(case, chosen.sentence if chosen else "", options)
     out = checked_out(options.out or Path("results") / _usual_name(scene, options))
-    if options.resume and scene.accuracy.target is None and not (out / CHECKPOINT).exists():
+    if options.resume and scene.accuracy.target is None and not is_resumable(out):
         sys.stderr.write(f"fem-impact: {out} holds no checkpoint: the run starts at the beginning\n")
     try:
         with told_kept(out, options), closing(chosen_meter(options)) as meter:
             run_options = RunOptions(out, meter, options.resume, options.checkpoint)
             fidelity = options.fidelity or None
-            outcome = simulate(scene, fidelity, run_options, cores(), chosen=chosen, case=case)
+            budget = stated_budget(options)
+            outcome = simulate(
+                scene, fidelity, run_options, cores(), budget_s=budget, chosen=chosen, case=case
+            )
     except KeyboardInterrupt:
         way = (
             "--resume goes on from the last checkpoint."
-            if (out / CHECKPOINT).exists()
+            if is_resumable(out)
             else "no checkpoint was due yet (--checkpoint SECONDS), so --resume would start at the beginning."
         )
         raise KeyboardInterrupt(f"what was computed so far is kept. Results: {out}; {way}") from None
@@ -157,16 +160,14 @@ def _say_screening(case: Case, options: Options) -> None:
 
 def _setting(scene: Scene, options: Options) -> ChosenSetting | RefinementPlan | None:
     """Return what is run for the target error of a scene; None where the scene gives a mesh."""
-    budget = stated_budget(options)
     if scene.accuracy.target is None:
-        if budget is not None:
-            remedy = """Add --set 'accuracy="5 %"', or leave it out."""
-            problem = "is for a wanted error, and the scene gives a mesh."
-            raise UsageError(problem, key="--budget", remedy=remedy)
+        if options.budget and scene.accuracy.levels == 1:
+            problem = "is for several meshes, and the scene asks for one."
+            raise UsageError(problem, key="--budget", remedy="Leave it out, or accuracy.levels.")
         return None
     from fem_impact.answers.wanted_error import settle
 
-    return settle(scene, options.fidelity or None, cores(), budget)
+    return settle(scene, options.fidelity or None, cores(), stated_budget(options))
 
 
 def _say_plan(case: Case, chosen: str, options: Options) -> None:
@@ -268,7 +269,8 @@ def _accuracy_lines(outcome: Outcome) -> list[str]:
     """Return expected and achieved error and time of a run whose setting a target error chose."""
     v = outcome.validity
     if isinstance(v.accuracy_target, Unknown):
-        return []
+        unbanded = outcome.provenance.fidelity == "solid" and isinstance(v.mesh_band, Unknown)
+        return ["", *wrapped(f"error of these numbers not known: {_reason(v.mesh_band)}")] if unbanded else []
     both = (("expected", v.expected_error, v.expected_wall), ("achieved", v.achieved_error, v.achieved_wall))
     lines = ["", f"asked for {_percent(v.accuracy_target)}: {known(v.accuracy_setting)}"]
     judged = "e" if isinstance(outcome.energy.vibration, Unknown) else "e and E_vib"  # a rigid rod has none
@@ -278,6 +280,10 @@ def _accuracy_lines(outcome: Outcome) -> list[str]:
     names = (("e_edge", "e (tip's arms)"), ("E_vib_over_E_0", "E_vib/E_0"))
     together = ", ".join(f"{label} {_number(limits[name])}" for name, label in names if name in limits)
     return [*lines, f"  all runs together: {together}"] if together else lines
+
+
+def _reason(value: object) -> str:
+    return value.reason if isinstance(value, Unknown) else ""
 
 
 def _percent(value: Num) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import cos, sin, sqrt
 
@@ -12,20 +12,17 @@ import meshes
 from fem_impact.arrays import Array, Bools
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.layers import block_of, moved_rows
+from fem_impact.case.recorded import AnyZones
 from fem_impact.case.size import no_rest
-from fem_impact.case.zones import BUFFER, Corners, Zones
+from fem_impact.case.zones import BUFFER
 from fem_impact.errors import SceneError
 from fem_impact.scene.own_mesh import cell_regions
-from meshes import HexMesh, RodMesh, Zone
+from meshes import Cloud, HexMesh, RodMesh, Zone
 from rigid import Projectile, Turned
 
 POINTS = 2  # mass points that replace the cylinder behind the nose of a rigid rod
 _OTHERWISE = "Give a longer rod, another accuracy.tip_size or a larger accuracy.across."
 MOST_CELLS = 3e5  # largest number of cells of a block before refinement: about 1 GB
-# size of the ellipsoid in which cells may yield, over that of the ellipsoid inscribed in the fine
-# zone's box; cells in the corners of the box stay elastic. In the 13 sets on 0.59 mm, and four on 0.30 mm,
-# plastic strains above 1e-3 ended at .93 of the inscribed one, above 1e-5 at 1.13
-ROUND = 1.1
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,15 +69,15 @@ def tail_corners(bodies: Bodies) -> Array:
 
 
 def build_geometry(
-    bodies: Bodies, zones: Zones, gap: float, meshed_barrier: bool, vibrating: bool = True
+    bodies: Bodies, zones: AnyZones, gap: float, meshed_barrier: bool, vibrating: bool = True
 ) -> Geometry:
     """Mesh the rod (its nose alone if it cannot vibrate) and, if wanted, the barrier block under it."""
     turn, lowest = to_barrier_frame(bodies.mesh_inclination), bodies.lowest_point
-    rod = _rod(bodies, lowest, [Zone(lowest, turn, *box) for box in zones.rod_boxes])
+    rod = _rod(bodies, lowest, zones.in_rod(lowest, turn))
     if not vibrating:
         if bodies.rod.own_mesh:
             place = (rod.mesh.points - lowest) @ turn.T
-            near = rod.mesh.cells[_round(rod.mesh, place, zones.reach, zones.half)]
+            near = rod.mesh.cells[zones.rod_flow(rod.mesh, place)]
             end = float(rod.mesh.points[near, 2].max())  # past all that may yield
             rod = RodMesh.cut(rod.mesh, max(end, bodies.rod.diameter / 3))
         if not len(rod.rest_cells):
@@ -90,19 +87,18 @@ def build_geometry(
     if bodies.mesh_inclination > 0:  # an upright body has no side that could strike
         _require_tip_first(points, zones.base, bodies.rod.own_mesh is not None)
     points[:, 2] += gap if zones.conforming else gap - points[:, 2].min()
-    touching, fine = _touching(rod.mesh, points, zones)
-    may_yield = {
-        "rod": fine & _round(rod.mesh, points, zones.reach, zones.half) & _first_segment(bodies, rod.mesh)
-    }
+    touching, flows = zones.touching(rod.mesh, points), zones.rod_flow(rod.mesh, points)
+    for cells in (touching, flows):
+        cells[rod.body_cells] = False  # slices have mass points in place of nodes, and one elastic operator
+    may_yield = {"rod": flows & _first_segment(bodies, rod.mesh)}
     barrier = None
     if meshed_barrier:
         barrier = _block(bodies, zones)
-        split = barrier.level > 0
-        may_yield["barrier"] = split & _round(barrier, barrier.points, zones.along, zones.half)
+        may_yield["barrier"] = zones.barrier_flow(barrier)
     sizes = zones.tip_size, zones.barrier_size
     return Geometry(
         *(rod, points, barrier, *sizes, zones.conforming, zones.skin_rows, may_yield, touching),
-        middle=-0.5 * zones.reach,
+        middle=zones.middle,
     )
 
 
@@ -115,7 +111,7 @@ def rest_points(bodies: Bodies, start: float) -> Array:
     return np.array([[x, 0.0, z - sqrt(k2)], [x, 0.0, z + sqrt(k2)]])
 
 
-def _rod(bodies: Bodies, lowest: Array, zones: list[Zone]) -> RodMesh:
+def _rod(bodies: Bodies, lowest: Array, zones: Sequence[Zone | Cloud]) -> RodMesh:
     """Return the mesh of the rod; raise SceneError where it is too short or thin for its cells."""
     body, across = bodies.body, bodies.scene.across
     try:
@@ -135,7 +131,12 @@ def _rod(bodies: Bodies, lowest: Array, zones: list[Zone]) -> RodMesh:
                 buffer=BUFFER,
             )
         assert isinstance(body, Projectile), "a body with facets has a mesh of its own"
-        return meshes.rod(body.meridian(), body.length, across, None, zones, contact=lowest, buffer=BUFFER)
+        if all(zone.corners()[:, 2].max() < body.z_side + body.diameter for zone in zones):
+            return meshes.rod(
+                body.meridian(), body.length, across, None, zones, contact=lowest, buffer=BUFFER
+            )
+        side = np.vstack([body.meridian(), [body.diameter / 2, body.length]])
+        return meshes.turned(side, across, zones, contact=lowest, buffer=BUFFER)
     except meshes.MeshError as error:
         raise SceneError(f"cannot be meshed: {error}.", key="projectile", remedy=_OTHERWISE) from None
 
@@ -164,34 +165,13 @@ def _first_segment(bodies: Bodies, mesh: HexMesh) -> Bools:
     return np.asarray(mesh.points[mesh.cells, 2].mean(axis=1) < end)
 
 
-def _touching(mesh: HexMesh, points: Array, zones: Zones) -> tuple[Bools, Bools]:
-    """Return the masks (m,) of the rod's cells that may touch, and of those fine enough to yield.
-
-    They are the finest and the split ones; of a user's mesh that is fine as it is, those about the contact.
-    """
-    if mesh.level.any():
-        return mesh.finest, np.asarray(mesh.level > 0)
-    near = Zone(np.zeros(3), np.eye(3), *zones.whole).gap(points[mesh.cells], np.zeros(len(mesh.cells))) <= 0
-    return np.asarray(near), np.asarray(near)
-
-
-def _round(mesh: HexMesh, points: Array, along: float, radii: tuple[float, float, float]) -> Bools:
-    """Return the mask (m,) of the cells that reach into an ellipsoid about the contact.
-
-    The ellipsoid has half axes ``radii``, m, and is swept by ``along``, m, towards -t.
-    """
-    core = Zone(np.zeros(3), np.eye(3), np.array([-along, 0.0, 0.0]) / radii, np.zeros(3))
-    away = core.gap(points[mesh.cells] / radii, np.zeros(len(mesh.cells)))
-    return np.asarray(away < ROUND)
-
-
-def _block(bodies: Bodies, zones: Zones) -> HexMesh:
+def _block(bodies: Bodies, zones: AnyZones) -> HexMesh:
     """Return the barrier block, rows of its cells at the interfaces of its layers and at its underside."""
     h, base = zones.barrier_size, zones.base
     margin = bodies.scene.accuracy.block_margin  # springs replace the half-space beyond
     low, high = block_of(bodies, zones)
     rows, depths = moved_rows(bodies, zones)
-    boxes = [_before_moving(box, zones, rows, depths) for box in zones.barrier_boxes]
+    boxes = [_before_moving(zone, zones, rows, depths) for zone in zones.in_barrier()]
     count = float(np.prod((high - low) / base))
     if count > MOST_CELLS:
         raise SceneError(
@@ -209,10 +189,15 @@ def _block(bodies: Bodies, zones: Zones) -> HexMesh:
     return replace(block, points=block.points + np.array([bodies.scene.accuracy.grid_shift * h, 0.0, 0.0]))
 
 
-def _before_moving(box: Corners, zones: Zones, rows: Array, depths: Array) -> Zone:
-    """Return the zone whose cells fill a box once rows have moved to the depths of interfaces."""
-    low, high = box
-    if len(rows) > 2 or zones.edges:
-        depth = float(np.interp(-low[2] - zones.rise, depths, rows))
-        low = np.array([low[0], low[1], -depth - zones.rise])
-    return Zone(np.zeros(3), np.eye(3), low, high)
+def _before_moving(zone: Zone | Cloud, zones: AnyZones, rows: Array, depths: Array) -> Zone | Cloud:
+    """Return the zone whose cells fill another one once rows have moved to the depths of interfaces."""
+    if len(rows) <= 2 and not zones.edges:
+        return zone
+
+    def depth(n: Array) -> Array:
+        return np.asarray(-np.interp(-n - zones.rise, depths, rows) - zones.rise)
+
+    if isinstance(zone, Cloud):
+        return Cloud(np.column_stack([zone.points[:, :2], depth(zone.points[:, 2])]), zone.radii)
+    low = np.array([*zone.low[:2], depth(zone.low[2])])
+    return Zone(zone.centre, zone.axes, low, zone.high)

@@ -13,7 +13,7 @@ from math import sqrt
 import numpy as np
 
 from fem_impact.arrays import Array, Bools
-from fem_impact.case.zones import Zones
+from fem_impact.case.recorded import AnyZones
 from fem_impact.fem.hexmodes import CORNERS, reference_gradients
 from fem_impact.physics.contact import pressure_speed
 from fem_impact.scene.material import Material
@@ -28,7 +28,7 @@ ROUND_OFF = 1e-12  # of the rod's mass
 BACK = 0.9  # over the last mass scaling tried, where the rod could not make up for that
 
 
-def reference_time(zones: Zones, materials: dict[str, Material]) -> float:
+def reference_time(zones: AnyZones, materials: dict[str, Material]) -> float:
     """Return the time, s, in which a wave crosses a cell `LOW` of the finest size high, of the faster body.
 
     ``materials`` are those of the meshed bodies, ``rod`` and ``barrier``.

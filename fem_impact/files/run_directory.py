@@ -12,14 +12,20 @@ from fem_impact.files.lock import LOCK
 
 CHECKPOINT = "run.checkpoint"
 FIELDS = "fields.vtkhdf"
-BESIDE = ("contacts.csv", "history.csv", FIELDS, "waves.h5")
+RECORD = "contact.npz"
+BESIDE = ("contacts.csv", "history.csv", FIELDS, "waves.h5", RECORD)
 """Files beside an outcome, whose digests stand in `DIGESTS`."""
-COMPUTED = (CHECKPOINT, "outcome.json", *BESIDE, DIGESTS)
+COMPUTED = (CHECKPOINT, "outcome.json", *BESIDE, DIGESTS, "level-*")
 """Files that a run computes."""
 DERIVED = ("scene.toml", "row.json", "report.html", "figures", "film*")
 """The scene, and files made from those of the run."""
 PUBLISHED = ("study.json", "summary.md", "*.csv", "sweep.parquet")
 """The report of a study or sweep; its outcomes stay in the store."""
+
+
+def is_resumable(out: Path) -> bool:
+    """Return whether a run that was stopped left something in a directory from which it can go on."""
+    return (out / CHECKPOINT).exists() or any(out.glob("level-*"))
 
 
 def set_aside(out: Path) -> Path | None:

@@ -12,6 +12,7 @@ from fem_impact.options import RunOptions
 
 if TYPE_CHECKING:
     from fem_impact.case.case import Case
+    from fem_impact.case.record import ContactRecord
     from fem_impact.outcome.record import Outcome
     from fem_impact.scene.types import Scene
 
@@ -47,6 +48,20 @@ def simulate(
     RunError
         If the run cannot go on; what was computed stays in ``options.out``.
     """
+    return simulate_recorded(scene, fidelity, options, case)[0]
+
+
+def simulate_recorded(
+    scene: Scene,
+    fidelity: str = "solid",
+    options: RunOptions = RunOptions(),
+    case: Case | None = None,
+) -> tuple[Outcome, ContactRecord | None]:
+    """Compute an impact as `simulate` does; return also where the bodies touched and flowed (solid).
+
+    Beside the other files stands ``contact.npz``, which holds the record; see `Case.record` for what the mesh
+    follows.
+    """
     from fem_impact.case.case import Case
     from fem_impact.run.tests import tests_of
 
@@ -62,7 +77,7 @@ def simulate(
     return _compute_in(options.out, case, options)
 
 
-def _compute_in(out: Path, case: Case, options: RunOptions) -> Outcome:
+def _compute_in(out: Path, case: Case, options: RunOptions) -> tuple[Outcome, ContactRecord | None]:
     """Compute and write the files of the run to a directory, locked meanwhile."""
     from fem_impact.files.lock import directory_lock
     from fem_impact.files.run_directory import remove_drafts, remove_scene_alone
@@ -71,17 +86,17 @@ def _compute_in(out: Path, case: Case, options: RunOptions) -> Outcome:
         remove_drafts(out)
         resume = case.fidelity == "solid" and options.resume and (out / CHECKPOINT).exists()
         if not resume:
-            _begin(case.scene, out)
+            begin(case.scene, out)
         try:
-            outcome = _compute(case, replace(options, resume=resume))
+            outcome, record = _compute(case, replace(options, resume=resume))
         except BaseException:
             remove_scene_alone(out)
             raise
-        _write(outcome, out)
-    return outcome
+        _write(outcome, record, out)
+    return outcome, record
 
 
-def _begin(scene: Scene, out: Path) -> None:
+def begin(scene: Scene, out: Path) -> None:
     """Move the files of an older run aside and write the scene; one that is of no run is not replaced."""
     from fem_impact.files.atomic import write_text
     from fem_impact.files.run_directory import refuse_other_scene, set_aside
@@ -93,12 +108,12 @@ def _begin(scene: Scene, out: Path) -> None:
     write_text(path, text)
 
 
-def _compute(case: Case, options: RunOptions) -> Outcome:
+def _compute(case: Case, options: RunOptions) -> tuple[Outcome, ContactRecord | None]:
     """Run the model of the plan's fidelity, whose modules are imported only here."""
     if case.fidelity == "rigid":
         from fem_impact.run.rigid import rigid_outcome
 
-        return rigid_outcome(case)
+        return rigid_outcome(case), None
     if case.fidelity == "modal":
         from fem_impact.run.modal import closed
         from fem_impact.run.modal import reduce as reduce_modal
@@ -107,29 +122,33 @@ def _compute(case: Case, options: RunOptions) -> Outcome:
         result = closed(case, options.progress, recorded=options.out is not None)
         if options.out is not None:
             write_history(case, result, options.out / "history.csv")
-        return reduce_modal(case, result)
+        return reduce_modal(case, result), None
     from threadpoolctl import threadpool_limits
 
     from fem_impact.run.program import stamp
+    from fem_impact.run.resolution import unresolved
     from fem_impact.run.solid import reduce
     from fem_impact.solid.run import solve
 
     # as the command does: on a busy machine further threads of the linear algebra wait for each other, and a
     # run takes four times the processor time
     with threadpool_limits(1, "blas"):
-        return reduce(solve(case, replace(options, stamp=stamp(case.scene))))
+        end = solve(case, replace(options, stamp=stamp(case.scene)))
+        return reduce(end), replace(end.record, resolved=not unresolved(end))
 
 
-def _write(outcome: Outcome, out: Path) -> None:
+def _write(outcome: Outcome, record: ContactRecord | None, out: Path) -> None:
     from fem_impact.files.atomic import write_text
     from fem_impact.files.digests import write_digests
-    from fem_impact.files.run_directory import BESIDE
+    from fem_impact.files.run_directory import BESIDE, RECORD
     from fem_impact.tables.history import CONTACTS
     from fem_impact.tables.table import Table
 
     contacts = outcome.to_dict()["contacts"]
     if contacts is not None:
         write_text(out / "contacts.csv", Table.of(CONTACTS, contacts).csv())
+    if record is not None:
+        record.write(out / RECORD)
     outcome.write(out / "outcome.json")
     (out / CHECKPOINT).unlink(missing_ok=True)
     write_digests(out, BESIDE)  # last: a run that goes on from its checkpoint still changes these files

@@ -192,6 +192,7 @@ TIP_SIZE = Parameter(
     derived="5 elements over the estimated radius of a yielding contact, 4 over that of an elastic one",
     source="chosen for this package: the two-mesh band of every result says what it costs",
 )
+LEVELS = 3
 LAYER = (Parameter("thickness", "thickness of a layer", "length", 1e-5, 1.0),)
 ACCURACY = (
     TIP_SIZE,
@@ -258,6 +259,17 @@ ACCURACY = (
         0.99,
         default=0.9,
         source="chosen for this package; stable is 2 over the largest frequency of the assembled bodies",
+    ),
+    Parameter(
+        "levels",
+        "meshes of a finite-element run, each with finer cells at the contact that the one before found; "
+        "1: one mesh about the estimated contact, without a band",
+        "",
+        1,
+        6,
+        whole=True,
+        default=LEVELS,
+        source="chosen for this package: three meshes find the contact and give each number a band",
     ),
 )
 Element = Literal["incompatible", "full", "bbar"]  # linear operator of cells that cannot yield

@@ -73,6 +73,7 @@ class Accuracy:
     ``grid_shift`` is the place of a meshed barrier's grid along t, in cells at the contact.
     ``across`` that is not stated follows from the projectile, see `Scene.across`; ``max_time`` from the rod's
     bending and the contact time, see `Plan.max_time`.
+    ``levels`` is the number of meshes of a finite-element run, of which the last counts.
     ``target`` is the wanted relative error; measured costs then choose fidelity and mesh instead.
     """
 
@@ -89,6 +90,7 @@ class Accuracy:
     fine_zone: fields.FineZone = "graded"
     unresolved: fields.Unresolved = "withhold"
     target: float | None = None
+    levels: int = fields.LEVELS
 
     def __post_init__(self) -> None:
         check_numbers(self, fields.ACCURACY)

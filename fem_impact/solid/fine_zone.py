@@ -158,6 +158,12 @@ def outside_zones(model: Model, watch: SkinWatch) -> tuple[str, ...]:
     return (watch.below(), *(_at_border(model, zone) for zone in model.zones), left if nodes else "")
 
 
+def left_zones(model: Model, watch: SkinWatch) -> bool:
+    """Return whether contact or yielding reached the end of the zones that the mesh held ready for them."""
+    strained = any(border_strain(model, zone) > PROOF_STRAIN for zone in model.zones)
+    return watch.lowest < 0 or model.book.outside > 0 or strained
+
+
 def border_strain(model: Model, zone: YieldingZone) -> float:
     """Return the largest mean plastic strain of a yielding element that has a linear neighbour."""
     g = model.geometry

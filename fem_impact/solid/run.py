@@ -13,6 +13,7 @@ import numpy as np
 
 from fem_impact.arrays import Array
 from fem_impact.case.case import Case
+from fem_impact.case.record import ContactRecord
 from fem_impact.fem.flight import FreeVibration, RigidMotion
 from fem_impact.fem.kernels import compiled_before
 from fem_impact.files.run_directory import CHECKPOINT
@@ -21,7 +22,7 @@ from fem_impact.outcome.limitation import Limitation, limitations
 from fem_impact.progress import Progress, compiling, setting_up
 from fem_impact.solid.build import build
 from fem_impact.solid.checkpoint import Checkpoint
-from fem_impact.solid.fine_zone import outside_zones, skin_shares
+from fem_impact.solid.fine_zone import left_zones, outside_zones, skin_shares
 from fem_impact.solid.frame import mass_centre
 from fem_impact.solid.march import Observer, advance, evaluate, march
 from fem_impact.solid.model import Model
@@ -80,6 +81,7 @@ class SolidResult:
     peak_nodes : nodes of the half model that were pressed at once then
     added_energy : largest kinetic energy of the mass that mass scaling added, J
     vibration_check : kinetic and strain energy of the vibration without modes, see `RodState`, J, or None
+    record : where the bodies touched and flowed
     heat : the contact's patch and friction power over time, or None
     shares : share of the run time of the effects that have items of their own; None where it is not resolved
     """
@@ -106,6 +108,7 @@ class SolidResult:
     reason: str
     cost: LoopCost
     limitations: tuple[Limitation, ...]
+    record: ContactRecord
     heat: HeatWatch | None = None
     shares: dict[str, float | None] = field(default_factory=dict)
 
@@ -219,6 +222,7 @@ def _result(
             *limitations("run", *(w for f in watchers.frames for w in f.writer.warnings)),
             *limitations("resolution", *outside_zones(model, watchers.skin)),
         ),
+        record=replace(watchers.contact.record(), left=left_zones(model, watchers.skin)),
         heat=watchers.heat,
     )
 

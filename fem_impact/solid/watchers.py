@@ -14,6 +14,7 @@ from fem_impact.fem.kernels import COMPILING
 from fem_impact.files.fields_write import FieldWriter
 from fem_impact.physics.beam import horizon
 from fem_impact.solid.checkpoint import Moving
+from fem_impact.solid.contact_watch import ContactWatch
 from fem_impact.solid.fine_zone import SkinWatch
 from fem_impact.solid.march import Observer
 from fem_impact.solid.model import Model
@@ -87,6 +88,7 @@ class Watchers:
     frames: list[Frames]
     strain: list[StrainWatch]
     skin: SkinWatch
+    contact: ContactWatch
     peak: PeakForce
     added: AddedMass
     heat: HeatWatch | None
@@ -117,14 +119,15 @@ class Watchers:
             from fem_impact.solid.heatwatch import HeatWatch
 
             heat = HeatWatch(model)
-        return cls(StepGuard(model), watch, history, frames, strain, skin, peak, added, heat, stop)
+        contact = ContactWatch(model)
+        return cls(StepGuard(model), watch, history, frames, strain, skin, contact, peak, added, heat, stop)
 
     @property
     def all(self) -> list[Saved]:
         """Observers in calling order, step guard to stop rule."""
         heat = [self.heat] if self.heat else []
         first: list[Saved] = [self.guard, self.watch, *self.history, *self.frames, *self.strain]
-        return [*first, self.skin, self.peak, self.added, *heat, self.stop]
+        return [*first, self.skin, self.contact, self.peak, self.added, *heat, self.stop]
 
     @property
     def reason(self) -> str:

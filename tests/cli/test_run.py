@@ -187,6 +187,7 @@ def test_resume_and_the_time_between_checkpoints_are_passed_on(cli, stand):
 
 def test_a_spoiled_checkpoint_is_refused_by_the_command(cli, tmp_path):
     words = ("--set", "accuracy.tip_size=0.8 mm", "--set", "accuracy.across=6", "--set", "save.frames=0")
+    words += ("--set", "accuracy.levels=1")
     (tmp_path / "here").mkdir()
     (tmp_path / "here" / "scene.toml").write_text(to_toml(load("t5b")))
     (tmp_path / "here" / "history.csv").write_text("")
@@ -208,15 +209,25 @@ def test_a_body_that_does_not_yield_has_no_residual_stress(cli, stand):
     assert "residual stress in barrier         1.000 %" in out
 
 
-@pytest.mark.parametrize("fidelity", ["rigid", "solid"])
-def test_the_command_compiles_its_scene_once(cli, monkeypatch, fidelity):
-    """For the time that it may take, the run, and the screening at its end."""
+@pytest.mark.parametrize(("fidelity", "levels", "cases"), [("rigid", 3, 1), ("solid", 1, 1), ("solid", 3, 5)])
+def test_the_command_compiles_its_scene_once(cli, monkeypatch, fidelity, levels, cases):
+    """For its expected time, run and screening; each level has its own, the first one once more."""
     made, compiled = [], Case.__init__
     monkeypatch.setattr(Case, "__init__", lambda *case: made.append(case) or compiled(*case))
-    code, out, _ = cli("run", "quick", "--fidelity", fidelity, "--quiet", "--set", "accuracy.max_time=20 us")
+    code, out, _ = cli(
+        "run",
+        "quick",
+        "--fidelity",
+        fidelity,
+        "--quiet",
+        "--set",
+        "accuracy.max_time=20 us",
+        "--set",
+        f"accuracy.levels={levels}",
+    )
     assert code == (0 if fidelity == "rigid" else RunError.exit_code) and "T1/tau" in out
     assert ("no number that was measured is known" in out) == bool(code)  # cut off before the separation
-    assert len(made) == 1
+    assert len(made) == cases
 
 
 def test_every_limitation_is_printed_after_its_kind(cli, stand):

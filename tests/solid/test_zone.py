@@ -92,7 +92,7 @@ def test_rows_are_thin_where_a_plate_that_flows_may_stick(effects, rows):
 def test_corners_of_the_fine_zone_stay_elastic_and_never_flow(monkeypatch):
     scene = replace(SCENE, "save.frames", 0)
     part = solve(Case.of(scene))
-    monkeypatch.setattr("fem_impact.fem.geometry._round", lambda mesh, *_: mesh.finest)
+    monkeypatch.setattr("fem_impact.case.zones._round", lambda mesh, *_: mesh.finest)
     whole = solve(Case.of(scene))
     counts = [[zone.count for zone in found.model.zones] for found in (part, whole)]
     assert max(few / many for few, many in zip(*counts, strict=True)) < 0.75

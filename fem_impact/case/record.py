@@ -1,0 +1,198 @@
+"""Where two bodies touched and flowed in a run, for the meshes of the next; what may touch at first."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from hashlib import sha256
+from io import BytesIO
+from math import cos, pi, sin
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from fem_impact.arrays import Array
+from fem_impact.case.bodies import Bodies
+from fem_impact.errors import ResultError
+from fem_impact.files.atomic import write_bytes
+from fem_impact.physics.contact import FLAT
+from rigid import Faceted, Projectile
+
+AROUND = 16  # places of half a round surface at which its height is looked at
+ABOVE = 0.35  # of a cell, within which skin of the lowest point may touch in a run on such cells
+DEEP = 1.5  # radii of the estimated contact, and cells, up to which metal may flow from where it may touch
+SLIDE = 5.0  # depths of the estimated contact over which a projectile that comes down obliquely drags it
+
+
+@dataclass(frozen=True, slots=True)
+class BodyRecord:
+    """Where one body touched and flowed: places of its material before the impact, m.
+
+    Those of the projectile are in the frame of its mesh (x, y, z), those of the barrier along (t, b, n).
+
+    Attributes
+    ----------
+    touched : (k, 3) nodes of the skin that were pressed
+    flowed : (m, 3) centres of the cells that flowed; strain : (m,) their mean plastic strain
+    edge : mean edge of the cells there: the record knows places no better
+    reach : how far beyond ``touched`` another mesh may be pressed; spread : the same of ``flowed``
+    """
+
+    touched: Array
+    flowed: Array
+    strain: Array
+    edge: float
+    reach: float
+    spread: float
+
+    def wider(self) -> BodyRecord:
+        """Return the record with twice the room around it."""
+        return replace(self, reach=2 * self.reach, spread=2 * self.spread)
+
+
+@dataclass(frozen=True, slots=True)
+class Site:
+    """One place of contact of the whole projectile.
+
+    Attributes
+    ----------
+    start, end : s, of the first and the last touch there
+    impulse_n, impulse_t : N s, on the projectile
+    low, high : (2,) along t and b, m, of the skin of the barrier that was pressed, from the lowest point
+    depth : largest indentation of the barrier there, m; 0 of a rigid one
+    """
+
+    start: float
+    end: float
+    impulse_n: float
+    impulse_t: float
+    low: tuple[float, float]
+    high: tuple[float, float]
+    depth: float
+
+
+@dataclass(frozen=True, slots=True)
+class ContactRecord:
+    """Where projectile and barrier touched and flowed; the barrier's part is None of a rigid one.
+
+    Attributes
+    ----------
+    sites : places of contact in the order of their first touch; none of a record of what may happen
+    left : contact or flow reached the end of what the mesh held ready for it
+    resolved : enough nodes were pressed at once for coefficients and shares of the run to be given
+    """
+
+    rod: BodyRecord
+    barrier: BodyRecord | None
+    sites: tuple[Site, ...] = field(default_factory=tuple)
+    left: bool = False
+    resolved: bool = False
+
+    def digest(self) -> str:
+        """Return the SHA-256 of all its numbers."""
+        return sha256(self._packed()).hexdigest()
+
+    def write(self, path: Path) -> None:
+        """Write the record as one atomic step (OutputPathError: it cannot be written)."""
+        write_bytes(path, self._packed())
+
+    def _packed(self) -> bytes:
+        arrays = {"sites": np.array([_row(site) for site in self.sites]).reshape(-1, len(SITE))}
+        arrays["flags"] = np.array([self.left, self.resolved])
+        for name, body in (("rod", self.rod), ("barrier", self.barrier)):
+            if body is not None:
+                arrays |= {f"{name}_{key}": np.asarray(getattr(body, key)) for key in BODY}
+        held = BytesIO()
+        np.savez(held, allow_pickle=False, **arrays)
+        return held.getvalue()
+
+    @classmethod
+    def read(cls, path: Path) -> ContactRecord:
+        """Read a record back (ResultError: it is missing or damaged)."""
+        try:
+            with np.load(path) as held:
+                bodies = [
+                    BodyRecord(*(_plain(held[f"{name}_{key}"]) for key in BODY))
+                    for name in ("rod", "barrier")
+                    if f"{name}_edge" in held
+                ]
+                left, resolved = map(bool, held["flags"])
+                rows = held["sites"].tolist()
+        except (OSError, ValueError, KeyError) as error:
+            raise ResultError(f"{path}: holds no record of a contact: {error}") from None
+        sites = tuple(
+            Site(row[0], row[1], row[2], row[3], (row[4], row[5]), (row[6], row[7]), row[8]) for row in rows
+        )
+        return cls(bodies[0], bodies[1] if len(bodies) > 1 else None, sites, left, resolved)
+
+    def wider(self) -> ContactRecord:
+        """Return a record after which the next mesh holds twice as much room ready around what is known."""
+        barrier = self.barrier and self.barrier.wider()
+        return replace(self, rod=self.rod.wider(), barrier=barrier)
+
+
+BODY = ("touched", "flowed", "strain", "edge", "reach", "spread")
+"""Names of what the file of a record holds of each body."""
+SITE = ("start", "end", "impulse_n", "impulse_t", "low_t", "low_b", "high_t", "high_b", "depth")
+"""Columns of its table of sites."""
+
+
+def _row(site: Site) -> list[float]:
+    """Return a site as a row of the file."""
+    return [site.start, site.end, site.impulse_n, site.impulse_t, *site.low, *site.high, site.depth]
+
+
+def _plain(value: Array) -> Any:
+    """Return an array as it is, one without axes as a number."""
+    return value if value.ndim else float(value)
+
+
+def expected_record(
+    bodies: Bodies, rod_edge: float, barrier_edge: float, wider: float = 1.0
+) -> ContactRecord:
+    """Return what may touch and flow on cells of these edges, m, from the shapes alone.
+
+    May touch what lies no higher over the barrier than `FLAT` estimated depths or `ABOVE` of a cell,
+    whichever is more; ``wider`` is a factor of that, of a run that found contact outside it.
+    """
+    size, turn = bodies.estimate, bodies.mesh_inclination
+    edge = max(rod_edge, barrier_edge)
+    high = wider * max(FLAT * size.depth, ABOVE * edge)
+    skin = skin_of(bodies, 0.5 * rod_edge)
+    away = skin - bodies.lowest_point
+    t = away[:, 0] * cos(turn) + away[:, 2] * sin(turn)
+    n = away[:, 2] * cos(turn) - away[:, 0] * sin(turn)
+    low = n <= high
+    touched, under = skin[low], np.stack([t[low], away[low, 1], np.zeros(low.sum())], axis=1)
+    # no wider than what may touch, which a flat face or a flank limits
+    radius = min(size.radius, 0.5 * float(np.linalg.norm(np.ptp(under, axis=0))) + 0.5 * edge)
+    spread = wider * DEEP * max(edge, radius)
+    slid = SLIDE * size.depth * bodies.contact.sliding / max(bodies.contact.approach, 1e-6)
+    steps = np.linspace(0.0, slid, 2 + int(abs(slid) / edge)) if slid else np.zeros(1)
+    under = np.concatenate([under + np.array([step, 0.0, 0.0]) for step in steps])
+    rod = BodyRecord(touched, touched, np.zeros(len(touched)), rod_edge, wider * rod_edge, spread)
+    barrier = BodyRecord(under, under, np.zeros(len(under)), barrier_edge, wider * barrier_edge, spread)
+    return ContactRecord(rod, barrier if bodies.contact.compliant else None)
+
+
+def skin_of(bodies: Bodies, apart: float) -> Array:
+    """Return places (k, 3), m, of the half projectile's skin in its own frame, about so far apart, m."""
+    body = bodies.body
+    if isinstance(body, Faceted):
+        corners = body.points[body.facets]
+        return np.concatenate([body.points[np.unique(body.facets)], corners.mean(axis=1)])
+    line = body.meridian()
+    if isinstance(body, Projectile):
+        line = np.vstack([line, [body.diameter / 2, body.length], [0.0, body.length]])
+    elif line[-1, 0] > 0.0:
+        line = np.vstack([line, [0.0, body.length]])
+    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))])
+    arc = np.linspace(0.0, along[-1], 2 + int(along[-1] / apart))
+    arc = np.unique(np.concatenate([arc, along]))
+    rho, z = np.interp(arc, along, line[:, 0]), np.interp(arc, along, line[:, 1])
+    around = np.linspace(0.0, pi, 1 + max(AROUND, int(pi * rho.max() / apart)))
+    places = np.stack(
+        [np.outer(rho, np.cos(around)), np.outer(rho, np.sin(around)), np.outer(z, np.ones(len(around)))],
+        axis=-1,
+    )
+    return np.asarray(places.reshape(-1, 3))

@@ -1,0 +1,159 @@
+"""Fine zones of the meshes from the record of a coarser run, or from what may touch at first."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import sqrt
+
+import numpy as np
+
+from fem_impact.arrays import Array, Bools
+from fem_impact.case.bodies import Bodies
+from fem_impact.case.cells import body_cell, levels_of, rod_cell
+from fem_impact.case.plates import is_thin
+from fem_impact.case.record import BodyRecord, ContactRecord
+from fem_impact.case.zones import Corners, Zones, skin_rows
+from fem_impact.physics.plate import plate_waves
+from meshes import Cloud, HexMesh, thin_skin_rise
+
+# Plastic strain above which metal gets cells of the finest level, and half-widths of the contact around the
+# skin that is pressed in which all does: small cells pay where metal flows most, right under the contact
+FLOWING, UNDER = 0.02, 0.6
+
+
+@dataclass(frozen=True, slots=True)
+class RecordedZones:
+    """Fine zones around all places where two bodies touched and flowed, m; the names are those of `Zones`.
+
+    Attributes
+    ----------
+    base, rod_base : edges of the cells of barrier and rod where they touch, before they are split
+    levels, below : how often those of the rod and of the barrier are split
+    record : where they touched and flowed
+    conforming : the barrier flows under all of the contact; skin_rows : thin rows of cells at its top
+    edges : how far a plate that is meshed through its thickness goes beyond its fine zone; else 0
+    """
+
+    base: float
+    rod_base: float
+    levels: int
+    below: int
+    record: ContactRecord
+    conforming: bool
+    skin_rows: int
+    edges: float = 0.0
+
+    @property
+    def tip_size(self) -> float:
+        """Return the finest cell edge of the rod, m."""
+        return self.rod_base * 0.5**self.levels
+
+    @property
+    def barrier_size(self) -> float:
+        """Return the finest cell edge of the barrier along t and b, m."""
+        return self.base * 0.5**self.below
+
+    @property
+    def rise(self) -> float:
+        """Return by how much, m, the barrier's bottom rises where the rows at its skin are drawn together."""
+        return thin_skin_rise(self.skin_rows) * self.barrier_size
+
+    @property
+    def middle(self) -> float:
+        """Return the place along t, m, about which the block is struck: the middle of all that is pressed."""
+        if self.record.barrier is None:
+            return 0.0
+        touched = self.record.barrier.touched[:, 0]
+        return 0.5 * float(touched.min() + touched.max())
+
+    @property
+    def _of_barrier(self) -> BodyRecord:
+        barrier = self.record.barrier
+        assert barrier is not None, "a rigid barrier has no zones"
+        return barrier
+
+    def in_rod(self, lowest: Array, turn: Array) -> list[Cloud]:
+        """Return the zone of each level in the frame of the projectile's mesh, as `Zones.in_rod`."""
+        return _clouds(self.record.rod, self.levels)
+
+    def in_barrier(self) -> list[Cloud]:
+        """Return the zone of each level along t, b and n, before the rows at the skin are drawn together."""
+        clouds = _clouds(self._of_barrier, self.below)
+        if not self.rise:
+            return clouds
+        sunk = np.array([0.0, 0.0, self.rise])
+        return [
+            Cloud(np.vstack([c.points, c.points - sunk]), np.concatenate([c.radii, c.radii])) for c in clouds
+        ]
+
+    def block(self, margin: float) -> Corners:
+        """Return the corners of the barrier's block, ``margin``, m, wider than the zone that may yield."""
+        low, high = (np.array(end) for end in _ends(_flow(self._of_barrier)))
+        low[2] -= self.rise
+        low, high = low - margin, high + margin
+        return np.array([low[0], 0.0, low[2]]), np.array([high[0], high[1], 0.0])
+
+    def touching(self, mesh: HexMesh, points: Array) -> Bools:
+        """Return the mask (m,) of the rod's cells that may touch: the finest, all of an unsplit mesh."""
+        return mesh.finest
+
+    def rod_flow(self, mesh: HexMesh, points: Array) -> Bools:
+        """Return the mask (m,) of the rod's cells that may yield."""
+        return _near(_flow(self.record.rod), mesh)
+
+    def barrier_flow(self, mesh: HexMesh) -> Bools:
+        """Return the mask (m,) of the barrier's cells that may yield."""
+        return _near(_flow(self._of_barrier), mesh)
+
+
+AnyZones = Zones | RecordedZones
+"""Fine zones of the meshes, from an estimate or from a record."""
+
+
+def recorded_zones(bodies: Bodies, record: ContactRecord) -> RecordedZones:
+    """Return the fine zones of two bodies around the places of a record."""
+    (levels, below), base = levels_of(bodies), body_cell(bodies)
+    conforming = bodies.contact.barrier_conforms
+    rows = skin_rows(bodies, base / 2**below) if conforming and bodies.contact.f > 0 else 0
+    edges = plate_waves(bodies.contact)[1] if is_thin(bodies) else 0.0
+    return RecordedZones(base, rod_cell(bodies), levels, below, record, conforming, rows, edges)
+
+
+def patch_radius(record: BodyRecord) -> float:
+    """Return the radius, m, of the contact: of all skin that was pressed, of the whole body.
+
+    It is the geometric mean of the half-widths; of a long contact no more than twice the smaller one.
+    """
+    span = np.ptp(record.touched, axis=0)
+    across = max(float(record.touched[:, 1].max()), 0.5 * record.edge)
+    along = max(0.5 * float(np.hypot(span[0], span[2])), 0.5 * record.edge)
+    return min(sqrt(across * along), 2 * min(across, along))
+
+
+def _clouds(record: BodyRecord, levels: int) -> list[Cloud]:
+    """Return the zone of each level: that of the finest alone is narrower than all that may yield."""
+    fine = max(record.reach, UNDER * patch_radius(record))
+    flows = record.strain >= FLOWING
+    points = np.vstack([record.touched, record.flowed[flows]])
+    radii = np.concatenate([np.full(len(record.touched), fine), np.full(flows.sum(), 0.5 * record.edge)])
+    finest, others = Cloud(points, radii), max(levels - 1, 0) * [_flow(record)]
+    return [*others, finest][:levels] if levels else []
+
+
+def _flow(record: BodyRecord) -> Cloud:
+    """Return the zone whose cells may yield; skin that is pressed is always in it."""
+    points = np.vstack([record.touched, record.flowed])
+    reach, spread = (
+        np.full(len(part), far)
+        for part, far in ((record.touched, record.reach), (record.flowed, record.spread))
+    )
+    return Cloud(points, np.concatenate([reach, spread]))
+
+
+def _near(cloud: Cloud, mesh: HexMesh) -> Bools:
+    return np.asarray(cloud.gap(mesh.points[mesh.cells], np.zeros(len(mesh.cells))) <= 0)
+
+
+def _ends(cloud: Cloud) -> Corners:
+    corners = cloud.corners()
+    return corners.min(axis=0), corners.max(axis=0)

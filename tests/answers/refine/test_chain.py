@@ -1,0 +1,159 @@
+"""Levels of a run: what they find, which of them run, their bands, files, repeats and budget."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fem_impact.answers.refine import chain
+from fem_impact.answers.refine.chain import LevelChain
+from fem_impact.answers.wanted_error import simulate
+from fem_impact.case.case import Case
+from fem_impact.case.record import ContactRecord
+from fem_impact.errors import SceneError
+from fem_impact.options import RunOptions
+from fem_impact.outcome.keys import Unknown, known
+from fem_impact.outcome.record import Outcome
+from fem_impact.scene.read import read_dict
+from fem_impact.scene.shipped import load, replace_all
+from fem_impact.scene.write import digest
+
+BASE = {
+    "barrier": {"material": "plate-steel"},
+    "surface": {"state": "custom", "friction": 0.2, "source": "assumed"},
+    "save": {"frames": 0},
+}
+PIN = {"shape": "flat", "length": "40 mm", "diameter": "10 mm", "material": "rod-steel"}
+QUICK = replace_all(load("quick"), {"save.frames": 0})
+
+
+def scene_of(name, projectile, impact, **more):
+    return read_dict({"id": name, **BASE, "projectile": projectile, "impact": impact, **more})
+
+
+@pytest.fixture(scope="module")
+def quick():
+    levels = LevelChain(Case(QUICK))
+    return levels, levels.run()
+
+
+def test_a_pilot_and_two_finer_levels_end_on_the_stated_size(quick):
+    levels, outcome = quick
+    assert [level.splits for level in levels.done] == [0, 1, 2]
+    sizes = [level.size for level in levels.done]
+    assert sizes == sorted(sizes, reverse=True)
+    assert known(outcome.cost.tip_size) == pytest.approx(sizes[-1])
+    assert outcome.provenance.scene_digest == digest(QUICK)
+
+
+def test_every_level_closes_its_ledger(quick):
+    assert max(abs(level.outcome.energy.residual) for level in quick[0].done) < 1e-5
+
+
+def test_flow_and_contact_stay_in_the_zones_of_the_last_level(quick):
+    levels, outcome = quick
+    assert not levels.done[-1].record.left
+    assert not [one for one in outcome.validity.limitations if "fine zone" in one.text]
+
+
+def test_the_place_of_contact_has_the_impulse_and_the_time_of_the_contacts(quick):
+    levels, outcome = quick
+    (site,) = levels.done[-1].record.sites
+    contacts = known(outcome.contact.intervals)
+    total = sum(contact.impulse_n for contact in contacts)
+    assert site.impulse_n == pytest.approx(total, rel=0.03)  # it is sampled every few steps
+    assert site.start == pytest.approx(contacts[0].start, abs=2e-6)
+    assert site.end == pytest.approx(contacts[-1].end, abs=2e-6)
+    assert site.low[0] < 0 < site.high[0] and 0 < site.depth < 2e-4
+
+
+def test_fewer_cells_yield_than_about_an_estimated_contact_and_the_numbers_agree(quick):
+    _, outcome = quick
+    alone = simulate(replace(QUICK, accuracy=replace(QUICK.accuracy, levels=1)))
+    assert outcome.cost.elements_yielding < 1.2 * alone.cost.elements_yielding
+    assert known(outcome.restitution.edge.e) == pytest.approx(known(alone.restitution.edge.e), abs=0.02)
+    assert known(outcome.restitution.mu) == pytest.approx(known(alone.restitution.mu), abs=0.02)
+    assert isinstance(alone.validity.mesh_band, Unknown)
+
+
+def test_two_levels_that_resolve_the_contact_give_bands():
+    """An elastic flat pin that lands upright on a rigid plane gives back all but its waves."""
+    scene = scene_of("pin", PIN, {"angle": "0 deg", "speed": "1 m/s"}, effects=["vibration", "barrier-rigid"])
+    outcome = LevelChain(Case(scene)).run()
+    bands, limits = known(outcome.validity.mesh_band), known(outcome.validity.mesh_limit)
+    assert 0 < bands["e_edge"] < 0.1
+    assert limits["e_edge"] == pytest.approx(known(outcome.restitution.edge.e), abs=bands["e_edge"])
+
+
+def test_a_chamfered_tube_runs_which_one_mesh_refuses():
+    tube = {
+        "profile": [["0 mm", "8.5 mm"], ["1 mm", "9.5 mm"], ["60 mm", "9.5 mm"]],
+        "bore": [["0 mm", "6 mm"], ["60 mm", "6 mm"]],
+        "material": "rod-steel",
+    }
+    scene = scene_of("tube", tube, {"angle": "44 deg", "speed": "1 m/s"})
+    with pytest.raises(SceneError, match="lays a flank"):
+        Case.of(scene)
+    outcome = LevelChain(Case(replace(scene, accuracy=replace(scene.accuracy, levels=2)))).run()
+    assert outcome.validity.finished and 0 < known(outcome.restitution.edge.e) < 1
+
+
+def test_a_budget_ends_the_levels_and_tells_what_is_missing():
+    notices = []
+    levels = LevelChain(Case(QUICK), RunOptions(progress=notices.append), budget_s=1e-3)
+    outcome = levels.run()
+    assert len(levels.done) == 1
+    assert any("would take about" in getattr(one, "text", "") for one in notices)
+    assert any("2 more levels" in one.text for one in outcome.validity.limitations)
+
+
+def test_a_level_that_leaves_its_zones_is_repeated_with_more_room(monkeypatch):
+    run, rooms = chain.simulate_recorded, []
+
+    def narrow(scene, fidelity, options, case):
+        rooms.append(case.record.rod.spread)
+        outcome, record = run(scene, fidelity, options, case)
+        return outcome, replace(record, left=len(rooms) == 2)
+
+    monkeypatch.setattr(chain, "simulate_recorded", narrow)
+    scene = replace(QUICK, accuracy=replace(QUICK.accuracy, tip_size=1.2e-3, barrier_size=None))
+    levels = LevelChain(Case(scene))
+    levels.run()
+    assert [level.repeats for level in levels.done] == [0, 1]
+    assert rooms[2] > rooms[1]
+
+
+def test_the_files_of_the_last_level_stand_above_those_of_the_others(tmp_path):
+    outcome = simulate(QUICK, options=RunOptions(tmp_path))
+    assert Outcome.read(tmp_path / "outcome.json") == outcome
+    assert Outcome.read(tmp_path / "level-1" / "outcome.json") != outcome
+    record = ContactRecord.read(tmp_path / "contact.npz")
+    assert len(record.sites) == 1 and record.resolved
+
+
+def test_levels_that_are_done_are_not_run_again(tmp_path, monkeypatch):
+    whole = simulate(QUICK, options=RunOptions(tmp_path / "whole"))
+    run, ran = chain.simulate_recorded, []
+
+    def counted(scene, fidelity, options, case):
+        ran.append(scene)
+        if len(ran) == 2:
+            raise KeyboardInterrupt
+        return run(scene, fidelity, options, case)
+
+    monkeypatch.setattr(chain, "simulate_recorded", counted)
+    with pytest.raises(KeyboardInterrupt):
+        simulate(QUICK, options=RunOptions(tmp_path / "cut"))
+    resumed = simulate(QUICK, options=RunOptions(tmp_path / "cut", resume=True))
+    assert len(ran) == 4  # the first, the second twice, the third
+    numbers = resumed.restitution.edge.e, resumed.restitution.mu, resumed.energy.vibration
+    assert numbers == (whole.restitution.edge.e, whole.restitution.mu, whole.energy.vibration)
+
+
+def test_a_record_is_read_back_as_it_was_written(quick, tmp_path):
+    record = quick[0].done[-1].record
+    record.write(tmp_path / "contact.npz")
+    again = ContactRecord.read(tmp_path / "contact.npz")
+    assert again.digest() == record.digest() and again.sites == record.sites
+    assert np.array_equal(again.rod.touched, record.rod.touched)
+    assert again.wider().digest() != record.digest()
