@@ -7,13 +7,14 @@ from meshes.errors import MeshError
 from meshes.split import edge_keys
 from meshes.topology import CORNERS, EDGES
 
-__all__ = ["halved_layer", "halved_tetrahedra", "straight"]
+__all__ = ["across", "halved_layer", "halved_tetrahedra", "straight"]
 
 # of the mean length of the edges at a node of tetrahedra: at least so far from the plane it is moved along y,
 # so that none of the cells that are cut is thin; by symmetry the surface there runs along y
 CLEAR = 0.3
 LEFT = 0.2  # of the volume of a tetrahedron, that it must keep
 ROUNDS = 40
+KEPT = 0.01  # of the volume, that cutting may change
 ALIKE = 0.05  # of their mean, by which volumes and moments of both sides of a symmetric body may differ
 THREE = np.array([[0, 1, 2, 3], [1, 2, 3, 4], [2, 3, 4, 5]])  # tetrahedra of a wedge
 EIGHT = np.array(  # tetrahedra about the middles of the edges of one, four at its corners
@@ -29,12 +30,11 @@ def halved_layer(points: FloatArray, cells: IntArray) -> tuple[FloatArray, IntAr
     A cell across the plane has one face on its one side and the opposite one on its other side, and is cut
     between them; None where one has not.
     """
-    y = points[cells][:, :, 1]
-    across = np.flatnonzero((y.min(axis=1) < 0.0) & (y.max(axis=1) > 0.0))
-    found = np.full(len(across), -1)
+    y, crossing = points[cells][:, :, 1], np.flatnonzero(across(points, cells, 0.0))
+    found = np.full(len(crossing), -1)
     for axis in range(3):
         low = CORNERS[:, axis] == 0
-        one, other = y[across][:, low], y[across][:, ~low]
+        one, other = y[crossing][:, low], y[crossing][:, ~low]
         apart = ((one < 0).all(axis=1) & (other > 0).all(axis=1)) | (
             (one > 0).all(axis=1) & (other < 0).all(axis=1)
         )
@@ -43,12 +43,12 @@ def halved_layer(points: FloatArray, cells: IntArray) -> tuple[FloatArray, IntAr
         return None
     made = cells.copy()
     edges = np.concatenate(
-        [cells[across[found == axis]][:, EDGES[_along(axis)]].reshape(-1, 2) for axis in range(3)]
+        [cells[crossing[found == axis]][:, EDGES[_along(axis)]].reshape(-1, 2) for axis in range(3)]
     )
     keys, first = np.unique(edge_keys(edges), return_index=True)
     places = _crossings(points, edges[first])
     for axis in range(3):
-        here = across[found == axis]
+        here = crossing[found == axis]
         for a, b in EDGES[_along(axis)]:
             node = len(points) + np.searchsorted(keys, edge_keys(cells[here][:, [a, b]]))
             for corner in (a, b):
@@ -72,19 +72,37 @@ def _crossings(points: FloatArray, edges: IntArray) -> FloatArray:
 
 
 def halved_tetrahedra(
-    points: FloatArray, cells: IntArray
+    points: FloatArray, cells: IntArray, near: float
 ) -> tuple[FloatArray, dict[str, IntArray], dict[str, IntArray]]:
     """Return nodes, tetrahedra and wedges of the half y >= 0 of tetrahedra (m, 4), and the cell each lies in.
+
+    Where no cell lies across the plane by more than `near`, m, they are those above it, uncut.
 
     Raises
     ------
     MeshError
         If both sides differ in volume, centre or inertia, or cells fold when nodes give way to the plane.
     """
-    half = _upper(points, cells)
-    mirrored = _upper(points * [1.0, -1.0, 1.0], cells)
-    _require_alike([half[:2], mirrored[:2]])
-    return half
+    volume = float(np.abs(_volumes(points, cells)).sum())
+    halves = [_half(points * [1.0, sign, 1.0], cells, near) for sign in (1.0, -1.0)]
+    _require_alike([half[:2] for half in halves], volume)
+    return halves[0]
+
+
+def across(points: FloatArray, cells: IntArray, near: float) -> BoolArray:
+    """Return the mask (m,) of the cells that reach to both sides of y = 0 by more than `near`, m."""
+    y = points[cells][:, :, 1]
+    return np.asarray((y.min(axis=1) < -near) & (y.max(axis=1) > near))
+
+
+def _half(
+    points: FloatArray, cells: IntArray, near: float
+) -> tuple[FloatArray, dict[str, IntArray], dict[str, IntArray]]:
+    if across(points, cells, near).any():
+        return _upper(points, cells)
+    above = np.flatnonzero(points[cells][:, :, 1].max(axis=1) > near)
+    none = np.zeros((0, 6), np.int64)
+    return points, {"tetra": cells[above], "wedge": none}, {"tetra": above, "wedge": none[:, 0]}
 
 
 def straight(cells: IntArray) -> tuple[IntArray, int]:
@@ -160,8 +178,11 @@ def _clear(points: FloatArray, cells: IntArray) -> FloatArray:
     )
 
 
-def _require_alike(sides: list[tuple[FloatArray, dict[str, IntArray]]]) -> None:
-    """Refuse a body whose two sides of y = 0, one of them mirrored, differ in volume or moments."""
+def _require_alike(sides: list[tuple[FloatArray, dict[str, IntArray]]], volume_before: float) -> None:
+    """Refuse a body whose two sides of y = 0, one of them mirrored, differ in volume or moments.
+
+    One whose volume (m3) has changed because its surface does not run along y at the plane is refused too.
+    """
     sums = []
     for points, blocks in sides:
         wedges = blocks["wedge"][:, THREE].reshape(-1, 4)
@@ -169,6 +190,12 @@ def _require_alike(sides: list[tuple[FloatArray, dict[str, IntArray]]]) -> None:
         volume, place = np.abs(_volumes(points, cells)), points[cells].mean(axis=1)
         sums.append([volume.sum(), *(volume @ place), *(volume @ place**2)])
     one, other = np.array(sums)
+    changed = abs(float((one + other)[0]) / volume_before - 1.0)
+    if changed > KEPT:
+        raise MeshError(
+            f"would change its volume by {100 * changed:.2g} % if its tetrahedra were cut in y = 0: they are "
+            "too coarse there, or the surface does not cross it squarely. Mesh the half y >= 0."
+        )
     size = np.sqrt(0.5 * (one + other)[4:] / (0.5 * (one + other)[0]))  # radii of gyration about the axes, m
     scale = 0.5 * (one + other)[0] * np.array([1.0, *size, *size**2])
     away = float((np.abs(one - other) / scale).max())

@@ -10,7 +10,7 @@ import scipy.sparse as sp
 from meshes.arrays import BoolArray, FloatArray, IntArray
 from meshes.errors import MeshError
 from meshes.gauss import jacobians
-from meshes.halving import halved_tetrahedra, straight
+from meshes.halving import across, halved_tetrahedra, straight
 from meshes.hexahedra import as_hexahedra
 from meshes.hexmesh import SYMMETRY, HexMesh, face_keys, from_cells, half_body_tags
 from meshes.moments import cell_moments
@@ -164,7 +164,6 @@ def _halved(
     """Return tetrahedra of a whole body cut in y = 0, or all cells; where each lies; what is told."""
     numbers = np.arange(sum(len(cells) for _, cells in blocks))
     turned = _axes(points, stated.tip)
-    y = turned[:, 1]
     used = np.unique(np.concatenate([cells.ravel() for _, cells in blocks]))
     near = NEAR * float(np.ptp(turned[used][:, :2], axis=0).max())
     if any(not kind.startswith("tetra") for kind, _ in blocks) or stated.symmetry not in (None, "whole"):
@@ -172,12 +171,12 @@ def _halved(
     parts = [straight(cells) for _, cells in blocks]
     cells = np.concatenate([part for part, _ in parts])
     own = np.repeat(numbers, np.concatenate([np.full(len(part) // times, times) for part, times in parts]))
-    low, high = y[cells].min(axis=1), y[cells].max(axis=1)
-    across = int(((low < -near) & (high > near)).sum())
-    if not across:
+    y = turned[used, 1]
+    if y.min() > -near or y.max() < near:
         return points, blocks, numbers, ()
-    places, made, of = halved_tetrahedra(turned, cells)
-    told = f"{across} of {len(cells)} tetrahedra across the plane y = 0 are cut there"
+    cut = int(across(turned, cells, near).sum())
+    places, made, of = halved_tetrahedra(turned, cells, near)
+    told = f"{cut} of {len(cells)} tetrahedra lie across the plane y = 0 and are cut there"
     return places, tuple(made.items()), own[np.concatenate([of["tetra"], of["wedge"]])], (told,)
 
 

@@ -46,7 +46,7 @@ def test_tetrahedra_of_a_whole_body_are_cut_in_the_plane(tmp_path, shake):
     found = read_own(path, 1e-3)
     assert moments(found.half) == pytest.approx(exact(), rel=1e-4, abs=1e-12)
     assert found.half.points[:, 1].min() == 0.0
-    assert any("tetrahedra across the plane y = 0 are cut there" in one for one in found.told)
+    assert any("tetrahedra lie across the plane y = 0 and are cut there" in one for one in found.told)
     assert quality(found.half).min_scaled_jacobian > 0.05
     assert {"LOW", "HIGH"} == set(found.sets)
     both = found.sets["LOW"].sum() + found.sets["HIGH"].sum()
@@ -82,4 +82,22 @@ def test_tetrahedra_of_an_unsymmetric_body_are_refused(tmp_path):
     with pytest.raises(
         MeshError, match=r"not symmetric about the plane y = 0: volume and moments of its sides"
     ):
+        read_own(path, 1e-3)
+
+
+def test_tetrahedra_with_faces_on_the_plane_need_no_mirror_images(tmp_path):
+    points, cells = box(2, 2, 3, (-6.0, -6.0, 0.0), (6.0, 6.0, 60.0))
+    path = decks.write(tmp_path / "bar.vtu", points, cells[:, SIX].reshape(-1, 4))
+    found = read_own(path, 1e-3)  # diagonals of both sides run the same way
+    assert moments(found.half) == pytest.approx(exact(), rel=1e-4, abs=1e-12)
+    assert "0 of 72 tetrahedra lie across the plane y = 0 and are cut there" in found.told
+
+
+def test_tetrahedra_whose_surface_crosses_the_plane_aslant_are_refused(tmp_path):
+    """A roof whose ridge does not lie on nodes: they cannot give way along y."""
+    points, cells = box(2, 3, 3, (-6.0, -6.0, 0.0), (6.0, 6.0, 60.0))
+    points[:, 0] += 2.0 * (6.0 - np.abs(points[:, 1]))
+    points[np.abs(points[:, 1]) < 3.0, 1] *= 0.1
+    path = decks.write(tmp_path / "roof.vtu", points, cells[:, SIX].reshape(-1, 4))
+    with pytest.raises(MeshError, match=r"would change its volume by|is not symmetric"):
         read_own(path, 1e-3)
