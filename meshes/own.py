@@ -173,7 +173,9 @@ def _halved(
     own = np.repeat(numbers, np.concatenate([np.full(len(part) // times, times) for part, times in parts]))
     y = turned[used, 1]
     if y.min() > -near or y.max() < near:
-        return points, blocks, numbers, ()
+        if stated.symmetry is None:
+            return points, blocks, numbers, ()
+        turned = turned - np.array([0.0, 0.5 * (y.min() + y.max()), 0.0])
     cut = int(across(turned, cells, near).sum())
     places, made, of = halved_tetrahedra(turned, cells, near)
     told = f"{cut} of {len(cells)} tetrahedra lie across the plane y = 0 and are cut there"

@@ -53,6 +53,13 @@ def test_tetrahedra_of_a_whole_body_are_cut_in_the_plane(tmp_path, shake):
     assert both == len(found.half.cells)
 
 
+def test_tetrahedra_beside_the_plane_are_cut_in_the_middle_of_a_stated_whole(tmp_path):
+    points, cells = box(4, 5, 16, (0.0, 0.0, 0.0), (12.0, 12.0, 60.0))
+    path = decks.write(tmp_path / "bar.vtu", points, cells[:, SIX].reshape(-1, 4))
+    found = read_own(path, 1e-3, Stated("whole"))
+    assert moments(found.half) == pytest.approx(exact(), rel=1e-4, abs=1e-12)
+
+
 def test_tetrahedra_of_second_order_keep_the_place_of_their_middles(tmp_path):
     """A bar that is wider halfway between its nodes, by the middles of edges alone."""
     points, cells = box(2, 3, 2, (-6.0, -6.0, 0.0), (6.0, 6.0, 60.0))
