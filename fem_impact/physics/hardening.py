@@ -211,8 +211,8 @@ def power_hardening(E: float, yield_stress: float, ultimate_stress: float) -> Ha
     high = 0.5
     if not 1 <= ratio <= _nominal_strength_ratio(high, stiffness):
         raise ValueError(
-            f"Ultimate stress {ultimate_stress:g} Pa must lie between the yield stress {yield_stress:g} Pa "
-            f"and {_nominal_strength_ratio(high, stiffness):.2f} times it."
+            f"Ultimate stress {ultimate_stress / 1e6:g} MPa must lie between the yield stress "
+            f"{yield_stress / 1e6:g} MPa and {_nominal_strength_ratio(high, stiffness):.2f} times it."
         )
     n = _necking_strain(stiffness, ratio, high) if ratio > 1 else 0.0
     return Hardening(yield_stress, stiffness if n else 0.0, n)

@@ -105,9 +105,9 @@ def _nearest_material(name: str, known: Collection[str]) -> str:
     part = name.lower().replace("aluminum", "aluminium")
     grades = {word for word in part.split("-") if word[-1:].isdigit()}
     family = [one for one in known if part in one or grades & set(one.split("-"))]
-    if len(family) > 1:
+    if len(family) > 1 and part:
         return f"Some that are: {', '.join(family)}. {ALL_MATERIALS}"
-    return f"Did you mean {family[0]}?" if family else did_you_mean(part, known, ALL_MATERIALS)
+    return f"Did you mean {family[0]}?" if len(family) == 1 else did_you_mean(part, known, ALL_MATERIALS)
 
 
 def family_of(metal: Material) -> str:

@@ -93,7 +93,9 @@ def hardening_of(material: Material) -> HardeningLaw:
             return hardness_hardening(material.E, material.yield_stress, material.hardness)
         return power_hardening(material.E, material.yield_stress, material.ultimate_stress)
     except ValueError as error:
-        raise SceneError(str(error), key=f"{key} of {material.name}", value=value) from None
+        instead = "law and hardness" if key == "hardness" else key
+        remedy = f"Give one that fits, or in place of {instead} a tangent_modulus, hardening or flow curve."
+        raise SceneError(str(error), key=f"{key} of {material.name}", value=value, remedy=remedy) from None
 
 
 def _of_flow(material: Material, flow: Flow) -> HardeningLaw:

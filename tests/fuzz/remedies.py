@@ -1,0 +1,107 @@
+"""Doing to a scene file what the remedy of a refusal says, where the remedy names what to write."""
+
+from __future__ import annotations
+
+import copy
+import re
+import tomllib
+from collections.abc import Iterator
+from typing import Any
+
+from fem_impact.errors import StatementError
+
+Tree = dict[str, Any]
+Try = tuple[str, Tree, str]
+FIDELITY = re.compile(r"--fidelity (rigid|modal|solid)(?: or (modal|solid))?")
+ADDED = re.compile(r'[Aa]dd "(-?[a-z-]+)" to effects')
+EXAMPLE = re.compile(r'([a-z_]+ = (?:\{.*?\}|\[\[.*?\]\]|"[^"]*"|[\d.]+))')
+ELASTIC = {"E": "30 GPa", "nu": 0.2, "rho": "2300 kg/m3"}
+VALUES: Tree = {
+    "tangent_modulus": "1 MPa",
+    "hardening": "0 MPa",
+    "yield_stress": "3 MPa",
+    "loss_factor": 0.1,
+    "friction": 0.3,
+    "restitution": 0.5,
+    "E": "200 GPa",
+    "nu": 0.3,
+    "rho": "7800 kg/m3",
+    "diameter": "20 mm",
+    "length": "80 mm",
+    "angle": "10 deg",
+    "speed": "1 m/s",
+    "height": "0.1 m",
+    "B": "300 MPa",
+    "n": 0.3,
+    "C": 0.01,
+    "D": "40 /s",
+    "q": 5,
+    "hardness": 900,
+}
+BEFORE = r"(?:\b(?:[Gg]ive|[Ss]tate|[Gg]ive the|or|an?)|,) "
+
+
+def followed(tree: Tree, fidelity: str, refusal: StatementError) -> Iterator[Try]:
+    """Yield (what was done, tree, fidelity) for each thing that a remedy says; nothing if it names none."""
+    said, key = refusal.remedy, refusal.key.removeprefix("scene: ")
+    if "own" in said and 'family = "' in said:
+        yield _own_table(tree, key, said, fidelity)
+        return
+    for found in FIDELITY.finditer(said):
+        yield from ((f"--fidelity {one}", tree, one) for one in found.groups() if one)
+    for effect in ADDED.findall(said):
+        yield effect, changed(tree, "effects", [*tree.get("effects", ["auto"]), effect]), fidelity
+    for example in EXAMPLE.findall(said):
+        yield example, _put(tree, key, tomllib.loads(example)), fidelity
+    yield from ((did, new, fidelity) for did, new in _stated(tree, key, refusal))
+
+
+def _stated(tree: Tree, key: str, refusal: StatementError) -> Iterator[tuple[str, Tree]]:
+    """Yield the tree with a key that the remedy says to state, or without what it says to leave out."""
+    said, last = refusal.remedy, key.rpartition(".")[2]
+    if "leave the effect out" in said and (named := re.search(r'names "([a-z-]+)"', refusal.problem)):
+        yield f"-{named[1]}", changed(tree, "effects", [one for one in tree["effects"] if one != named[1]])
+    to_give = said.partition("leave out")[0].partition("{")[0]
+    for name, value in VALUES.items():
+        if not said.startswith("Known here") and re.search(rf"{BEFORE}{name}\b", to_give):
+            yield name, _put(tree, key, {name: value})
+    if re.match(r"Give it\b", said) and last in VALUES:
+        yield f"{last} itself", _put(tree, key, {last: VALUES[last]})
+    if re.match(r"Leave (it|.*) out", said):
+        yield f"without {last}", _put(tree, key, {last: None})
+    for name in re.findall(r"leave out ([a-z_]+)", said):
+        yield f"without {name}", _put(tree, key, {name: None})
+
+
+def _own_table(tree: Tree, key: str, said: str, fidelity: str) -> Try:
+    """A material that is refused by its name becomes a table of its family, which stays elastic."""
+    family = re.findall(r'family = "([a-z ]+)"', said)[0]
+    new = changed(tree, key, {"name": "of our own", "family": family, **ELASTIC})
+    if "effects" in said:
+        elastic = "-rod-plasticity" if key.startswith("projectile") else "barrier-elastic"
+        new = changed(new, "effects", ["auto", elastic])
+    return f"own {family}", new, fidelity
+
+
+def changed(tree: Tree, key: str, value: Any) -> Tree:
+    """Return a copy of a tree with one value changed, or removed if it is None."""
+    new = copy.deepcopy(tree)
+    *path, last = key.split(".")
+    table = new
+    for name in path:
+        if not isinstance(table.get(name), dict):
+            table[name] = {}
+        table = table[name]
+    table.pop(last, None)
+    if value is not None:
+        table[last] = value
+    return new
+
+
+def _put(tree: Tree, key: str, values: Tree) -> Tree:
+    """Return the tree with values beside the refused key, or at the top where that is their place."""
+    beside = key.rpartition(".")[0]
+    for name, value in values.items():
+        at_top = name in ("surface", "restitution", "effects", "id") or not beside
+        tree = changed(tree, name if at_top else f"{beside}.{name}", value)
+    return tree
