@@ -104,7 +104,7 @@ MUTANTS = (
         "fem_impact/solid/build.py",
         "START_GAP = 1e-10",
         "START_GAP = 2e-6",
-        "tests/solid/test_gravity.py::test_gravity_adds_to_the_rebound_what_the_contact_bears_and_says_so",
+        "tests/solid/test_gravity.py::test_the_contact_bears_gravity_and_the_outcome_says_so",
     ),
     Mutant(
         "energies of the half model not doubled",

@@ -42,7 +42,7 @@ class ModalResult:
 
     Attributes
     ----------
-    V_n, V_t, Omega : after the last separation, what gravity gave in contact removed, m/s, rad/s
+    V_n, V_t, Omega : after the last separation, the fall beside the impact removed, m/s, rad/s
     E_0, kinetic, friction, plastic, skin, stored, residual : J, of the whole rod; kinetic is the rigid
         motion's, skin friction and plastic work of the sheared surface, stored what the contact still holds
         elastically where the run was cut off
@@ -159,8 +159,8 @@ def _result(
         + sum(end.held)
         + given
     )
-    fell = fall(case.slots.gravity, end.time, contacts[: end.touches, :2])
-    V_n, V_t = motion[0] + fell * cos(scene.impact.angle), motion[1] + fell * sin(scene.impact.angle)
+    fell = fall(case.slots.gravity, scene.impact.angle, end.time, contacts[: end.touches, :2])
+    V_n, V_t = motion[0] + fell[0], motion[1] + fell[1]
     kinetic = _kinetic(rod, V_n, V_t, motion[2])
     return ModalResult(
         rod=rod,

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import inf, pi, sin, sqrt
+from math import cos, inf, pi, sin, sqrt
 from typing import TYPE_CHECKING, NamedTuple
 
 from rigid import Body, Faceted
@@ -242,15 +242,21 @@ class ContactPair:
         return ContactEstimate(depth, sqrt(2 * R1 * depth), sqrt(2 * R2 * depth), duration, limit, R1, R2)
 
 
-def fall(gravity: float | None, time: float, intervals: Array) -> float:
-    """Return the speed, m/s, that gravity, m/s2, gave the rod while it touched and after that.
+def fall(gravity: float | None, angle: float, time: float, intervals: Array) -> tuple[float, float]:
+    """Return the normal and the tangential speed, m/s, that gravity, m/s2, gave the rod beside its impact.
+
+    That is the fall after the last contact, and along the barrier also that while the rod touched. Across the
+    barrier the contact bears it: what gravity does going in it takes back coming out, so that an elastic ball
+    keeps e = 1.
 
     Parameters
     ----------
+    angle : rad, of the fall to the barrier's normal
     time : s since first contact at which the rod's motion is taken
     intervals : (k, 2) start and end of each contact, s; speed gained in flights between them is not included
     """
-    return (gravity or 0.0) * (time - between(intervals))
+    g, later = gravity or 0.0, max(time - float(intervals[-1, 1]), 0.0) if len(intervals) else 0.0
+    return g * cos(angle) * later, g * sin(angle) * (time - between(intervals))
 
 
 def between(intervals: Array) -> float:

@@ -16,7 +16,7 @@ for all heat in body i. The motion does not depend on the heat.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import pi, sqrt
+from math import inf, isinf, pi, sqrt
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -136,6 +136,8 @@ def flash_bound(pair: ContactPair, friction: float, halves: Halves) -> float:
     It is infinite between two bodies that never yield: no hardness limits the pressure of a spot.
     """
     softer = min(metal.ultimate_stress for metal in (pair.rod, pair.barrier))
+    if not friction or isinf(softer):
+        return inf if friction else 0.0
     speed = abs(pair.sliding) + pair.approach
     q, t = friction * HARDNESS * softer * speed, 3 * pair.estimate.duration
     return max(float(short_rise([0.0, t], [q], body)[-1]) for body in halves)

@@ -26,7 +26,7 @@ from fem_impact.outcome.groups import (
 from fem_impact.outcome.keys import Num, Unknown
 from fem_impact.outcome.limitation import Limitation, limitations
 from fem_impact.outcome.record import Outcome, installed_versions, utc_now
-from fem_impact.physics.contact import between, fall
+from fem_impact.physics.contact import between
 from fem_impact.run.common import (
     CUT_OFF,
     RESIDUAL_LIMIT,
@@ -211,7 +211,7 @@ def _gravity(case: Case, contacts: Array | None) -> tuple[str, str]:
     """
     if contacts is None:
         return "", ""
-    speed = fall(case.slots.gravity, contacts[-1, 1], contacts[:, :2])
+    speed = (case.slots.gravity or 0.0) * (float(contacts[-1, 1]) - between(contacts[:, :2]))
     share = speed * cos(case.scene.impact.angle) / case.contact.approach
     gained = (
         f"Gravity gives the rod {speed * 1e3:.3g} mm/s while it touches, {100 * share:.2g} % of its approach"
@@ -220,6 +220,6 @@ def _gravity(case: Case, contacts: Array | None) -> tuple[str, str]:
         remedy = "it is no impact any more. Give a higher speed, or leave out the gravity effect."
         return "", f"{gained}: {remedy}"
     if share > GRAVITY_TOLD:
-        why = "The contact bears that too, so that V_n, e and E_r come out higher by about as much."
+        why = "The contact bears it, so that V_n, e and E_r hold to about a tenth of that."
         return f"{gained}. {why}", ""
     return "", ""

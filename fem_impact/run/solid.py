@@ -46,12 +46,12 @@ def reduce(result: SolidResult) -> Outcome:
         past = f"{result.time * 1e6:.3g} us, {result.steps} steps"
         raise RunError(f"There was no contact in {past}. {result.reason}")
     case, m, contacts = result.case, result.motion, result.model.book.table
-    # what gravity gave the rod in contact and after it is taken out
-    fallen, alpha = fall(case.slots.gravity, result.time, contacts[:, :2]), case.scene.impact.angle
-    V_n = m.V_n + fallen * np.cos(alpha)
+    # what gravity gave the rod beside its impact is taken out
+    fallen_n, fallen_t = fall(case.slots.gravity, case.scene.impact.angle, result.time, contacts[:, :2])
+    V_n = m.V_n + fallen_n
     end = ImpactEnd(
         V_n=V_n,
-        V_t=m.V_t + fallen * np.sin(alpha),
+        V_t=m.V_t + fallen_t,
         Omega=m.Omega,
         mass=m.mass,
         k2=m.inertia / m.mass,

@@ -195,12 +195,12 @@ def test_a_long_step_does_not_cut_a_contact_to_pieces():
     assert result.contacts[0, 1] - result.contacts[0, 0] > 5e-3
 
 
-def test_gravity_adds_to_the_rebound_what_the_contact_bears_and_says_so():
+def test_the_contact_bears_gravity_and_the_outcome_says_so():
     on, off = (outcome_of(scene) for scene in (slow("barrier-elastic", "gravity"), slow("barrier-elastic")))
     contact = on.contact.intervals[0]
     borne = 9.80665 * cos(radians(45)) * contact.duration / 0.03
     assert 0.05 < borne < 0.2
-    assert on.restitution.edge.e - off.restitution.edge.e == pytest.approx(borne, rel=0.2)
+    assert abs(on.restitution.edge.e - off.restitution.edge.e) < 0.05 * borne
     assert "Gravity gives the rod" in texts(on.validity.limitations, "result")[0]
     assert not texts(off.validity.limitations, "result")
 

@@ -30,7 +30,7 @@ def test_the_first_step_touches(barrier):
     assert model.book.intervals[0].start <= model.step
 
 
-def test_gravity_adds_to_the_rebound_what_the_contact_bears_and_says_so():
+def test_the_contact_bears_gravity_and_the_outcome_says_so():
     on, off = (run(*PLANE, *gravity, **SLOW) for gravity in (("gravity",), ()))
     with_it, without = reduce(on), reduce(off)
     assert with_it.energy.E_0 == pytest.approx(without.energy.E_0, rel=1e-9)
@@ -38,7 +38,7 @@ def test_gravity_adds_to_the_rebound_what_the_contact_bears_and_says_so():
     borne = 9.80665 * cos(pi / 4) * (touch.end - touch.start) / 0.01
     assert 0.03 < borne < 0.1
     gained = with_it.restitution.edge.e - without.restitution.edge.e
-    assert gained == pytest.approx(borne, rel=0.05)
+    assert abs(gained) < 0.1 * borne
     assert any("Gravity gives the rod" in told for told in texts(with_it.validity.limitations))
     assert not any("Gravity" in told for told in texts(without.validity.limitations))
 
