@@ -11,7 +11,7 @@ from meshes.block import (
 from meshes.cut import without_slices
 from meshes.errors import ClosedEndError, MeshError, MissingReaderError
 from meshes.files import MeshFile, read, write
-from meshes.hexmesh import OUTER, SKIN, SYMMETRY, HexMesh
+from meshes.hexmesh import OUTER, SKIN, SYMMETRY, HexMesh, owners
 from meshes.moments import CellMoments, cell_moments
 from meshes.own import TIPS, OwnBody, Stated, own_body, read_own
 from meshes.quality import Quality, edge_lengths, quality, thicknesses, volume
@@ -48,6 +48,7 @@ __all__ = [
     "edge_lengths",
     "included",
     "own_body",
+    "owners",
     "pole_edge",
     "quality",
     "read",

@@ -21,6 +21,7 @@ __all__ = [
     "half_body_tags",
     "match_faces",
     "outer_faces",
+    "owners",
 ]
 
 SKIN = 0
@@ -107,6 +108,13 @@ def match_faces(mesh: HexMesh) -> npt.NDArray[np.int8]:
     at = np.minimum(np.searchsorted(known[order], keys), len(known) - 1)
     outer = known[order][at] == keys
     return np.where(outer, mesh.face_tag[order][at], -1).astype(np.int8).reshape(-1, 6)
+
+
+def owners(mesh: HexMesh) -> IntArray:
+    """(k,) the cell of each outer face."""
+    keys = face_keys(mesh.cells[:, FACES].reshape(-1, 4))
+    order = np.argsort(keys)
+    return np.asarray(order[np.searchsorted(keys[order], face_keys(mesh.faces))] // 6)
 
 
 def half_body_tags(corners: FloatArray) -> IntArray:

@@ -47,8 +47,11 @@ def add_options(parser: CommandParser) -> None:
     add_scene(parser)
     details = "print every value with its source, flow stresses, and what each effect adds"
     parser.add_argument("--long", action="store_true", help=details)
-    drawing = "draw the projectile with its materials, first contact and mass centre into a .png or .svg file"
-    parser.add_argument("--drawing", type=Path, default=None, metavar="FILE", help=drawing)
+    drawing = (
+        "draw the projectile with its materials, first contact and mass centre, of a mesh with its cells and "
+        "its tip as the barrier sees it, into a .png or .svg file"
+    )
+    parser.add_argument("--drawing", "--picture", type=Path, default=None, metavar="FILE", help=drawing)
 
 
 def check(options: Options) -> int:
@@ -107,6 +110,17 @@ def _drawing_path(options: Options) -> Path | None:
 def _draw(case: Case, path: Path) -> None:
     from fem_impact.figures.outline import draw
 
+    rod = case.scene.projectile
+    if rod.own_mesh is not None:
+        from fem_impact.figures.meshed import draw_mesh
+        from rigid import Faceted
+
+        names = [material.name for material in rod.materials]
+        body = case.bodies.body
+        assert isinstance(body, Faceted), "a mesh has facets"
+        centre, touch = (body.x_c, body.z_c), case.contact.touch_point
+        draw_mesh(rod.own_mesh.half(), centre, touch, rod.cell_materials(), names, path)
+        return
     body, segments = case.bodies.body, case.scene.projectile.segments
     parts = [(part.to, part.material.name) for part in segments]
     draw(body, case.contact.touch_point, parts or [(body.length, case.scene.projectile.material.name)], path)

@@ -67,3 +67,23 @@ def test_another_format_is_refused_before_any_work(cli, tmp_path):
     code, out, err = cli("check", "t5b", "--drawing", "t5b.pdf")
     assert (code, out) == (2, "") and "projectile.svg" in err
     assert not list(tmp_path.iterdir())
+
+
+def test_a_mesh_is_drawn_with_its_cells_and_its_materials(cli, tmp_path):
+    from own_bodies import taper, write
+
+    write(tmp_path / "bar.vtu", *taper(end=0.9))
+    (tmp_path / "own.toml").write_text(
+        'id = "own"\n'
+        'projectile = { mesh = "bar.vtu", material = "rod-steel" }\n'
+        'barrier = { material = "plate-steel" }\n'
+        'surface = { state = "custom", friction = 0.2, source = "assumed" }\n'
+        'impact = { angle = "30 deg", speed = "2 m/s" }\n'
+    )
+    picture = tmp_path / "bar.svg"
+    code, out, _ = cli("check", str(tmp_path / "own.toml"), "--picture", str(picture))
+    assert code == 0
+    assert f"drawing: {picture}" in out
+    assert "the mesh is taken as a half of a body that is symmetric about y = 0" in out
+    # 40 cells in the plane of symmetry, and 8 facets of the tip with their mirror images
+    assert picture.read_text().count("<path") > 56
