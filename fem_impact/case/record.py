@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from hashlib import sha256
 from io import BytesIO
 from math import cos, pi, sin
 from pathlib import Path
 from typing import Any
+from zipfile import BadZipFile
 
 import numpy as np
 
@@ -15,6 +17,7 @@ from fem_impact.arrays import Array
 from fem_impact.case.bodies import Bodies
 from fem_impact.errors import ResultError
 from fem_impact.files.atomic import write_bytes
+from fem_impact.files.digests import check_digest
 from fem_impact.physics.contact import FLAT
 from rigid import Faceted, Projectile
 
@@ -58,7 +61,8 @@ class Site:
     ----------
     start, end : s, of the first and the last touch there
     impulse_n, impulse_t : N s, on the projectile
-    low, high : (2,) along t and b, m, of the skin of the barrier that was pressed, from the lowest point
+    low, high : (2,) along t and b, m, of the projectile's skin that was pressed, as it lies before the
+        impact, from its lowest point; b is 0 or more, the other half is its mirror image
     depth : largest indentation of the barrier there, m; 0 of a rigid one
     """
 
@@ -108,22 +112,20 @@ class ContactRecord:
 
     @classmethod
     def read(cls, path: Path) -> ContactRecord:
-        """Read a record back (ResultError: it is missing or damaged)."""
+        """Read a record back (ResultError: it is missing, damaged or of another run)."""
+        check_digest(path)
         try:
-            with np.load(path) as held:
-                bodies = [
-                    BodyRecord(*(_plain(held[f"{name}_{key}"]) for key in BODY))
-                    for name in ("rod", "barrier")
-                    if f"{name}_edge" in held
-                ]
+            with np.load(BytesIO(path.read_bytes())) as held:
+                rod = _body(held, "rod")
+                barrier = _body(held, "barrier") if "barrier_edge" in held else None
                 left, resolved = map(bool, held["flags"])
                 rows = held["sites"].tolist()
-        except (OSError, ValueError, KeyError) as error:
+        except (OSError, EOFError, ValueError, KeyError, BadZipFile) as error:
             raise ResultError(f"{path}: holds no record of a contact: {error}") from None
         sites = tuple(
             Site(row[0], row[1], row[2], row[3], (row[4], row[5]), (row[6], row[7]), row[8]) for row in rows
         )
-        return cls(bodies[0], bodies[1] if len(bodies) > 1 else None, sites, left, resolved)
+        return cls(rod, barrier, sites, left, resolved)
 
     def wider(self) -> ContactRecord:
         """Return a record after which the next mesh holds twice as much room ready around what is known."""
@@ -140,6 +142,11 @@ SITE = ("start", "end", "impulse_n", "impulse_t", "low_t", "low_b", "high_t", "h
 def _row(site: Site) -> list[float]:
     """Return a site as a row of the file."""
     return [site.start, site.end, site.impulse_n, site.impulse_t, *site.low, *site.high, site.depth]
+
+
+def _body(held: Mapping[str, Array], name: str) -> BodyRecord:
+    """Return the record of a body from the arrays of the file (KeyError: some are missing)."""
+    return BodyRecord(*(_plain(held[f"{name}_{key}"]) for key in BODY))
 
 
 def _plain(value: Array) -> Any:

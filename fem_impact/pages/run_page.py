@@ -141,7 +141,11 @@ def run_page(folder: Path) -> str:
         html.section("Motion", _folded(outcome, "velocities and impulse ratios", MOTION, rigid)),
         sections.waves_section(folder),
         sections.history_figures(outcome, folder),
-        html.section("Contacts", html.details("Times and impulses", sections.contacts_table(outcome))),
+        html.section(
+            "Contact",
+            sections.contact_places(folder),
+            html.details("Times and impulses", sections.contacts_table(outcome)),
+        ),
         html.section("Heat of the contact", _heat(outcome, rigid)),
         html.section("Coefficients and losses", html.details("With three sets of arms", _arms(outcome))),
         sections.effects_section(outcome),
