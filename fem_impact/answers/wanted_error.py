@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from itertools import chain, islice
-from math import inf
 from typing import Any
 
 from fem_impact.answers.cost.stored import ChosenSetting, NotMeasured, choose_setting
@@ -18,6 +17,7 @@ from fem_impact.answers.refine.budget import (
     longest_s,
     side_by_side,
 )
+from fem_impact.answers.refine.chain import BUDGET as LEVELS_BUDGET
 from fem_impact.answers.refine.chain import LevelChain
 from fem_impact.answers.refine.extrapolate import ALONE, ONE_RUN, MeshRuns, mesh_limits, target_limits
 from fem_impact.answers.refine.levels import FEW_OFFSETS, at_offsets
@@ -273,7 +273,9 @@ def simulate(
     """
     if scene.accuracy.target is None:
         if _on_levels(scene, fidelity or "solid"):
-            return LevelChain(case or Case(scene), options, inf if budget_s is None else budget_s).run()
+            return LevelChain(
+                case or Case(scene), options, LEVELS_BUDGET if budget_s is None else budget_s
+            ).run()
         return run.simulate(scene, fidelity or "solid", options, case)
     chosen = chosen or settle(scene, fidelity, workers, budget_s)
     with nullcontext() if options.out is None else directory_lock(options.out):

@@ -68,10 +68,10 @@ def check(options: Options) -> int:
     SceneError, ResultError
         The scene is refused, or the file of its tests cannot be read.
     """
-    from fem_impact.case.case import Case
+    from fem_impact.answers.wanted_error import compiled
 
     drawing = _drawing_path(options)
-    case = Case.of(changed_scene(options.scene, options.changes))
+    case = compiled(changed_scene(options.scene, options.changes), "solid")
     tests = _tests_lines(case.scene)  # before the rest: a file of tests that cannot be read is refused
     say_kept(case.scene, options)
     if drawing:
@@ -328,9 +328,20 @@ def _contact_lines(case: Case) -> Iterator[str]:
 def _size_lines(case: Case) -> list[str]:
     if case.scene.accuracy.target:
         return []
+    from fem_impact.case.cells import contact_radius
     from fem_impact.case.size import about
 
     size = case.size
+    if case.scene.accuracy.levels > 1:
+        radius = contact_radius(case.bodies)
+        found = (
+            "a coarse pilot finds where, how widely and how often the bodies touch; finer meshes follow what "
+            f"it found, about {case.scene.accuracy.levels} in all. Each number comes with its band",
+            f"if the contact is as estimated, {1e3 * radius:.2g} mm in radius, the last of them has about "
+            f"{about(size.rod + size.barrier)} elements, {about(size.memory / 1e6)} MB of memory, and takes "
+            f"{_class_of(size.time)}; the run tells more after its pilot",
+        )
+        return ["", "A run with finite elements", *_wrapped(found)]
     sentences = (
         _cells_line(case),
         f"about {size_text(size)} of {plain(size.step * 1e9, 2)} ns ({about(size.most_steps)} if it lasts "
@@ -339,6 +350,12 @@ def _size_lines(case: Case) -> list[str]:
         "machine of the stored costs, within a factor of two there",
     )
     return ["", "Size of a run with finite elements", *_wrapped(sentences)]
+
+
+def _class_of(time: float) -> str:
+    """Return the class of a computing time, s, that is known within a factor of two or three."""
+    classes = {20.0: "seconds", 100.0: "about a minute", 1000.0: "minutes", 6000.0: "about an hour"}
+    return next((name for most, name in classes.items() if time <= most), "hours")
 
 
 # over the measured sets, means over places of the grid (`fem-impact cost paper`)

@@ -53,7 +53,7 @@ def add_options(parser: CommandParser) -> None:
         "solid: finite elements (default)",
     )
     budget = (
-        "wall time: no level of meshes begins that would exceed it (default: none; 2 min for a scene that "
+        "wall time: no level of meshes begins that would exceed it (default: 10 min; 2 min for a scene that "
         "states its error, if no similar scene was measured)"
     )
     add_text(parser, "--budget", "TIME", budget)

@@ -300,6 +300,20 @@ class ContactInterval:
 
 
 @group
+class ContactSite:
+    """One place of contact of the whole rod; lengths are those of the barrier's skin that was pressed."""
+
+    start: float = key("start_s", "s", "First touch there.")
+    end: float = key("end_s", "s", "Last touch there.")
+    impulse_n: float = key("impulse_n_Ns", "N s", "Normal impulse on the rod.")
+    impulse_t: float = key("impulse_t_Ns", "N s", "Tangential impulse on the rod, up the slope.")
+    low_t: float = key("low_t_m", "m", "Lower end along t, from the place that touches first.")
+    high_t: float = key("high_t_m", "m", "Upper end along t.")
+    width: float = key("width_m", "m", "Width across the plane of motion.")
+    depth: float = key("depth_m", "m", "Largest indentation of the barrier; 0 of a rigid one.")
+
+
+@group
 class Markers:
     """Motion after the impact as the camera's two markers would give it."""
 
@@ -316,6 +330,9 @@ class Contact:
 
     intervals: tuple[ContactInterval, ...] | Unknown = key(
         "contacts", "s, N s", "Each contact interval with its impulses on the rod."
+    )
+    sites: tuple[ContactSite, ...] | Unknown = key(
+        "contact_sites", "s, N s, m", "Each place of contact: when, with which impulses, how wide and deep."
     )
     strikes_again: bool | Unknown = key(
         "strikes_again",

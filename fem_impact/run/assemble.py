@@ -13,6 +13,7 @@ from fem_impact.outcome.groups import (
     BarrierMotion,
     Contact,
     ContactInterval,
+    ContactSite,
     EffectChoice,
     Energy,
     Heat,
@@ -42,6 +43,7 @@ from fem_impact.run.resolution import without, without_end
 from fem_impact.run.unusual import unusual
 from fem_impact.scene.write import digest
 
+ONE_POINT = Unknown("only finite elements find where the bodies touch: this fidelity has one contact point")
 NO_TARGET = Unknown("the scene gives a mesh, not the error it allows")
 GRAVITY_TOLD, GRAVITY_RULES = 0.01, 0.5  # speed gained by falling over the approach: told, and too much
 
@@ -114,6 +116,7 @@ class Reduction:
         limited: Iterable[Limitation],
         omitted: Iterable[str] = (),
         withheld: str = "",
+        sites: tuple[ContactSite, ...] | Unknown = ONE_POINT,
     ) -> Outcome:
         """Return the outcome; what a failed, cut off or unresolved run does not know is unknown there.
 
@@ -124,6 +127,7 @@ class Reduction:
         limited : limitations of the fidelity and of this run; those of the case are added, and those that the
             result shows
         withheld : why the contact counts as not resolved, empty where it does not
+        sites : places of contact
         """
         case, end = self.case, self.end
         gravity, ruled = _gravity(case, end.contacts)
@@ -142,6 +146,7 @@ class Reduction:
             energy=energy,
             contact=Contact(
                 intervals=_intervals(end.contacts, unmeshed),
+                sites=sites,
                 strikes_again=comes_down(end.leaving) if end.finished else CUT_OFF,
                 peak_force=peak_force,
                 markers=markers,

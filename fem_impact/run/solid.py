@@ -10,7 +10,7 @@ import numpy as np
 import rigid
 from fem_impact.case.effects.heating import halves
 from fem_impact.errors import RunError
-from fem_impact.outcome.groups import Energy, Heat, RodMotion, RunCost
+from fem_impact.outcome.groups import ContactSite, Energy, Heat, RodMotion, RunCost
 from fem_impact.outcome.keys import Num, Unknown, known, unknown
 from fem_impact.outcome.limitation import limitations
 from fem_impact.physics.contact import fall
@@ -21,6 +21,7 @@ from fem_impact.run.markers import replay
 from fem_impact.run.resolution import unresolved
 
 if TYPE_CHECKING:
+    from fem_impact.case.record import Site
     from fem_impact.outcome.record import Outcome
     from fem_impact.solid.run import SolidResult
 
@@ -82,6 +83,21 @@ def reduce(result: SolidResult) -> Outcome:
             *limitations("run", _untimed(result)),
         ),
         withheld=narrow if case.scene.accuracy.unresolved == "withhold" else "",
+        sites=tuple(map(_site, result.record.sites)),
+    )
+
+
+def _site(site: Site) -> ContactSite:
+    """Return a place of contact of the whole rod; the record has that of the half model."""
+    return ContactSite(
+        start=site.start,
+        end=site.end,
+        impulse_n=site.impulse_n,
+        impulse_t=site.impulse_t,
+        low_t=site.low[0],
+        high_t=site.high[0],
+        width=2 * site.high[1] if site.low[1] <= 0 else site.high[1] - site.low[1],
+        depth=site.depth,
     )
 
 

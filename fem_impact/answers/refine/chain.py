@@ -11,13 +11,13 @@ from __future__ import annotations
 from contextlib import nullcontext
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from math import inf, log2
+from math import log2
 from pathlib import Path
 
 import numpy as np
 
 from fem_impact.answers.refine.budget import about_s
-from fem_impact.answers.refine.extrapolate import MeshRuns, mesh_limits
+from fem_impact.answers.refine.extrapolate import MeshRuns, level_limits
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.case import Case
 from fem_impact.case.cells import body_cell, contact_edge, level_size, levels_of, rod_cell
@@ -43,6 +43,7 @@ JUMP = 2  # splits between two levels at most: a record holds the places of cell
 # how much longer a level takes than the one before, where only one has run: of 26 pairs of levels of the 13
 # measured sets 1.6 to 4.1
 SLOWER = 3.0
+BUDGET = 600.0  # s of wall time for all levels, unless stated
 STAMP = "level.stamp"
 """File of a level's directory that says what was computed there."""
 UNRESOLVED = Unknown("fewer than two levels resolved the contact; accuracy.levels = 4 adds a finer one")
@@ -80,7 +81,7 @@ class LevelChain:
 
     case: Case
     options: RunOptions = field(default_factory=RunOptions)
-    budget_s: float = inf
+    budget_s: float = BUDGET
     done: list[LevelRun] = field(default_factory=list)
 
     def run(self) -> Outcome:
@@ -133,12 +134,17 @@ class LevelChain:
 
     @property
     def finest(self) -> int:
-        """Splits of the last level: as stated, or those that resolve the contact that the levels found."""
-        more = self.scene.accuracy.levels - LEVELS
+        """Splits of the last level: as stated, or those that resolve the contact that the levels found.
+
+        As many levels as wanted reach it, or it is not reached: the contact of a sharp edge is narrower on
+        each finer mesh.
+        """
+        levels = self.scene.accuracy.levels
         if self._is_sized or not self.done:
-            return max(self._usual + more, self.first)
-        wanted = self._wanted(patch_radius(self.done[-1].record.rod))
-        return max(wanted, self.done[0].splits + 1) + more
+            wanted = self._usual
+        else:
+            wanted = max(self._wanted(patch_radius(self.done[-1].record.rod)), self.done[0].splits + 1)
+        return min(max(wanted + levels - LEVELS, self.first), self.first + JUMP * max(levels - 2, 0) + 1)
 
     @property
     def _next(self) -> int | None:
@@ -277,18 +283,20 @@ class LevelChain:
     def _stated(self) -> Outcome:
         """Return the outcome of the last level, of the scene as stated, with limits and bands."""
         last = self.done[-1]
-        meshes = [MeshRuns(level.size, [level.outcome]) for level in self.done if level.record.resolved]
-        limits, bands = (
-            mesh_limits(meshes[-2:]) if len(meshes) > 1 and last.record.resolved else (UNRESOLVED,) * 2
-        )
+        meshes = [MeshRuns(level.size, [level.outcome]) for level in self.done]
+        banded = len(meshes) > 1 and all(level.record.resolved for level in self.done[-2:])
+        limits, bands = level_limits(meshes) if banded else (UNRESOLVED, UNRESOLVED)
         left = (
             f"Contact or flow left the zones held ready, after {last.repeats} repeats with more room."
             if last.record.left
             else ""
         )
+        radius = patch_radius(last.record.rod)
+        wanted = self._wanted(radius) - last.splits
         short = (
-            f"To resolve the contact as advised takes {self.finest - last.splits} more levels of cells."
-            if last.splits < self.finest
+            f"The contact, {2e3 * radius:.2g} mm wide, would be resolved as advised by cells halved "
+            f"{wanted} times more: give a larger accuracy.levels or --budget."
+            if wanted > 0 and (last.splits < self.finest or not self._is_sized)
             else ""
         )
         validity = replace(

@@ -43,6 +43,9 @@ LOWEST = 0.75
 # and 44 (e) cases, three times as wide ones in 91 and 81. So wide, bands of one offset contain the limit of
 # all meshes of the 13 sets in 91 %, that of the finer two in 85 %.
 ONE_RUN = 3.0
+# share of a change between two levels by which the next one changes at least, for a band: that of a method of
+# first order. t5c: e .281, .307, .304 on three levels, .312 on a fourth
+HALVED = 0.5
 # Standard error of a mean over evenly spaced offsets, over that of offsets taken at random. Even ones cancel
 # the first harmonics of the grid. Root mean squares over nine quantities of the 13 sets: means of two offsets
 # lay .40 and .50 of the latter from those of four on 0.59 and 0.30 mm (medians .31 and .35; on rods with
@@ -144,6 +147,23 @@ def mesh_limits(meshes: Sequence[MeshRuns]) -> tuple[MeshNumbers, MeshNumbers]:
         {name: limit.value for name, limit in limits.items()},
         {name: limit.uncertainty for name, limit in limits.items()},
     )
+
+
+def level_limits(meshes: Sequence[MeshRuns]) -> tuple[MeshNumbers, MeshNumbers]:
+    """Return limits and half-widths, by key, of levels from coarse to fine that ran once each.
+
+    They are those of the finest two, but no half-width is less than `HALVED` of the change between the two
+    levels before: two levels may agree by chance.
+    """
+    limits, bands = mesh_limits(meshes[-2:])
+    if len(meshes) < 3 or isinstance(bands, Unknown):
+        return limits, bands
+    wider = {}
+    for name, band in bands.items():
+        before = [mesh.mean([KEY_TABLE[name]]) for mesh in meshes[-3:-1]]
+        change = 0.0 if None in before else abs(float(np.diff(np.array(before, float))[0]))
+        wider[name] = max(band, HALVED * change)
+    return limits, wider
 
 
 def extrapolated(meshes: Sequence[MeshRuns], keys: Sequence[Key]) -> ExtrapolatedValue | None:

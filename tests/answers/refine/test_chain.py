@@ -7,7 +7,8 @@ import pytest
 
 from fem_impact.answers.refine import chain
 from fem_impact.answers.refine.chain import LevelChain
-from fem_impact.answers.wanted_error import simulate
+from fem_impact.answers.refine.extrapolate import MeshRuns, level_limits, mesh_limits
+from fem_impact.answers.wanted_error import compiled, simulate
 from fem_impact.case.case import Case
 from fem_impact.case.record import ContactRecord
 from fem_impact.errors import SceneError
@@ -65,6 +66,9 @@ def test_the_place_of_contact_has_the_impulse_and_the_time_of_the_contacts(quick
     assert site.start == pytest.approx(contacts[0].start, abs=2e-6)
     assert site.end == pytest.approx(contacts[-1].end, abs=2e-6)
     assert site.low[0] < 0 < site.high[0] and 0 < site.depth < 2e-4
+    (told,) = known(outcome.contact.sites)
+    assert (told.start, told.impulse_n, told.depth) == (site.start, site.impulse_n, site.depth)
+    assert told.width == 2 * site.high[1]
 
 
 def test_fewer_cells_yield_than_about_an_estimated_contact_and_the_numbers_agree(quick):
@@ -85,6 +89,21 @@ def test_two_levels_that_resolve_the_contact_give_bands():
     assert limits["e_edge"] == pytest.approx(known(outcome.restitution.edge.e), abs=bands["e_edge"])
 
 
+def test_no_band_is_narrower_than_half_of_the_change_before():
+    """Two levels that agree by chance say nothing; a steady fall keeps the band of its last two."""
+    outcome = simulate(QUICK, "rigid")
+
+    def levels(*values):
+        edges = (replace(outcome.restitution.edge, e=value) for value in values)
+        runs = (replace(outcome, restitution=replace(outcome.restitution, edge=edge)) for edge in edges)
+        return [MeshRuns(2.0**-at, [run]) for at, run in enumerate(runs)]
+
+    _, bands = level_limits(levels(0.4, 0.3, 0.3001))
+    assert known(bands)["e_edge"] == pytest.approx(0.05)
+    steady = levels(0.4, 0.3, 0.25)
+    assert known(level_limits(steady)[1])["e_edge"] == known(mesh_limits(steady[-2:])[1])["e_edge"] > 0.05
+
+
 def test_a_chamfered_tube_runs_which_one_mesh_refuses():
     tube = {
         "profile": [["0 mm", "8.5 mm"], ["1 mm", "9.5 mm"], ["60 mm", "9.5 mm"]],
@@ -94,7 +113,9 @@ def test_a_chamfered_tube_runs_which_one_mesh_refuses():
     scene = scene_of("tube", tube, {"angle": "44 deg", "speed": "1 m/s"})
     with pytest.raises(SceneError, match="lays a flank"):
         Case.of(scene)
-    outcome = LevelChain(Case(replace(scene, accuracy=replace(scene.accuracy, levels=2)))).run()
+    assert compiled(scene, "solid").scene == scene
+    coarse = replace(scene.accuracy, levels=2, unresolved="report")
+    outcome = LevelChain(Case(replace(scene, accuracy=coarse))).run()
     assert outcome.validity.finished and 0 < known(outcome.restitution.edge.e) < 1
 
 
@@ -104,7 +125,7 @@ def test_a_budget_ends_the_levels_and_tells_what_is_missing():
     outcome = levels.run()
     assert len(levels.done) == 1
     assert any("would take about" in getattr(one, "text", "") for one in notices)
-    assert any("2 more levels" in one.text for one in outcome.validity.limitations)
+    assert any("larger accuracy.levels or --budget" in one.text for one in outcome.validity.limitations)
 
 
 def test_a_level_that_leaves_its_zones_is_repeated_with_more_room(monkeypatch):
