@@ -1,4 +1,4 @@
-"""The meridian of a tip: a polyline along which grid lines lie and onto which nodes are moved."""
+"""The meridian of a tip: a polyline along which grid lines lie."""
 
 from dataclasses import dataclass
 
@@ -6,11 +6,10 @@ import numpy as np
 
 from meshes.arrays import FloatArray
 from meshes.errors import MeshError
+from meshes.surface import CORNER, closest_on
 
-__all__ = ["Meridian", "closest_on"]
+__all__ = ["Meridian"]
 
-# A turn of the polyline above this, rad, is an edge of the body, not a step of a smooth curve.
-CORNER = np.deg2rad(12.0)
 # A grid can turn from face to side where the line has turned by FIRST to LAST, rad, outside OFF_AXIS radii.
 FIRST, LAST = np.deg2rad([16.0, 64.0])
 OFF_AXIS = 0.66
@@ -137,13 +136,6 @@ class Meridian:
         mean = mean / np.hypot(*mean)
         return np.array([-mean[1], mean[0]])
 
-    def snap(self, points: FloatArray) -> FloatArray:
-        """Closest points of the surface of revolution, azimuth kept: (k, 3) m to (k, 3) m."""
-        rho = np.hypot(points[:, 0], points[:, 1])
-        target = closest_on(self.line, np.stack([rho, points[:, 2]], axis=1))
-        scale = np.where(rho > 0.0, target[:, 0] / np.where(rho > 0.0, rho, 1.0), 1.0)
-        return np.stack([points[:, 0] * scale, points[:, 1] * scale, target[:, 1]], axis=1)
-
 
 class _Surface(Meridian):
     """A meridian carried on behind the nose, where its radius may shrink again."""
@@ -152,23 +144,3 @@ class _Surface(Meridian):
 
     def __post_init__(self) -> None:
         """Accept any line."""
-
-
-def closest_on(line: FloatArray, points: FloatArray) -> FloatArray:
-    """Closest points of a polyline.
-
-    Parameters
-    ----------
-    line : (k, 2) float64
-    points : (p, 2) float64
-
-    Returns
-    -------
-    (p, 2) float64
-    """
-    step = np.diff(line, axis=0)
-    from_start = points[:, None, :] - line[:-1]
-    along = (from_start * step).sum(axis=-1) / np.hypot(*step.T) ** 2
-    foot = line[:-1] + np.clip(along, 0.0, 1.0)[..., None] * step
-    best = np.linalg.norm(foot - points[:, None, :], axis=-1).argmin(axis=1)
-    return np.asarray(foot[np.arange(len(points)), best])

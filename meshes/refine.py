@@ -56,7 +56,7 @@ def refine(
     zones : sequence of Zone
         The first for level 1, the last for the finest: a cell that touches one is split to its level.
     snap : callable, optional
-        (k, 3) m to (k, 3) m.
+        See `meshes.split.Snap`.
     buffer : int
         Whole cells kept between two level changes.
     frozen : (m,) bool, optional

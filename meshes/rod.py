@@ -13,6 +13,7 @@ from meshes.nose import NoseMesh, inner_corner, lay_nose
 from meshes.quality import require_positive
 from meshes.refine import reach, refine
 from meshes.section import Section, section
+from meshes.surface import Surface
 from meshes.zone import Cloud, Zone
 
 __all__ = ["RodMesh", "rod"]
@@ -128,8 +129,8 @@ def rod(
     require_positive(mesh)
     if zones:
         frozen = np.arange(len(cells)) < body_cells.size
-        full = shape.extended(length)
-        mesh = refine(mesh, zones, full.snap, buffer=buffer, frozen=frozen)
+        surface = Surface((shape.extended(length).line,))
+        mesh = refine(mesh, zones, surface.snap, buffer=buffer, frozen=frozen)
         require_positive(mesh)
     rest = np.arange(body_cells.size)
     return RodMesh(mesh, body_nodes, body_cells, slab, start, body_nodes[:, 0], rest, ((-np.inf, start),))

@@ -44,7 +44,7 @@ def sphere(radius: float, across: int = 8, zones: Sequence[Zone | Cloud] = (), *
     centre = np.array([0.0, 0.0, radius])
     mesh = from_cells(radius * unit + centre, cells, half_body_tags)
 
-    def snap(points: FloatArray) -> FloatArray:
+    def snap(points: FloatArray, _: FloatArray) -> FloatArray:
         arms = points - centre
         return np.asarray(centre + radius * arms / np.linalg.norm(arms, axis=1, keepdims=True))
 

@@ -12,8 +12,8 @@ from meshes.topology import CHILD_KEEPS_FACE, CHILDREN, EDGES, FACE_EDGES, FACES
 
 __all__ = ["Birth", "Forest", "KeyMap", "Snap", "edge_keys", "place"]
 
-#: Moves points onto the exact surface: (k, 3) m to (k, 3) m.
-Snap = Callable[[FloatArray], FloatArray]
+#: Moves points (k, 3), m, onto the exact surface, each in the middle of its parents (k, c, 3), m.
+Snap = Callable[[FloatArray, FloatArray], FloatArray]
 
 
 def edge_keys(pairs: IntArray) -> IntArray:
@@ -93,9 +93,9 @@ def place(
     """Place new nodes: hanging ones on the coarse face, free ones of the skin on the exact surface."""
     nodes = birth.nodes
     points[nodes] = np.where(hanging[nodes, None], birth.flat(points), birth.middle(points))
-    moved = nodes[on_skin[nodes] & ~hanging[nodes]]
-    if snap is not None and len(moved):
-        points[moved] = snap(points[moved])
+    moves = on_skin[nodes] & ~hanging[nodes]
+    if snap is not None and moves.any():
+        points[nodes[moves]] = snap(points[nodes[moves]], points[birth.corners[moves]])
 
 
 @dataclass(slots=True)

@@ -1,7 +1,7 @@
 """Half a body of revolution of any profile: a nose grid at each end, scaled sections between them."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -10,11 +10,11 @@ from meshes.arrays import BoolArray, FloatArray, IntArray
 from meshes.ends import ShapeEnd, end_of
 from meshes.errors import ClosedEndError, MeshError
 from meshes.hexmesh import HexMesh, from_cells, half_body_tags
-from meshes.meridian import CORNER, closest_on
 from meshes.quality import require_positive, scaled_jacobians
 from meshes.refine import reach, refine
 from meshes.rod import RodMesh, nose_cells
 from meshes.section import Section, bored_section, section
+from meshes.surface import CORNER, Surface
 from meshes.zone import Cloud, Zone
 
 __all__ = ["contact_radius", "turned"]
@@ -33,14 +33,12 @@ class _Body:
     ----------
     line, bore : (k, 2) outer and inner surface, (rho, z), m; a body without a bore has no rows
     half : section; across : cells over the diameter
-    faceted : whether nodes of split cells stay on the flat faces along the bore
     """
 
     line: FloatArray
     bore: FloatArray
     half: Section
     across: int
-    faceted: bool = False
 
     @property
     def length(self) -> float:
@@ -86,20 +84,11 @@ class _Body:
         middle = 0.5 * (low + high)
         return np.asarray((middle > first) & (middle < last))
 
-    def snap(self, points: FloatArray) -> FloatArray:
-        """Closest points of the outer or inner surface, azimuth kept: (k, 3) m to (k, 3) m."""
-        rho = np.hypot(points[:, 0], points[:, 1])
-        place = np.stack([rho, points[:, 2]], axis=1)
+    @property
+    def surface(self) -> Surface:
+        """All of the surface, the flat face at the tail included."""
         outer = np.concatenate([self.line, [[0.0, self.length]]]) if self.line[-1, 0] > 0.0 else self.line
-        if self.faceted and self.bored_from_to[0] <= 0.0:  # the face at the tip begins beside the hole
-            outer = np.concatenate([self.bore[:1], outer[1:]])
-        target = closest_on(outer, place)
-        if len(self.bore):
-            inner = closest_on(self.hollow, place)
-            nearer = np.linalg.norm(inner - place, axis=1) < np.linalg.norm(target - place, axis=1)
-            target = np.where(nearer[:, None], place if self.faceted else inner, target)
-        scale = np.where(rho > 0.0, target[:, 0] / np.where(rho > 0.0, rho, 1.0), 1.0)
-        return np.stack([points[:, 0] * scale, points[:, 1] * scale, target[:, 1]], axis=1)
+        return Surface((outer, self.hollow) if len(self.bore) else (outer,))
 
 
 def turned(
@@ -206,8 +195,7 @@ def _body(line: FloatArray, bore: FloatArray | None, across: int) -> _Body:
         return _Body(line, np.zeros((0, 2)), section(across), across)
     front = np.interp(max(bore[0, 1], 1e-9 * line[-1, 1]), line[:, 1], line[:, 0])
     half = bored_section(across, float(bore[0, 0] / front))
-    # beside an edge to a closing face, a polygon in the mesh, cells along the round bore would be slivers
-    return _Body(line, np.array(bore, np.float64), half, across, faceted=bool(bore[0, 1] > 0.0))
+    return _Body(line, np.array(bore, np.float64), half, across)
 
 
 def _mirrored(line: FloatArray) -> FloatArray:
@@ -338,14 +326,8 @@ def _finished(
 def _refined(
     body: _Body, mesh: HexMesh, zones: Sequence[Zone | Cloud], buffer: int, frozen: BoolArray | None = None
 ) -> HexMesh:
-    """Refine; where that folds a cell beside the bore, whose facets are wider than it, keep these facets."""
-    fine = refine(mesh, zones, body.snap, buffer=buffer, frozen=frozen)
-    try:
-        require_positive(fine)
-    except MeshError:
-        if not len(body.bore) or body.faceted:
-            raise
-        return _refined(replace(body, faceted=True), mesh, zones, buffer, frozen)
+    fine = refine(mesh, zones, body.surface.snap, buffer=buffer, frozen=frozen)
+    require_positive(fine)
     return fine
 
 

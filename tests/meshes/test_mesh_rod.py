@@ -5,8 +5,8 @@ from hypothesis import strategies as st
 from mesh_shapes import RADIUS, SHAPES, contact_zone, edge_radius, frustums, interior, plain
 
 import meshes
-from meshes.meridian import closest_on
 from meshes.quality import aspects, edge_lengths, scaled_jacobians
+from meshes.surface import closest_on
 
 LENGTH = 0.06
 
