@@ -20,7 +20,7 @@ from meshes.refine import refine
 from meshes.rod import RodMesh, rod
 from meshes.sphere import pole_edge, sphere
 from meshes.symmetry import PARTS
-from meshes.turned import contact_radius, turned
+from meshes.turned import cells_across, contact_radius, turned
 from meshes.zone import Cloud, Zone
 
 __all__ = [
@@ -43,6 +43,7 @@ __all__ = [
     "Zone",
     "block",
     "cell_moments",
+    "cells_across",
     "contact_radius",
     "drawn_depths",
     "edge_lengths",

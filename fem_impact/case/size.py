@@ -26,7 +26,7 @@ from fem_impact.physics.contact import pressure_speed
 from fem_impact.scene.material import Material
 from fem_impact.scene.own_mesh import OwnMesh
 from fem_impact.scene.units import format_quantity
-from meshes import cell_moments, thin_skin_rise
+from meshes import cell_moments, cells_across, thin_skin_rise
 from meshes.refine import reach
 from meshes.section import SLIMMEST, WIDEST, bored_section, section
 from rigid import Faceted, Turned
@@ -241,6 +241,8 @@ def _coarse_elements(bodies: Bodies, end: float) -> float:
     z = (np.arange(SAMPLES) + 0.5) / SAMPLES * end
     body = rod.body()
     radius = rod.diameter / 2 if rod.is_rod else np.maximum(body.radius(z), 0.05 * rod.diameter)
+    if isinstance(body, Turned):
+        across = cells_across(body.outline, across, body.bore)
     if rod.bore:
         assert isinstance(body, Turned), "a bore is stated for a turned body"
         _, outer, inner = rod.wall()

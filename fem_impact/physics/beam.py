@@ -9,6 +9,7 @@ import numpy as np
 
 from fem_impact.arrays import Array
 from fem_impact.physics import stepped_beam
+from fem_impact.physics.disc import disc_period
 
 if TYPE_CHECKING:
     from fem_impact.scene.material import Material
@@ -52,8 +53,9 @@ def bending_group_speed(rod: ProjectileSpec) -> float:
 
 
 def bending_period(rod: ProjectileSpec) -> float:
-    """Return the first free-free bending period, s."""
-    return 2 * pi / float(bending_frequencies(rod)[0])
+    """Return the first free-free bending period, s; of a short body that of a plate, if longer."""
+    as_beam = 2 * pi / float(bending_frequencies(rod)[0])
+    return max(as_beam, disc_period(rod)) if rod.is_short else as_beam
 
 
 def stretching_period(rod: ProjectileSpec) -> float:

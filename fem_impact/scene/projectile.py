@@ -117,6 +117,11 @@ class ProjectileSpec:
         return named is not None and named.name == "ball" and not self.bore and not self.segments
 
     @property
+    def is_short(self) -> bool:
+        """Return whether this is a body of revolution that is shorter than wide: it bends as a plate."""
+        return self.own_mesh is None and self.length < self.diameter * (1 - 1e-9)
+
+    @property
     def open_at_tail(self) -> bool:
         """Return whether it has a bore that ends at the tail."""
         return bool(self.bore) and isclose(self.bore[-1][0], self.length, rel_tol=1e-9)

@@ -1,11 +1,13 @@
 """Elastic vibration of the rod: waves and bending.
 
 Without it the rod is rigid except for its nose: the nose, about the first half diameter with the whole
-contact in it, still deforms (and yields), and the slices behind it are one rigid body.
+contact in it, still deforms (and yields), and the slices behind it are one rigid body. A body shorter than
+wide is all nose: it always vibrates.
 """
 
 from __future__ import annotations
 
+from math import inf
 from typing import TYPE_CHECKING
 
 from fem_impact.case.effects.slots import Effect, ModelSpec
@@ -15,7 +17,12 @@ if TYPE_CHECKING:
 
 
 def number(bodies: Bodies) -> float:
-    """Return the longest period that the impact can excite over the contact time."""
+    """Return the longest period that the impact can excite over the contact time.
+
+    A body shorter than wide has no part behind its nose that could be rigid.
+    """
+    if bodies.rod.is_short:
+        return inf
     longest = bodies.stretching_period
     if bodies.scene.impact.angle > 0:
         longest = max(longest, bodies.bending_period, bodies.ovalling_period)
