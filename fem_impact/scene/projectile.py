@@ -107,8 +107,9 @@ class ProjectileSpec:
 
     @property
     def is_rod(self) -> bool:
-        """Return whether this is a solid rod of one material with one of the tips."""
-        return self.shape is None and not self.bore and not self.segments
+        """Return whether this is a solid rod of one material with one of the tips, no shorter than wide."""
+        plain = self.shape is None and not self.bore and not self.segments
+        return plain and self.length >= self.diameter
 
     @property
     def is_ball(self) -> bool:
@@ -199,13 +200,6 @@ class ProjectileSpec:
             _check_segments(self)
         if not self.is_rod:
             self.body()  # refuses what bounds no body
-        if self.shape is None and self.length < self.diameter:
-            raise SceneError(
-                f"is shorter than the diameter ({self.diameter * 1e3:.3g} mm); this is a study of rods.",
-                key="length",
-                value=f"{self.length * 1e3:.3g} mm",
-                remedy="Give a length of at least one diameter.",
-            )
 
 
 @lru_cache(maxsize=64)

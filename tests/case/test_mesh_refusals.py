@@ -8,6 +8,7 @@ from time import process_time
 import pytest
 
 from fem_impact.case.case import Case
+from fem_impact.case.cells import body_cell
 from fem_impact.case.mesh import _require_mesh
 from fem_impact.errors import SceneError
 from fem_impact.fem.geometry import build_geometry
@@ -91,3 +92,44 @@ def test_a_shape_without_a_mesh_is_told_what_to_change_of_it_and_is_computed_as_
             simulate(scene(body), fidelity)
         assert "longer rod" not in str(refused.value) and "accuracy.tip_size" not in str(refused.value)
     assert simulate(scene(body), "rigid").motion.mass > 0
+
+
+COIN = {"material": "brass", "profile": [["0 mm", "12 mm"], ["2 mm", "12 mm"]]}
+ROUNDED = {
+    "material": "brass",
+    "shape": "rounded-edge",
+    "length": "6 mm",
+    "diameter": "24 mm",
+    "edge_radius": "2 mm",
+}
+SHORT = {
+    "coin": COIN,
+    "flat": {"material": "brass", "shape": "flat", "length": "2 mm", "diameter": "24 mm"},
+    "ring": {**COIN, "bore": [["0 mm", "8 mm"], ["2 mm", "8 mm"]]},
+    "lid": {
+        "material": "brass",
+        "profile": [["0 mm", "12 mm"], ["6 mm", "12 mm"]],
+        "bore": [["2 mm", "10 mm"], ["6 mm", "10 mm"]],
+    },
+    "pin": {"material": "brass", "profile": [["0 mm", "5 mm"], ["5 mm", "5 mm"]]},
+    "chamfered": {
+        "material": "brass",
+        "profile": [["0 mm", "11.5 mm"], ["0.5 mm", "12 mm"], ["2 mm", "12 mm"]],
+    },
+}
+
+
+@pytest.mark.parametrize("name", SHORT)
+def test_a_short_body_is_meshed_with_cells_no_wider_than_half_its_plate_and_vibrates(name):
+    stated = scene(SHORT[name], 30)
+    case = Case.of(stated, "solid")
+    assert case.slots.vibrating
+    assert body_cell(case.bodies) < 0.51 * {"pin": 5e-3}.get(name, 2e-3)
+    assert len(mesh(stated).cells) > 100
+
+
+def test_a_rounding_that_leaves_a_short_body_no_room_is_refused_with_a_remedy_that_works():
+    with pytest.raises(SceneError, match=r"too short for the rounding of its edge.*with a chamfer"):
+        Case.of(scene(ROUNDED))
+    points = [["0 mm", "10 mm"], ["2 mm", "12 mm"], ["6 mm", "12 mm"]]
+    assert len(mesh(scene({"material": "brass", "profile": points})).cells) > 100

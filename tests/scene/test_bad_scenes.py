@@ -35,7 +35,7 @@ MISTAKES = [
     ("projectile.length", "240", ["no unit"]),
     ("projectile.length", "240 kg", ["not a unit of length"]),
     ("projectile.length", "240 m", ["at most", "10000 mm"]),
-    ("projectile.length", "10 mm", ["shorter than the diameter"]),
+    ("projectile.length", "2 mm", ["the nose is 3 mm long, the body only 2 mm"]),
     ("projectile.length", ["240 mm"], ["projectile.length", "list"]),
     ("projectile.lenght", "240 mm", ["projectile.lenght", "Did you mean length"]),
     ("projectile.tip", "C", ["projectile.tip", '"A", "B" or "plain"']),
