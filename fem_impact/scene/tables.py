@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import Any, NoReturn, TypeVar
 
 from fem_impact.errors import SceneError, did_you_mean
+from fem_impact.scene import fields
 from fem_impact.scene.parameter import Parameter
 from fem_impact.scene.units import parse_number, parse_quantity
 
@@ -20,6 +21,18 @@ OTHER_NAMES = {
     "yield_strength": "yield_stress",
 }
 """Keys by other words for the same."""
+PLACES = {
+    f.key: place
+    for place, wanted in (
+        ("a material", fields.MATERIAL),
+        ("[surface]", fields.SURFACE),
+        ("[impact]", (*fields.IMPACT, fields.HEIGHT, fields.SPEED)),
+        ("[accuracy]", fields.ACCURACY),
+        ("[save]", fields.SAVE),
+    )
+    for f in wanted
+}
+"""Where a key belongs that is not known where it stands."""
 
 
 def numbers_of(
@@ -91,7 +104,11 @@ def check_keys(table: Table, known: Iterable[str], shown: Iterable[str] = ()) ->
             near = next(
                 (name for word, name in OTHER_NAMES.items() if word in str(key) and name in known), str(key)
             )
-            remedy = did_you_mean(near, known, f"Known here: {', '.join(shown or known)}.")
+            remedy = (
+                f"It is a key of {PLACES[near]}."
+                if near in PLACES and near not in known
+                else did_you_mean(near, known, f"Known here: {', '.join(shown or known)}.")
+            )
             raise SceneError(UNKNOWN_KEY, key=str(key), remedy=remedy)
 
 

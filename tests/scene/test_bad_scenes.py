@@ -347,3 +347,12 @@ def test_a_misspelt_key_is_named_before_what_is_missing_for_it():
     data["surface"] = {"state": "machined"}
     with pytest.raises(SceneError, match=r"id: is missing"):
         read_dict(data)
+
+
+@pytest.mark.parametrize(
+    ("key", "place"),
+    [("friction", r"\[surface\]"), ("speed", r"\[impact\]"), ("E", "a material")],
+)
+def test_a_key_in_a_wrong_place_is_told_its_own(key, place):
+    with pytest.raises(SceneError, match=rf"{key}: is not a known key\. It is a key of {place}\."):
+        read_dict(to_dict(load("t5b")) | {key: 1})
