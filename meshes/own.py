@@ -14,6 +14,7 @@ from meshes.halving import across, halved_tetrahedra, straight
 from meshes.hexahedra import as_hexahedra
 from meshes.hexmesh import SYMMETRY, HexMesh, face_keys, from_cells, half_body_tags
 from meshes.moments import cell_moments
+from meshes.order import in_order
 from meshes.quality import edge_lengths, scaled_jacobians
 from meshes.reading.read import stored_mesh
 from meshes.reading.stored import StoredMesh
@@ -211,9 +212,10 @@ def _own(part: Part, stated: Stated, hint: str) -> tuple[OwnBody, IntArray]:
     half = from_cells(part.points, part.cells, half_body_tags)
     if not (half.face_tag == SYMMETRY).any():
         raise MeshError("has no face on the plane y = 0, its plane of symmetry. Move it there.")
-    placed = _placed(half)
+    placed, order = _placed(half)
     doubled = size_text(part, (1,))
-    return OwnBody(placed, {}, (*part.told, *_leaning(placed), f"whole body: {doubled}")), part.parent
+    told = (*part.told, *_leaning(placed), f"whole body: {doubled}")
+    return OwnBody(placed, {}, told), part.parent[order]
 
 
 def _numbered(points: FloatArray, cells: IntArray) -> bool:
@@ -322,10 +324,11 @@ def _leaning(mesh: HexMesh) -> tuple[str, ...]:
     return (f"its axis of least inertia leans by {lean:.3g} deg from z towards x",)
 
 
-def _placed(mesh: HexMesh) -> HexMesh:
-    """Return the half with the tip at z = 0 and the centre of its volume at x = 0."""
+def _placed(mesh: HexMesh) -> tuple[HexMesh, IntArray]:
+    """Return the half, its tip at z = 0, the centre of its volume at x = 0, and the order of its cells."""
     part = cell_moments(mesh)
     centre = float(part.x.sum() / part.volume.sum())
     moved = abs(centre) > NEAR * float(np.ptp(mesh.points[:, 0]))
     shift = np.array([centre if moved else 0.0, 0.0, mesh.points[:, 2].min()])
-    return from_cells(mesh.points - shift, mesh.cells, half_body_tags)
+    points, cells, order = in_order(mesh.points - shift, mesh.cells)
+    return from_cells(points, cells, half_body_tags), order

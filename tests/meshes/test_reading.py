@@ -38,6 +38,9 @@ def test_every_format_gives_mass_inertia_and_lowest_point(tmp_path, ending, kind
     made = as_hexahedra(points / 1e3, ((kind, cells),))
     assert summary(body.half) == pytest.approx(summary(own_body(made.points, made.cells).half), abs=1e-6)
     assert len(body.half.cells) == {"hexahedron": 30, "tetra": 720, "wedge": 360}[kind]
+    same = own_body(made.points, made.cells).half
+    assert (body.half.cells == same.cells).all()
+    assert body.half.points == pytest.approx(same.points, abs=1e-9)
 
 
 def volume_of(path, stated=None):

@@ -1,0 +1,59 @@
+"""One order of nodes and cells for one body, whatever file it came from."""
+
+import numpy as np
+
+from meshes.arrays import FloatArray, IntArray
+from meshes.topology import CORNERS
+
+__all__ = ["in_order"]
+
+QUANTUM = 1e-7  # of the largest extent: coordinates that differ by less count as equal
+BESIDE = 0.237  # of it, by which the steps are shifted, so that round numbers do not lie between two of them
+
+
+def in_order(points: FloatArray, cells: IntArray) -> tuple[FloatArray, IntArray, IntArray]:
+    """Return nodes and cells of a body in an order that follows from their places, and that of the cells.
+
+    Nodes go from the tip to the tail, and at one height along y, then x. A cell begins with its lowest node
+    and goes on to the lowest of that node's three neighbours. Cells go by their nodes.
+    """
+    step = QUANTUM * float(np.ptp(points, axis=0).max())
+    x, y, z = np.floor(points / step + BESIDE).T
+    order = np.lexsort((x, y, z))
+    new = np.empty(len(points), dtype=np.int64)
+    new[order] = np.arange(len(points))
+    numbered = new[cells]
+    first = numbered.argmin(axis=1)
+    rows = np.arange(len(cells))
+    near = NEIGHBOURS[first]
+    second = numbered[rows[:, None], near].argmin(axis=1)
+    turned = numbered[rows[:, None], TURNS[first, second]]
+    by_nodes = np.lexsort(turned.T[::-1])
+    return points[order], turned[by_nodes], by_nodes
+
+
+# (8, 3) corners reached from each corner along x, y and z
+NEIGHBOURS: IntArray = (
+    ((CORNERS[:, None] ^ np.eye(3, dtype=np.int64))[:, :, None] == CORNERS).all(axis=-1).argmax(axis=-1)
+)
+
+
+def _turns() -> IntArray:
+    """(8, 3, 8) corners of a cell turned so that it begins with a corner and one of its three neighbours."""
+    found = np.empty((8, 3, 8), dtype=np.int64)
+    for corner in range(8):
+        sign = 1 - 2 * CORNERS[corner]
+        for axis in range(3):
+            # the other two axes such that all three, as they run from the corner, are right-handed
+            other, last = (axis + 1) % 3, (axis + 2) % 3
+            if sign.prod() < 0:
+                other, last = last, other
+            for k, (a, b, c) in enumerate(CORNERS):
+                place = CORNERS[corner].copy()
+                for own, steps in ((axis, a), (other, b), (last, c)):
+                    place[own] ^= steps
+                found[corner, axis, k] = int((CORNERS == place).all(axis=1).argmax())
+    return found
+
+
+TURNS: IntArray = _turns()
