@@ -9,7 +9,7 @@ Equation numbers are those of Averill, Ingram, Holborn and Battersby (see ``expe
 """
 
 from . import shapes
-from .arms import Arms, corner_arms
+from .arms import Arms, corner_arms, point_arms
 from .centre import impulse_centre
 from .closure import closure_defect
 from .coefficients import Coefficients, coefficients, impulse_ratio, restitution
@@ -25,6 +25,7 @@ from .path import End, SlidingPath, interval_ratio, painleve_threshold, sliding_
 from .pinned import pinned_loss
 from .projectile import Projectile
 from .slenderness import LIMIT, LIMIT_MM, behaves_rigidly, in_millimetres, slenderness
+from .touch import Touch
 from .turned import Turned
 from .uncertainty import Errors, Estimate, bootstrap, first_order
 from .worst import WorstCase, worst_case
@@ -57,6 +58,7 @@ __all__ = [
     "ShapeError",
     "SlidingPath",
     "TooLongError",
+    "Touch",
     "Turned",
     "WorstCase",
     "behaves_rigidly",
@@ -76,6 +78,7 @@ __all__ = [
     "painleve_threshold",
     "phi",
     "pinned_loss",
+    "point_arms",
     "predicted_losses",
     "restitution",
     "shapes",

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .arrays import Floats, floats
+from .touch import on_side
 
 
 class Arms(NamedTuple):
@@ -17,14 +18,15 @@ class Arms(NamedTuple):
     d_d: Floats
 
 
-def point_arms(z_c: float, rho: Floats, z: Floats, alpha: ArrayLike) -> Arms:
-    """Arms, m, of a point (rho, z) of a turned body about its mass centre at z_c, m from the tip."""
+def point_arms(z_c: float, x: ArrayLike, z: ArrayLike, alpha: ArrayLike) -> Arms:
+    """Arms, m, of a point (x, z) about a mass centre at z_c, m from the tip; x is counted from it."""
+    x, z = floats(x, z)
     sin, cos = np.sin(alpha), np.cos(alpha)
-    return Arms((z_c - z) * sin - rho * cos, (z_c - z) * cos + rho * sin)
+    return Arms((z_c - z) * sin - x * cos, (z_c - z) * cos + x * sin)
 
 
 def corner_arms(length: ArrayLike, diameter: ArrayLike, alpha: ArrayLike) -> Arms:
-    """Arms of the sharp corner of a plain cylinder (Eq 6-7).
+    """Arms of the sharp corner of a plain cylinder (Eq 6-7), at alpha below 0 of that on the other side.
 
     The printed form, with the half diagonal s = sqrt(l^2 + d^2)/2 and the angle
     alpha - pi/2 + arctan(l/d), is the rotation of the corner (d/2, l/2) written in polar form.
@@ -49,5 +51,5 @@ def corner_arms(length: ArrayLike, diameter: ArrayLike, alpha: ArrayLike) -> Arm
     """
     length, diameter, alpha = floats(length, diameter, alpha)
     half_diagonal = 0.5 * np.hypot(length, diameter)
-    angle = alpha - np.pi / 2 + np.arctan(length / diameter)
-    return Arms(half_diagonal * np.sin(angle), half_diagonal * np.cos(angle))
+    angle = np.abs(alpha) - np.pi / 2 + np.arctan(length / diameter)
+    return Arms(on_side(half_diagonal * np.sin(angle), alpha), half_diagonal * np.cos(angle))

@@ -26,6 +26,15 @@ def chord(outline: Floats, alpha: float, height: float) -> tuple[float, float]:
     return _reach(t[low::-1], over[low::-1]), _reach(t[low:], over[low:])
 
 
+def mirrored_chord(outline: Floats, alpha: float, height: float) -> tuple[float, float]:
+    """As `chord` of an outline whose side x > 0 stands for the one that comes down first.
+
+    At an inclination below 0 that is the side x < 0 of the body, its mirror image.
+    """
+    down, up = chord(outline, abs(alpha), height)
+    return (up, down) if alpha < 0 else (down, up)
+
+
 def both_sides(side: Floats) -> Floats:
     """Return the outline of a body of revolution from one side (k, 2), (rho, z), which starts on the axis."""
     return np.vstack([side[:0:-1] * [-1, 1], side])

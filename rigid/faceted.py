@@ -10,9 +10,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from .arms import Arms, point_arms
 from .arrays import Floats, floats
-from .chord import chord
-from .errors import ShapeError, refuse
+from .chord import mirrored_chord
+from .errors import ShapeError
 from .slenderness import slenderness
+from .touch import Touch, level_part, on_side, require_inclination
 from .turned import CORNER
 
 LEVEL = 1e-6
@@ -26,7 +27,9 @@ HEIGHTS = 400
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Faceted:
-    """The half y >= 0 of a body whose tip stands at z = 0; its side x > 0 comes down first.
+    """The half y >= 0 of a body whose tip stands at z = 0.
+
+    Its side x > 0 comes down first at an inclination above 0, its side x < 0 at one below.
 
     Parameters
     ----------
@@ -106,12 +109,20 @@ class Faceted:
         return 0.5 * float(np.ptp(low))
 
     def contact_point(self, alpha: ArrayLike) -> tuple[Floats, Floats]:
-        """Lowest point (x, z), m, at inclination `alpha` (rad); of equally low ones that of largest x."""
+        """Lowest point (x, z), m, at inclination `alpha` (rad).
+
+        Of a part that is equally low it is the end on the side that comes down first, nearest the tip: see
+        `touch`.
+        """
         (alpha,) = floats(alpha)
-        outside = ~((alpha >= 0) & (alpha < np.pi / 2))
-        refuse(outside, "the inclination must lie in 0 <= alpha < pi/2 rad, got {value}", alpha)
+        require_inclination(alpha)
         place = self._outline[self._lowest(alpha)]
         return place[..., 0][()], place[..., 1][()]
+
+    def touch(self, alpha: float) -> Touch:
+        """Return what is lowest in the plane of motion at `alpha` (rad): a point, or all of a side."""
+        x, z = (float(part) for part in self.contact_point(alpha))
+        return level_part(self._outline, alpha, LEVEL * self.length) or Touch(x, z, 0.0)
 
     def arms(self, alpha: ArrayLike) -> Arms:
         """Arms d_c, d_d, m, of the lowest point about the mass centre."""
@@ -139,9 +150,10 @@ class Faceted:
 
     def reaches(self, alpha: float, height: float) -> tuple[float, float]:
         """As `Projectile.reaches`, of the convex outline."""
-        highest = int(np.argmax(self._outline[:, 1]))
-        around = np.roll(self._outline, -highest, axis=0)
-        return chord(np.vstack([around, around[:1]]), alpha, height)
+        outline = self._outline if alpha >= 0 else self._outline[::-1] * [-1.0, 1.0]
+        highest = int(np.argmax(outline @ (-math.sin(abs(alpha)), math.cos(alpha))))
+        around = np.roll(outline, -highest, axis=0)
+        return mirrored_chord(np.vstack([around, around[:1]]), alpha, height)
 
     def curvature_around(self, alpha: float) -> float:
         """Radius of curvature, m, across the plane of motion at the lowest point; inf along a straight edge.
@@ -207,11 +219,13 @@ class Faceted:
         return np.column_stack([mass, xx - x**2 / mass])
 
     def _lowest(self, alpha: Floats) -> NDArray[np.int64]:
-        """Return the vertex of the outline that is lowest; of those equally low, the one of largest x."""
+        """Return the vertex of the outline that is lowest; of those equally low, see `contact_point`."""
         x, z = self._outline.T
         height = z * np.cos(alpha)[..., None] - x * np.sin(alpha)[..., None]
         low = height <= height.min(axis=-1)[..., None] + LEVEL * self.length
-        return np.asarray(np.argmax(np.where(low, x, -np.inf), axis=-1))
+        ahead = np.where(low, on_side(x, np.asarray(alpha)[..., None]), -np.inf)
+        foremost = ahead >= ahead.max(axis=-1)[..., None] - LEVEL * self.length
+        return np.asarray(np.argmin(np.where(foremost, z, np.inf), axis=-1))
 
     def _widths(self) -> tuple[Floats, Floats]:
         """Return heights and the half width along x there, m, of the edges of facets that cross them."""

@@ -12,10 +12,11 @@ from numpy.typing import ArrayLike
 
 from .arms import Arms, corner_arms, point_arms
 from .arrays import Floats, floats
-from .chord import both_sides, chord
-from .errors import ShapeError, refuse
+from .chord import both_sides, mirrored_chord
+from .errors import ShapeError
 from .nose import SHAPES, Nose
 from .slenderness import slenderness
+from .touch import LEVEL, Touch, level_part, on_side, require_inclination
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,6 +82,11 @@ class Projectile:
         return _moments(self)[0]
 
     @property
+    def x_c(self) -> float:
+        """Place of the mass centre beside the axis, m: it lies on it."""
+        return 0.0
+
+    @property
     def z_c(self) -> float:
         """Distance of the mass centre from the tip end, m."""
         return _moments(self)[1]
@@ -112,11 +118,23 @@ class Projectile:
         return self.nose.polyline(n)
 
     def contact_point(self, alpha: ArrayLike) -> tuple[Floats, Floats]:
-        """Lowest point (rho, z), m, of the meridian at inclination `alpha` (rad)."""
+        """Lowest point (x, z), m, of the outline at inclination `alpha` (rad), below 0 on the side x < 0.
+
+        Of a face or a side that is equally low all along it is one end, the limit of a small tilt: see
+        `touch`.
+        """
         (alpha,) = floats(alpha)
-        outside = ~((alpha >= 0) & (alpha < np.pi / 2))
-        refuse(outside, "the inclination must lie in 0 <= alpha < pi/2 rad, got {value}", alpha)
-        return self.nose.lowest(alpha)
+        require_inclination(alpha)
+        rho, z = self.nose.lowest(np.abs(alpha))
+        return on_side(rho, alpha), z
+
+    def touch(self, alpha: float) -> Touch:
+        """Return what is lowest at inclination `alpha` (rad): a point, or all of a face, a cone or a side."""
+        x, z = (float(part) for part in self.contact_point(alpha))
+        nose, R = self.nose, self.diameter / 2
+        ends = np.array([(0.0, 0.0), (nose.face, 0.0), nose.arc_end, (R, self.z_side), (R, self.length)])
+        places = np.vstack([both_sides(ends), [x, z]])  # on an arc the point lies below both of its ends
+        return level_part(places, alpha, LEVEL * self.length) or Touch(x, z, 0.0)
 
     @property
     def face(self) -> float:
@@ -126,13 +144,13 @@ class Projectile:
     def tip_curvature(self, alpha: float) -> float:
         """Radius of curvature, m, of the meridian at the lowest point; 0 on an edge."""
         nose = self.nose
-        sharp = self.tip_radius == 0 or (nose.has_cone and alpha > nose.sweep)
+        sharp = self.tip_radius == 0 or (nose.has_cone and abs(alpha) > nose.sweep)
         return 0.0 if sharp else self.tip_radius
 
     def reaches(self, alpha: float, height: float) -> tuple[float, float]:
         """How far, m, it goes down and up the slope at a `height` > 0, m, over the lowest point."""
         side = np.vstack([self.meridian(), [self.diameter / 2, self.length]])
-        return chord(both_sides(side), alpha, height)
+        return mirrored_chord(both_sides(side), alpha, height)
 
     def other_edges(self, alpha: float) -> list[tuple[str, float, float, float]]:
         """Round edges that do not touch first but may touch later: name, (x, z) of the centre and radius, m.
@@ -141,14 +159,15 @@ class Projectile:
         tail.
         """
         nose, R = self.nose, self.diameter / 2
+        side, alpha = (-1.0 if alpha < 0 else 1.0), abs(alpha)
         on_shoulder = nose.has_cone and alpha > nose.sweep
         on_arc = not on_shoulder and (alpha > 0 or nose.face == 0)
         shoulders = [x for x in (-R, R) if nose.has_cone and not (on_shoulder and x > 0)]
         arcs = {-nose.face, nose.face} - ({nose.face} if on_arc else set())
         return [
-            *(("tail", x, self.length, 0.0) for x in (-R, R)),
-            *(("shoulder", x, nose.z_side, 0.0) for x in shoulders),
-            *(("nose" if on_shoulder else "other edge", x, nose.r, nose.r) for x in sorted(arcs)),
+            *(("tail", side * x, self.length, 0.0) for x in (-R, R)),
+            *(("shoulder", side * x, nose.z_side, 0.0) for x in shoulders),
+            *(("nose" if on_shoulder else "other edge", side * x, nose.r, nose.r) for x in sorted(arcs)),
         ]
 
     def radius(self, z: Floats) -> Floats:

@@ -11,15 +11,19 @@ from numpy.typing import ArrayLike
 
 from .arms import Arms, point_arms
 from .arrays import Floats, floats
-from .chord import both_sides, chord
-from .errors import ShapeError, TooLongError, refuse
+from .chord import both_sides, mirrored_chord
+from .errors import ShapeError, TooLongError
 from .slenderness import slenderness
+from .touch import LEVEL, Touch, level_part, on_side, require_inclination
 
 CORNER = math.radians(12.0)
 """A turn of the profile above this, rad, is an edge of the body, not a step of a smooth curve."""
 SPACING = math.radians(15.0)
 """Turn, rad, between two places of a smooth curve that are looked at as edges that may touch."""
 
+
+LONG = 2.0
+"""Steps of a smooth curve beside it that a straight part is longer than."""
 
 _WITHIN = np.array([1e-6, 1 - 1e-6])  # of a straight piece: beside its ends, where a radius may jump
 
@@ -104,6 +108,11 @@ class Turned:
         return self._moments[0]
 
     @property
+    def x_c(self) -> float:
+        """Place of the mass centre beside the axis, m: it lies on it."""
+        return 0.0
+
+    @property
     def z_c(self) -> float:
         """Distance of the mass centre from the tip, m."""
         return self._moments[1]
@@ -169,21 +178,31 @@ class Turned:
         return mass, z_c, k2
 
     def contact_point(self, alpha: ArrayLike) -> tuple[Floats, Floats]:
-        """Lowest point (rho, z), m, of the outline at inclination `alpha` (rad).
+        """Lowest point (x, z), m, of the outline at inclination `alpha` (rad), below 0 on the side x < 0.
 
         It is a vertex of the outline's convex hull; on a smooth curve, the point of the circle of curvature
-        there whose normal is that of the barrier.
+        there whose normal is that of the barrier. Of a part that is equally low it is one end: see `touch`.
         """
         (alpha,) = floats(alpha)
-        outside = ~((alpha >= 0) & (alpha < np.pi / 2))
-        refuse(outside, "the inclination must lie in 0 <= alpha < pi/2 rad, got {value}", alpha)
+        require_inclination(alpha)
         place, (low, high) = self._touching(alpha), self._normals()
         middle, half = 0.5 * (low + high)[place], 0.5 * (high - low)[place]
-        turned = middle + np.clip(alpha - middle, -half, half)
+        turned = middle + np.clip(np.abs(alpha) - middle, -half, half)
         bend = self._bends()[place]
         rho = self.outline[place, 0] + bend * (np.sin(turned) - np.sin(middle))
         z = self.outline[place, 1] - bend * (np.cos(turned) - np.cos(middle))
-        return np.maximum(rho, 0.0)[()], z[()]
+        return on_side(np.maximum(rho, 0.0), alpha), z[()]
+
+    def touch(self, alpha: float) -> Touch:
+        """Return what is lowest at inclination `alpha` (rad): a point, or all of a straight face or side.
+
+        Where a smooth curve meets the barrier with one of the steps by which it is stated, it is a point.
+        """
+        x, z = (float(part) for part in self.contact_point(alpha))
+        part = level_part(both_sides(self.outline), alpha, LEVEL * self.length)
+        vertex, (low, high) = int(self._touching(np.array(alpha))), self._normals()
+        step = self._bends()[vertex] * (high - low)[vertex]  # 0 at an edge
+        return Touch(x, z, 0.0) if part is None or part.length <= LONG * step else part
 
     def holds(self, rho: Floats, z: Floats) -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:
         """Whether points at radii `rho` and heights `z`, m, lie inside."""
@@ -203,15 +222,15 @@ class Turned:
         side = self.outline
         if self.bore is not None and self.bore[0, 1] <= 0.0:
             rim = self.bore[:1]
-            return chord(np.vstack([rim, side[(side > rim).any(axis=1)]]), alpha, height)
-        return chord(both_sides(side), alpha, height)
+            return mirrored_chord(np.vstack([rim, side[(side > rim).any(axis=1)]]), alpha, height)
+        return mirrored_chord(both_sides(side), alpha, height)
 
     def flank(self, alpha: float) -> tuple[float, float]:
         """Length of the straight side next to the lowest point, and its far end's height over the barrier, m.
 
         It is the flatter of both sides; a flat face at the tip is none. (0, inf) on a smooth curve.
         """
-        first = int(self._touching(np.array(alpha)))
+        first, alpha = int(self._touching(np.array(alpha))), abs(alpha)
         height = self.outline[:, 1] * math.cos(alpha) - self.outline[:, 0] * math.sin(alpha)
         found = [(0.0, math.inf)]
         for other in (first - 1, first + 1):
@@ -227,6 +246,7 @@ class Turned:
         Edges of the convex outline in the plane of motion, and places `SPACING` apart on its smooth curves.
         """
         first, near = int(self._touching(np.array(alpha))), 1.2 * self.tip_curvature(alpha)
+        side = -1.0 if alpha < 0 else 1.0
         bends, (low, high) = self._bends(), self._normals()
         turned = np.floor(0.5 * (low + high) / SPACING)
         picked = np.flatnonzero((bends == 0.0) & (high > low) | (np.diff(turned, prepend=-1.0) > 0))
@@ -238,7 +258,7 @@ class Turned:
             for x in (-rho, rho):
                 away = math.dist((x, z), tuple(self.outline[first]))
                 if not (vertex == first and x > 0) and away > near:
-                    found.append((name, x, z, 0.0))
+                    found.append((name, side * x, z, 0.0))
         return found
 
     def _on_hull(self) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
@@ -251,6 +271,7 @@ class Turned:
 
     def _touching(self, alpha: Floats) -> np.ndarray[tuple[int, ...], np.dtype[np.int64]]:
         """Return the vertex that is lowest; of those equally low, the one furthest from the tip."""
+        alpha = np.abs(alpha)
         rho, z = self.outline[::-1].T
         height = z * np.cos(alpha)[..., None] - rho * np.sin(alpha)[..., None]
         return np.asarray(len(rho) - 1 - np.argmin(height, axis=-1))

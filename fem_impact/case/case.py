@@ -14,9 +14,9 @@ from fem_impact.case.effects.slots import ModelSpec
 from fem_impact.case.elastic_only import require_crushing_named
 from fem_impact.case.layers import block_of, require_layers, thin_layer
 from fem_impact.case.limits import (
+    require_first_part,
     require_own_mesh,
     require_point,
-    require_round,
     require_shallow,
     require_still,
     scene_limitations,
@@ -75,10 +75,10 @@ class Case:
         require_crushing_named(scene)
         require_still(scene.barrier, fidelity)
         require_own_mesh(case.bodies, fidelity)
-        require_round(case.bodies, fidelity)
         require_plate(case.bodies, case.meshed_through)
+        require_first_part(case.bodies)
         if record is None:
-            require_point(case.bodies)
+            require_point(case.bodies, fidelity)
         slots = case.slots
         require_layers(case.bodies, fidelity)
         require_closed_form(case.bodies, slots, fidelity)

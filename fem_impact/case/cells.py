@@ -97,7 +97,7 @@ def _contact_radius(rod: ProjectileSpec, angle: float, across: int) -> float:
     """Return the radius, m, of the nose or section of a turned projectile that touches."""
     body = rod.body()
     assert isinstance(body, Turned), "a mesh of its own has its own cells"
-    place = np.array([float(part) for part in body.contact_point(angle)])
+    place = np.array([float(part) for part in body.contact_point(abs(angle))])
     try:
         return meshes.contact_radius(body.outline, place, across, body.bore)
     except meshes.MeshError as error:

@@ -34,12 +34,13 @@ def require_approach(bodies: Bodies) -> None:
     """Refuse a spin that takes the lowest point away from the barrier as the rod comes down (SceneError)."""
     pair = bodies.contact
     if pair.approach < SLOWEST:
+        side = "under" if pair.arms[0] > 0 else "above"
         raise SceneError(
             f"lifts the contact point off the barrier at {max(-pair.approach, 0.0):.3g} m/s: "
             "another part would strike.",
             key="impact.omega",
             value=f"{bodies.scene.impact.omega:.3g} rad/s",
-            remedy=f"Keep it under {abs(pair.v_n / pair.arms[0]):.4g} rad/s, or turn it round.",
+            remedy=f"Keep it {side} {-pair.v_n / pair.arms[0]:.4g} rad/s, or turn it round.",
         )
 
 

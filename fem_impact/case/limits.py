@@ -18,10 +18,9 @@ from fem_impact.scene.impact import BESIDE
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.types import Scene
 from fem_impact.scene.units import format_quantity
-from rigid import Faceted, Projectile
+from rigid import Faceted, Turned
 
 BESIDE_AXIS = 1e-3  # of the diameter, within which an upright body stands over its mass centre
-FLAT_FACE = "a flat face that lands all at once"
 # Smallest and largest of the 13 measured sets (Tables 2 to 6 of the paper), SI units.
 LENGTHS = (0.08, 0.24)
 DIAMETER = 0.019
@@ -54,7 +53,7 @@ def scene_limitations(bodies: Bodies, meshed_through: bool) -> tuple[Limitation,
         _outside(scene.projectile.length, LENGTHS, "length", "length"),
         _section(scene),
         _outside(speed, SPEEDS, "speed", "speed"),
-        _outside(scene.impact.angle, ANGLES, "angle", "angle"),
+        _outside(abs(scene.impact.angle), ANGLES, "angle", "angle"),
         _fall(scene),
         TURNING if scene.impact.omega else "",
         _steels(scene),
@@ -163,12 +162,43 @@ def require_still(barrier: Barrier, fidelity: str) -> None:
         )
 
 
-def require_point(bodies: Bodies) -> None:
-    """Refuse a straight flank that comes down flat on the barrier, or a later segment (SceneError)."""
-    scene, body = bodies.scene, bodies.body
-    if isinstance(body, Projectile):
+def require_point(bodies: Bodies, fidelity: str) -> None:
+    """Refuse a straight part that comes down flat where one point of the tip is followed (SceneError).
+
+    Rigid theory follows the middle of it where the scene states its restitution; finite elements on one mesh
+    hold a face that lands upright, and on levels of meshes any part.
+    """
+    if fidelity == "rigid" and bodies.scene.restitution is not None:
         return
-    segments, (rho, touch) = scene.projectile.segments, bodies.contact.touch_point
+    body = bodies.body
+    if isinstance(body, Faceted):
+        _require_tip(bodies, body, fidelity)
+    elif isinstance(body, Turned):
+        _require_no_flank(bodies, body, fidelity)
+    if not bodies.contact.lands_flat or (fidelity == "solid" and bodies.scene.impact.angle == 0):
+        return
+    law = f"{fidelity} takes the contact law of a round tip"
+    follows = "one mesh is fine about one point" if fidelity == "solid" else law
+    raise SceneError(
+        f"is that of {flat_part(bodies)}, but {follows}.",
+        key="impact.angle",
+        value=_angle(bodies),
+        remedy=_any_part(fidelity),
+    )
+
+
+def require_first_part(bodies: Bodies) -> None:
+    """Refuse another segment than the first, or a set of a mesh, that touches first (SceneError)."""
+    if regions := bodies.rod.regions:
+        of = bodies.rod.cell_materials()[touching_cells(bodies)]
+        if of.all():
+            name = regions[int(of[0]) - 1].name
+            raise SceneError(
+                "touches the barrier first, but only the projectile's material may.",
+                key=f"projectile.mesh_materials.{name}",
+                remedy="State its material as projectile.material, and those of the other sets here.",
+            )
+    segments, (_, touch) = bodies.rod.segments, bodies.contact.touch_point
     if segments and touch > segments[0].to:
         raise SceneError(
             f"ends before the place that touches first, {touch * 1e3:.3g} mm from the tip.",
@@ -176,15 +206,16 @@ def require_point(bodies: Bodies) -> None:
             value=f"{segments[0].to * 1e3:.3g} mm",
             remedy="The first segment must touch: only its material may yield.",
         )
-    if isinstance(body, Faceted):
-        _require_tip(bodies, body)
-        return
-    size, (length, height) = bodies.contact.round_contact, body.flank(scene.impact.angle)
-    flat = FLAT * size.depth
+
+
+def _require_no_flank(bodies: Bodies, body: Turned, fidelity: str) -> None:
+    """Refuse a flank of a turned body that comes down nearly flat (SceneError)."""
+    angle, size = bodies.scene.impact.angle, bodies.contact.round_contact
+    (rho, _), (length, height), flat = bodies.contact.touch_point, body.flank(angle), FLAT * size.depth
     if length <= 2 * size.a_t or height >= flat:
         return
     deep = f"{size.depth * 1e3:.2g} mm"
-    if rho == body.face == 0 and not body.tip_curvature(scene.impact.angle):
+    if rho == body.face == 0 and not body.tip_curvature(angle):
         raise SceneError(
             f"ends in a point that would be pressed in by {deep}, as far as to its flanks.",
             key="projectile",
@@ -196,23 +227,40 @@ def require_point(bodies: Bodies) -> None:
     raise SceneError(
         f"lays a flank of {length * 1e3:.3g} mm along the barrier: a line would touch, not a point.",
         key="impact.angle",
-        value=f"{math.degrees(scene.impact.angle):.4g} deg",
-        remedy=turned if flat < length else slower,
+        value=_angle(bodies),
+        remedy=f"{turned if flat < length else slower} {_any_part(fidelity)}",
     )
 
 
-def require_round(bodies: Bodies, fidelity: str) -> None:
-    """Refuse a face that lands flat where e would follow from the law of a round contact (SceneError)."""
-    if fidelity == "solid" or (fidelity == "rigid" and bodies.scene.restitution is not None):
-        return
-    if bodies.contact.lands_flat:
-        by_key = ", or state restitution" if fidelity == "rigid" else ""
-        raise SceneError(
-            f"is that of {FLAT_FACE}, but {fidelity} takes the contact law of a round tip.",
-            key="impact.angle",
-            value="0 deg",
-            remedy=f"Use --fidelity solid{by_key}.",
-        )
+def _require_tip(bodies: Bodies, body: Faceted, fidelity: str) -> None:
+    """Refuse a mesh that lays its side along the barrier, or stands upright on a tip beside its axis."""
+    angle, size = bodies.scene.impact.angle, bodies.contact.round_contact
+    remedy = f"Give another angle, or change the mesh. {_any_part(fidelity)}"
+    if angle == 0 and body.off_axis() > BESIDE_AXIS * body.diameter:
+        problem = f"stands the body on a tip {body.off_axis() * 1e3:.3g} mm beside its mass centre's axis."
+        raise SceneError(problem, key="impact.angle", value=_angle(bodies), remedy=remedy)
+    back, ahead, _ = body.spread(angle, FLAT * size.depth, (size.R1, size.R2))
+    flank = back if angle < 0 else ahead
+    if flank > 2 * size.a_t:
+        problem = f"lays {flank * 1e3:.3g} mm of the mesh's side along the barrier: no tip would touch."
+        raise SceneError(problem, key="impact.angle", value=_angle(bodies), remedy=remedy)
+
+
+def _any_part(fidelity: str) -> str:
+    """Return what to use where not a point of the tip touches, in place of a fidelity."""
+    if fidelity == "solid":
+        return "Leave out accuracy.levels = 1: levels of meshes find what touches."
+    return f"Use --fidelity solid{', or state restitution' if fidelity == 'rigid' else ''}."
+
+
+def _angle(bodies: Bodies) -> str:
+    return f"{math.degrees(bodies.scene.impact.angle):.4g} deg"
+
+
+def flat_part(bodies: Bodies) -> str:
+    """Return what of the projectile lands flat."""
+    part = "flat face" if bodies.scene.impact.angle == 0 else "straight side"
+    return f"a {part} that lands all at once"
 
 
 def require_turned(rod: ProjectileSpec, asked: str) -> None:
@@ -231,7 +279,7 @@ def not_reduced(bodies: Bodies) -> str:
     obstacles = {
         "a projectile with a mesh of its own": bodies.rod.own_mesh,
         "a barrier of layers": bodies.barrier.layers,
-        FLAT_FACE: bodies.contact.lands_flat,
+        flat_part(bodies): bodies.contact.lands_flat,
         "a plate thinner than its contact is wide": is_wider(bodies),
     }
     return next((what for what, holds in obstacles.items() if holds), "")
@@ -256,28 +304,3 @@ def require_own_mesh(bodies: Bodies, fidelity: str) -> None:
         )
         remedy = 'Add "-machined-skin" to effects.'
         raise SceneError(problem, key="effects", value=list(scene.effects), remedy=remedy)
-
-
-def _require_tip(bodies: Bodies, body: Faceted) -> None:
-    """Refuse a mesh that lays its side along the barrier, or stands upright on a tip beside its axis.
-
-    One that touches with cells of another material than the projectile's is refused too.
-    """
-    if regions := bodies.rod.regions:
-        of = bodies.rod.cell_materials()[touching_cells(bodies)]
-        if of.all():
-            name = regions[int(of[0]) - 1].name
-            raise SceneError(
-                "touches the barrier first, but only the projectile's material may.",
-                key=f"projectile.mesh_materials.{name}",
-                remedy="State its material as projectile.material, and those of the other sets here.",
-            )
-    scene, size = bodies.scene, bodies.contact.round_contact
-    value, remedy = f"{math.degrees(scene.impact.angle):.4g} deg", "Give another angle, or change the mesh."
-    if scene.impact.angle == 0 and body.off_axis() > BESIDE_AXIS * body.diameter:
-        problem = f"stands the body on a tip {body.off_axis() * 1e3:.3g} mm beside its mass centre's axis."
-        raise SceneError(problem, key="impact.angle", value=value, remedy=remedy)
-    _, flank, _ = body.spread(scene.impact.angle, FLAT * size.depth, (size.R1, size.R2))
-    if flank > 2 * size.a_t:
-        problem = f"lays {flank * 1e3:.3g} mm of the mesh's side along the barrier: no tip would touch."
-        raise SceneError(problem, key="impact.angle", value=value, remedy=remedy)

@@ -20,7 +20,7 @@ from fem_impact.arrays import Array
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.effects.slots import ModelSpec
 from fem_impact.case.layers import block_of, moved_rows
-from fem_impact.case.zones import BUFFER, Zones, zones_of
+from fem_impact.case.zones import BUFFER, Ways, Zones, zones_of
 from fem_impact.errors import SceneError
 from fem_impact.physics.contact import pressure_speed
 from fem_impact.scene.material import Material
@@ -258,7 +258,7 @@ def _body_start(bodies: Bodies, zones: Zones, boxes: list[tuple[Array, Array]]) 
     alpha, foot = bodies.mesh_inclination, float(bodies.lowest_point[2])
     tops = (
         high[2] * cos(alpha)
-        + max(-low[0], high[0]) * sin(alpha)
+        + max(-low[0], high[0]) * abs(sin(alpha))
         + float(reach(1.4 * zones.base, 1, level, BUFFER))
         for level, (low, high) in enumerate(boxes, 1)
     )
@@ -297,7 +297,9 @@ def _block_elements(bodies: Bodies, zones: Zones) -> float:
 def _yielding_rod(bodies: Bodies, zones: Zones) -> float:
     """Return the split cells of half the rod that reach into the ellipsoid whose cells may yield."""
     radii = _radii(zones, zones.tip_size)
-    points, volume = _inside_rod(bodies, np.array([-radii[0] - zones.reach, 0.0, -radii[2]]), radii)
+    down, up = zones.reach
+    low, high = np.array([-radii[0] - down, 0.0, -radii[2]]), np.array([radii[0] + up, *radii[1:]])
+    points, volume = _inside_rod(bodies, low, high)
     return _yielding(
         points, volume / max(len(points), 1), zones.reach, radii, zones.rod_base, zones.rod_boxes
     )
@@ -307,7 +309,8 @@ def _yielding_block(zones: Zones) -> float:
     """Return the split cells of half the block that reach into the ellipsoid; thin rows stand for depth."""
     radii = _radii(zones, zones.barrier_size)
     radii[2] += thin_skin_rise(zones.skin_rows) * zones.barrier_size
-    low, high = np.array([-radii[0] - zones.along, 0.0, -radii[2]]), np.array([*radii[:2], 0.0])
+    down, up = zones.along
+    low, high = np.array([-radii[0] - down, 0.0, -radii[2]]), np.array([radii[0] + up, radii[1], 0.0])
     points = _grid(low, high)
     each = float(np.prod(high - low)) / len(points)
     return _yielding(points, each, zones.along, radii, zones.base, zones.barrier_boxes)
@@ -319,14 +322,14 @@ def _radii(zones: Zones, edge: float) -> Array:
 
 
 def _yielding(
-    points: Array, each: float, along: float, radii: Array, base: float, boxes: list[tuple[Array, Array]]
+    points: Array, each: float, along: Ways, radii: Array, base: float, boxes: list[tuple[Array, Array]]
 ) -> float:
     """Return the split cells at ``points`` (k, 3), each of which stands for a volume, m3, in an ellipsoid.
 
-    The ellipsoid is drawn out by ``along``, m, towards -t.
+    The ellipsoid is drawn out by ``along``, m, down and up the slope.
     """
     place = points.copy()
-    place[:, 0] += np.clip(-place[:, 0], 0.0, along)
+    place[:, 0] -= np.clip(place[:, 0], -along[0], along[1])
     inside = points[np.sum((place / radii) ** 2, axis=1) < 1]
     edges = np.full(len(inside), np.inf)
     for edge, low, high in _split_boxes(base, boxes):

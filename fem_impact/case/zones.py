@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import ceil, cos, floor, log2
+from math import ceil, copysign, cos, floor, log2
 
 import numpy as np
 
@@ -21,6 +21,7 @@ from rigid import Faceted
 
 Corners = tuple[Array, Array]  # lowest and highest corner of a box, m
 Extents = tuple[float, float, float]
+Ways = tuple[float, float]  # down the slope, towards -t, and up it, m
 Shares = tuple[tuple[float, Extents], ...]  # least cells over the contact's radius, shares along t, b, n
 
 # half-widths of the fine zone in units of the estimated contact ellipse's semi-axes (depth: of their
@@ -57,7 +58,7 @@ class Zones:
     base : edge of the barrier's cells; rod_base : of the rod's, at the contact, the same but in a user's mesh
     rod, barrier : for each level of splitting, the coarsest first: half-widths along t and b, depth along n
     half : those of the zone in which cells may yield
-    reach : how far the rod's zone follows its face along -t; along : how far the barrier's goes along -t
+    reach : how far the rod's zone follows its face down and up the slope; along : the same of the barrier's
     conforming : the barrier flows under all of the contact, so that its surface takes the rod's form
     skin_rows : thin rows of cells at the top of the barrier
     edges : how far a plate that is meshed through its thickness goes beyond its fine zone; else 0
@@ -68,8 +69,8 @@ class Zones:
     rod: tuple[Extents, ...]
     barrier: tuple[Extents, ...]
     half: Extents
-    reach: float
-    along: float
+    reach: Ways
+    along: Ways
     conforming: bool
     skin_rows: int
     edges: float = 0.0
@@ -93,13 +94,13 @@ class Zones:
     def whole(self) -> Corners:
         """Return the box, from the contact along t, b and n, in which the rod may touch and yield."""
         t, b, n = self.half
-        return np.array([-t - self.reach, 0.0, -n]), np.array([t, b, n])
+        return _box(t, self.reach, -n, b, n)
 
     @property
     def rod_boxes(self) -> list[Corners]:
         """Return the box of the rod's zone of each level, from the contact along t, b and n."""
         return [
-            (np.array([-t - self.reach, 0.0, -self.rod_base / 2**level]), np.array([t, b, n]))
+            _box(t, self.reach, -self.rod_base / 2**level, b, n)
             for level, (t, b, n) in enumerate(self.rod, 1)
         ]
 
@@ -116,7 +117,7 @@ class Zones:
     @property
     def middle(self) -> float:
         """Return the place along t, m, of the middle of a face that is pressed in; 0 about a point."""
-        return -0.5 * self.reach
+        return 0.5 * (self.reach[1] - self.reach[0])
 
     def in_rod(self, lowest: Array, turn: Array) -> list[Zone]:
         """Return the zone of each level in the frame of the projectile's mesh.
@@ -151,17 +152,23 @@ class Zones:
         return np.asarray(gap <= 0)
 
     def _below(self, extents: Extents) -> Corners:
-        """Return the box of a zone of the barrier; it goes on towards -t under the path of the rod."""
+        """Return the box of a zone of the barrier; it goes on under the path of the rod."""
         t, b, n = extents
-        return np.array([-t - self.along, 0.0, -n - self.rise]), np.array([t, b, 0.0])
+        return _box(t, self.along, -n - self.rise, b, 0.0)
 
 
-def _round(mesh: HexMesh, points: Array, along: float, radii: tuple[float, float, float]) -> Bools:
+def _box(t: float, ways: Ways, low: float, b: float, high: float) -> Corners:
+    """Return the corners of a box half ``t`` wide, m, that goes on down and up the slope."""
+    return np.array([-t - ways[0], 0.0, low]), np.array([t + ways[1], b, high])
+
+
+def _round(mesh: HexMesh, points: Array, along: Ways, radii: tuple[float, float, float]) -> Bools:
     """Return the mask (m,) of the cells that reach into an ellipsoid about the contact.
 
-    The ellipsoid has half axes ``radii``, m, and is swept by ``along``, m, towards -t.
+    The ellipsoid has half axes ``radii``, m, and is swept by ``along``, m, down and up the slope.
     """
-    core = Zone(np.zeros(3), np.eye(3), np.array([-along, 0.0, 0.0]) / radii, np.zeros(3))
+    down, up = (np.array([way, 0.0, 0.0]) / radii for way in along)
+    core = Zone(np.zeros(3), np.eye(3), -down, up)
     away = core.gap(points[mesh.cells] / radii, np.zeros(len(mesh.cells)))
     return np.asarray(away < ROUND)
 
@@ -187,7 +194,7 @@ def zones_of(bodies: Bodies) -> Zones:
         barrier=tuple(extents(base / 2**level, BARRIER_SHARES) for level in range(1, below + 1)),
         half=extents(min(rod_base / 2**levels, base / 2**below), ()),
         reach=reach,
-        along=reach + slide(bodies, half_widths(size, base / 2**below)[0]),
+        along=_further(reach, slide(bodies, half_widths(size, base / 2**below)[0])),
         conforming=conforming,
         skin_rows=rows,
         edges=plate_waves(pair)[1] if is_thin(bodies) else 0.0,
@@ -225,8 +232,12 @@ def skin_rows(bodies: Bodies, h: float) -> int:
     return min(max(halvings, 0), most)
 
 
-def face_reach(bodies: Bodies) -> tuple[float, float]:
-    """Return how far the fine zone must follow a face that is pressed in, along -t and to the side, m.
+def _further(reach: Ways, slid: Ways) -> Ways:
+    return reach[0] + slid[0], reach[1] + slid[1]
+
+
+def face_reach(bodies: Bodies) -> tuple[Ways, float]:
+    """Return how far the fine zone must follow a face that is pressed in, along t and to the side, m.
 
     Of a turned body's face all may touch where it nearly lies flat, else as much as is pressed in. Of a body
     with facets, all nodes no higher than `FLAT` depths of the estimated indentation may that lie further out
@@ -235,18 +246,26 @@ def face_reach(bodies: Bodies) -> tuple[float, float]:
     size, alpha = bodies.estimate, bodies.mesh_inclination
     body, rho = bodies.body, float(bodies.lowest_point[0])
     if isinstance(body, Faceted):
-        reach, _, side = body.spread(alpha, FLAT * size.depth, (size.R1, size.R2))
+        down, up, side = body.spread(alpha, FLAT * size.depth, (size.R1, size.R2))
+        reach = (0.0, up) if alpha < 0 else (down, 0.0)
         return reach, side + AROUND * size.a_b if side > 0 else 0.0
-    return (2 * rho * cos(alpha), rho) if bodies.contact.nearly_flat(size.depth) else (2 * size.shift, 0.0)
+    if bodies.contact.nearly_flat(size.depth):
+        return _ways(-2 * rho * cos(alpha)), abs(rho)
+    return _ways(-2 * size.shift), 0.0
 
 
-def slide(bodies: Bodies, t: float) -> float:
-    """Return how far the fine zone of a barrier goes on down the slope, m, ``t`` m its half-width there."""
-    down = -bodies.contact.sliding
-    if down <= 0:
-        return 0.0
-    way = SLIDE * bodies.estimate.depth * down / max(bodies.contact.approach, 1e-6)
-    return max(way, DRAG * t)
+def _ways(t: float) -> Ways:
+    """Return the ways down and up the slope of one along t, m."""
+    return max(-t, 0.0), max(t, 0.0)
+
+
+def slide(bodies: Bodies, t: float) -> Ways:
+    """Return how far the fine zone of a barrier goes on where the rod slides, m, ``t`` m its half-width."""
+    speed = bodies.contact.sliding
+    if speed == 0:
+        return 0.0, 0.0
+    way = SLIDE * bodies.estimate.depth * abs(speed) / max(bodies.contact.approach, 1e-6)
+    return _ways(copysign(max(way, DRAG * t), speed))
 
 
 def require_layer(skin: Skin, barrier_size: float, skin_rows: int) -> None:

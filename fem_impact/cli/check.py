@@ -176,6 +176,7 @@ def _body_entry(bodies: Bodies) -> dict[str, float]:
         "gamma": body.gamma,
         "touch_z_m": z,
         "touch_rho_m": rho,
+        "touch_length_m": bodies.contact.touch.length,
         "R1_m": R1,
         "R2_m": R2,
         "d_c_m": d_c,
@@ -189,13 +190,14 @@ def _body_entry(bodies: Bodies) -> dict[str, float]:
 def _body_lines(body: dict[str, float]) -> Iterable[str]:
     """Return the projectile's numbers in words."""
     mm = {key: 1e3 * value for key, value in body.items() if key.endswith("_m")}
-    period = body["ovalling_period_s"]
+    length, period = mm["touch_length_m"], body["ovalling_period_s"]
+    part = f"with {length:.3g} mm at once, the middle of it " if length else ""
     ovalling = f", ovalling of the wall {plain(1e6 * period)} us (ring)" if period else ""
     return (
         f"mass {body['mass_kg']:.4g} kg, centre {mm['centre_m']:.4g} mm from the tip, moment of inertia "
         f"about it {body['inertia_kg_m2']:.4g} kg m2",
-        f"touches first {mm['touch_z_m']:.3g} mm from the tip, {mm['touch_rho_m']:.3g} mm off the axis, "
-        f"with radii {mm['R1_m']:.3g} mm (meridian) and {mm['R2_m']:.3g} mm (around)",
+        f"touches first {part}{mm['touch_z_m']:.3g} mm from the tip, {mm['touch_rho_m']:.3g} mm off the axis,"
+        f" with radii {mm['R1_m']:.3g} mm (meridian) and {mm['R2_m']:.3g} mm (around)",
         f"arms there: d_c = {mm['d_c_m']:.4g} mm, d_d = {mm['d_d_m']:.4g} mm",
         f"periods: bending T1 = {plain(1e6 * body['bending_period_s'])} us, longitudinal "
         f"{plain(1e6 * body['stretching_period_s'])} us (beam and bar)"

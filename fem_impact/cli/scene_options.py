@@ -178,10 +178,10 @@ def rod_of(options: Options) -> Projectile:
 
 
 def angle_of(options: Options) -> float:
-    """Return the angle, rad; one that is not in [0, pi/2) is refused."""
+    """Return the angle, rad; one beyond a right angle to either side is refused."""
     from fem_impact.scene.units import option_quantity
 
     alpha = option_quantity(options.angle, "angle", "--angle")
-    if not 0 <= alpha < math.pi / 2:
-        raise SceneError("must lie from 0 up to 90 degrees.", key="--angle", value=options.angle)
+    if not abs(alpha) <= math.pi / 2:
+        raise SceneError("must lie from -90 to 90 degrees.", key="--angle", value=options.angle)
     return alpha

@@ -14,7 +14,7 @@ from fem_impact.case.bodies import Bodies
 from fem_impact.case.layers import block_of, moved_rows
 from fem_impact.case.recorded import AnyZones
 from fem_impact.case.size import no_rest
-from fem_impact.case.zones import BUFFER
+from fem_impact.case.zones import BUFFER, Zones
 from fem_impact.errors import SceneError
 from fem_impact.scene.own_mesh import cell_regions
 from meshes import Cloud, HexMesh, RodMesh, Zone
@@ -84,7 +84,7 @@ def build_geometry(
             raise no_rest()
         rod = meshes.without_slices(rod, rest_points(bodies, rod.body_start))
     points = (rod.mesh.points - lowest) @ turn.T
-    if bodies.mesh_inclination > 0:  # an upright body has no side that could strike
+    if isinstance(zones, Zones) and bodies.mesh_inclination:  # an upright body has no side that could strike
         _require_tip_first(points, zones.base, bodies.rod.own_mesh is not None)
     points[:, 2] += gap if zones.conforming else gap - points[:, 2].min()
     touching, flows = zones.touching(rod.mesh, points), zones.rod_flow(rod.mesh, points)

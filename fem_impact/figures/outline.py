@@ -24,7 +24,7 @@ SHADES = "#=+%"  # one segment after the other
 
 
 def drawn(body: Body, touch: tuple[float, float], joints: Sequence[float] = ()) -> list[str]:
-    """Return the lines of a drawing to scale, ``o`` where the projectile touches first, (rho, z), m.
+    """Return the lines of a drawing to scale, ``o`` where the projectile touches first, (x, z), m.
 
     Thin bodies are drawn three rows high at least, not to scale. Segments, between ``joints``, m from the
     tip, have different signs.
@@ -36,7 +36,7 @@ def drawn(body: Body, touch: tuple[float, float], joints: Sequence[float] = ()) 
     inside = body.holds(np.abs(x)[:, None] + 0.0 * z, z + 0.0 * x[:, None])
     sign = [SHADES[number % len(SHADES)] for number in np.searchsorted(joints, z)]
     cells = [[sign[k] if cell else HOLLOW for k, cell in enumerate(row)] for row in inside]
-    row = int(np.argmin(np.abs(x + touch[0])))  # the lower side comes down first
+    row = int(np.argmin(np.abs(x + touch[0])))  # at an angle above 0 the lower side comes down first
     cells[row][min(WIDTH - 1, int(touch[1] / body.length * WIDTH))] = TOUCH
     return ["  " + "".join(line).rstrip() for line in cells]
 
@@ -54,7 +54,7 @@ def draw(body: Body, touch: tuple[float, float], parts: Sequence[Part], path: Pa
     Parameters
     ----------
     body : rigid projectile
-    touch : (rho, z), m, of the point that touches first; it lies on the lower side
+    touch : (x, z), m, of the point that touches first, on the lower side at an angle above 0
     parts : segments from the tip to the tail
     path : PNG or SVG file
 

@@ -101,7 +101,8 @@ def window(groove: Groove, depth: float, place: float, law: FlowLaw) -> tuple[in
     """Return first and last cell that the tip may touch; cells not visited before become smooth."""
     state, size = groove.state, groove.size
     half = sqrt(2 * law.R1 * max(depth + state[AT.top], 0.0))
-    first, last = int(np.floor((place - half) / size)), int(np.floor((place + half) / size)) + 1
+    # a cell more than may touch on either side: one that is left is set free there
+    first, last = int(np.floor((place - half) / size)) - 1, int(np.floor((place + half) / size)) + 1
     first = max(first, last - CELLS // 2)
     if state[AT.last] < state[AT.first]:
         state[AT.first], state[AT.last] = first, first - 1

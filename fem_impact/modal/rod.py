@@ -53,16 +53,22 @@ class ModalRod:
 
 
 def modal_rod(bodies: Bodies, vibrating: bool = True) -> ModalRod:
-    """Return the rod of a scene; the modes of rods of one shape and material are computed once."""
-    pair, body, alpha = bodies.contact, bodies.body, bodies.contact.angle
+    """Return the rod of a scene; the modes of rods of one shape and material are computed once.
+
+    A rod of which the side x < 0 comes down first is the mirror image of one that is inclined as much the
+    other way, exactly: modes from a mesh are symmetric but for their round-off.
+    """
+    pair, body = bodies.contact, bodies.body
     assert not isinstance(body, Faceted), "the case refuses the modal fidelity of a mesh of its own"
+    side, alpha = pair.side, abs(pair.angle)
     d_c, d_d = pair.arms
     radius = pair.principal_radii[0]
-    edges = body.other_edges(alpha)
-    places = np.array([pair.touch_point, *((x, z) for _, x, z, _ in edges)])
+    edges, (x, z) = body.other_edges(alpha), pair.touch_point
+    places = np.array([(side * x, z), *((x, z) for _, x, z, _ in edges)])
     omega, moved = _moved(bodies, places) if vibrating else (np.zeros(0), np.zeros((len(places), 2, 0)))
     along_t, along_n = _turned(alpha, moved[:, 0], moved[:, 1])
     t, n = _turned(alpha, places[1:, 0], places[1:, 1] - body.z_c)
+    along_t, t = side * along_t, side * t
     others = Others(t, n, np.array([edge[3] for edge in edges]), along_t[1:], along_n[1:])
     names = tuple(edge[0] for edge in edges)
     return ModalRod(

@@ -14,10 +14,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import cos, inf, pi, sin, sqrt
+from math import copysign, cos, inf, pi, sin, sqrt
 from typing import TYPE_CHECKING, NamedTuple
 
-from rigid import Body, Faceted
+from rigid import Body, Faceted, Touch, point_arms
 
 if TYPE_CHECKING:
     from fem_impact.arrays import Array
@@ -45,7 +45,8 @@ class ContactEstimate:
     """Depth d and semi-axes a_t, a_b of the contact ellipse, m; duration, s; mean pressure, Pa.
 
     R1, R2, m, are the radii of the round surface that is as wide as the tip at this depth, and ``wider`` is
-    its R1 over that of the tip where it touches first. Its middle lies ``shift``, m, down the slope from it.
+    its R1 over that of the tip where it touches first. Its middle lies ``shift``, m, down the slope from it,
+    below 0 up the slope.
     """
 
     depth: float
@@ -127,21 +128,31 @@ class ContactPair:
         return sum((metal.loss_factor or 0.0) * part for metal, part in soft) / sum(part for _, part in soft)
 
     @cached_property
-    def arms(self) -> tuple[float, float]:
-        """(d_c, d_d), m; an upright rod strikes with its whole face, so d_c is 0."""
-        d_c, d_d = self.body.arms(self.angle)
-        return float(d_c) if self.angle > 0 else 0.0, float(d_d)
+    def touch(self) -> Touch:
+        """What touches first of the rod in the plane of motion: a point, or a straight part by its middle."""
+        return self.body.touch(self.angle)
 
     @cached_property
+    def arms(self) -> tuple[float, float]:
+        """(d_c, d_d), m, of the middle of what touches first."""
+        x, z = self.touch_point
+        d_c, d_d = point_arms(self.body.z_c, x - self.body.x_c, z, self.angle)
+        return float(d_c), float(d_d)
+
+    @property
     def touch_point(self) -> tuple[float, float]:
-        """(rho, z), m, of the contact in the rod; that of a whole face is its centre."""
-        rho, z = self.body.contact_point(self.angle)
-        return float(rho) if self.angle > 0 else 0.0, float(z)
+        """(x, z), m, of the contact in the rod; that of a whole face or side is its middle."""
+        return self.touch.x, self.touch.z
 
     @property
     def lands_flat(self) -> bool:
-        """Whether a flat face touches all at once: estimates and laws of a round contact do not hold then."""
-        return self.angle == 0 and self.body.face > 0
+        """Whether a flat face or a straight side touches all at once: no law of a round contact holds."""
+        return self.touch.length > 0
+
+    @property
+    def side(self) -> float:
+        """1 where the side x > 0 of the rod comes down first, -1 where the other one does."""
+        return -1.0 if self.angle < 0 else 1.0
 
     @property
     def approach(self) -> float:
@@ -159,10 +170,11 @@ class ContactPair:
         R1 = self.body.tip_curvature(self.angle) or self.body.diameter / 200
         if isinstance(self.body, Faceted):
             return R1, min(max(self.body.curvature_around(self.angle), R1), FLATTEST)
-        rho, _ = self.body.contact_point(self.angle)
+        x, _ = self.body.contact_point(self.angle)
         at_pole = FLATTEST if self.body.face > 0 else R1
-        around = float(rho) / sin(self.angle) if self.angle > 0 else at_pole
-        return R1, min(max(around, R1), FLATTEST)
+        around = float(x) / sin(self.angle) if self.angle else at_pole
+        # a straight side is round about the rod's axis, whatever the radius of the edge at its end
+        return R1, min(around if self.lands_flat and self.angle else max(around, R1), FLATTEST)
 
     @property
     def reduced(self) -> tuple[float, float]:
@@ -179,8 +191,9 @@ class ContactPair:
         """m*, kg, at least that of a frictionless contact."""
         (mass, k2), (d_c, d_d) = self.reduced, self.arms
         frictionless = 1 + d_c**2 / k2
+        mu = copysign(self.f, -self.sliding or d_c)  # friction acts against the sliding
         turning = mass * self.centre_offset**2 / self.barrier_inertia if self.barrier_inertia else 0.0
-        return float(mass / (min(frictionless, max(1.0, 1 + d_c * (d_c - self.f * d_d) / k2)) + turning))
+        return float(mass / (min(frictionless, max(1.0, 1 + d_c * (d_c - mu * d_d) / k2)) + turning))
 
     @property
     def modulus(self) -> float:
@@ -201,21 +214,23 @@ class ContactPair:
     def estimate(self) -> ContactEstimate:
         """The size of the first contact."""
         R1, R2 = self.principal_radii
+        steep = abs(sin(self.angle))
+        around = max(R1, 0.5 * self.body.diameter / steep) if steep else inf  # no section is flatter
         size = self.round_contact
         for _ in range(ROUNDS):
             down, up = self.body.reaches(self.angle, size.depth)
             wide = (down + up) ** 2 / (8 * size.depth)
             if wide <= R1:
                 break
-            size = self._pressed_in(wide, max(R2, wide))
-            size = replace(size, shift=max(0.0, 0.5 * (down - up)), wider=wide / R1)
+            size = self._pressed_in(wide, max(R2, min(wide, around)))
+            size = replace(size, shift=self.side * max(0.0, self.side * 0.5 * (down - up)), wider=wide / R1)
         # of a face nearly flat all may touch, whatever the depth
         return self.round_contact if self.body.face > 0 and self.nearly_flat(size.depth) else size
 
     def nearly_flat(self, depth: float) -> bool:
         """Return whether the middle of the face stands so low that all of it may touch at a depth, m."""
-        rho, _ = self.body.contact_point(self.angle)
-        return float(rho) * sin(self.angle) <= FLAT * depth
+        x, _ = self.body.contact_point(self.angle)
+        return float(x) * sin(self.angle) <= FLAT * depth
 
     @property
     def barrier_conforms(self) -> bool:

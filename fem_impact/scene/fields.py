@@ -110,17 +110,15 @@ SKIN = (
 )
 TOP = (Parameter("restitution", "energetic restitution of the rigid fidelity", "", 0.0, 1.0),)
 _INTO = "n points out of the barrier, so a rod that strikes it has v_n below 0."
-_DOWN = "t points up the slope, so a falling rod has v_t at or below 0."
 ANGLE = Parameter(
     "angle",
-    "angle between the rod's axis and the barrier's normal",
+    "angle between the rod's axis and the barrier's normal, above 0 where the tail leans up the slope",
     "angle",
-    0.0,
+    -math.pi / 2,
     math.pi / 2,
-    high_open=True,
 )
 V_N = Parameter("v_n", "velocity along the normal", "speed", -500.0, -1e-6, remedy=_INTO)
-V_T = Parameter("v_t", "velocity up the slope", "speed", -500.0, 0.0, remedy=_DOWN)
+V_T = Parameter("v_t", "velocity up the slope, below 0 down it", "speed", -500.0, 500.0)
 OMEGA = Parameter(
     "omega",
     "angular velocity, positive turning n towards t",
@@ -131,7 +129,7 @@ OMEGA = Parameter(
     source="a rod dropped from rest does not turn (the paper, reducing Eq. 1 to Eq. 9)",
 )
 IMPACT = (ANGLE, V_N, V_T, OMEGA)  # as seen from the barrier
-MOTION = (ANGLE, *(replace(p, low=-500.0, high=500.0, remedy="") for p in (V_N, V_T)), OMEGA)
+MOTION = (ANGLE, replace(V_N, low=-500.0, high=500.0, remedy=""), V_T, OMEGA)
 _GIVEN = "none: the velocities are stated in another way"
 HEIGHT = Parameter(
     "height", "height of fall along the rod's axis", "length", 1e-12, 1e4, derived=_GIVEN, unit="m"

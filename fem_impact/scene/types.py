@@ -13,7 +13,7 @@ from fem_impact.errors import SceneError
 from fem_impact.scene import fields
 from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.checks import check_choice, check_id, check_names, check_numbers, check_text
-from fem_impact.scene.impact import Impact
+from fem_impact.scene.impact import WAYS, Impact
 from fem_impact.scene.material import Material
 from fem_impact.scene.projectile import ProjectileSpec
 
@@ -188,6 +188,13 @@ class Scene:
 def _check_approach(scene: Scene) -> None:
     """Refuse a rod that does not come down on the barrier, as seen from it."""
     seen, moving = scene.impact, scene.barrier.v_n or scene.barrier.v_t
+    if seen.stated != WAYS[2] and not moving and not fields.V_N.allows(seen.v_n):
+        raise SceneError(
+            "lays the axis along the barrier: a rod that moves along it never strikes.",
+            key="impact.angle",
+            value=fields.ANGLE.write(seen.angle),
+            remedy=f"Give v_n and v_t in place of {seen.stated[0]}, or another angle.",
+        )
     for parameter in (fields.V_N, fields.V_T):
         key = parameter.key
         seen_speed = getattr(seen, key) - getattr(scene.barrier, key)

@@ -9,11 +9,14 @@ from typing import TYPE_CHECKING, ClassVar, Protocol
 
 import numpy as np
 
+from fem_impact.arrays import Array
+from fem_impact.case.cells import body_cell
 from fem_impact.fem.geometry import tail_corners
 from fem_impact.fem.kernels import COMPILING
 from fem_impact.files.fields_write import FieldWriter
 from fem_impact.physics.beam import horizon
 from fem_impact.solid.checkpoint import Moving
+from fem_impact.solid.contact.surface import SurfaceContact
 from fem_impact.solid.contact_watch import ContactWatch
 from fem_impact.solid.fine_zone import SkinWatch
 from fem_impact.solid.march import Observer
@@ -109,9 +112,7 @@ class Watchers:
         sliced = model.rod_stiffness is not None and model.layout.body_shape[1] > 2
         if out is not None and scene.save.strain_samples and sliced:
             strain = [StrainWatch.of(case, model, out / "waves.h5")]
-        all_may_touch = model.geometry.barrier is None and model.rod_stiffness is not None
-        tail = np.zeros((0, 3)) if all_may_touch else tail_corners(case.bodies)
-        stop = Separation(model, view, case.max_time, horizon(case.scene.projectile), tail)
+        stop = Separation(model, view, case.max_time, horizon(case.scene.projectile), _far_tail(case, model))
         skin, peak = SkinWatch(model, case.slots.bending is not None), PeakForce(model.book)
         added = AddedMass(model.added_mass)
         heat = None
@@ -145,6 +146,19 @@ class Watchers:
         """Return all objects with state, by names that depend on the scene only."""
         parts: list[Moving] = [state, clock, *model.forces, *model.impulses, *self.all]
         return {f"{i}-{type(part).__name__}": part for i, part in enumerate(parts)}
+
+
+def _far_tail(case: Case, model: Model) -> Array:
+    """Return the corners (k, 3), m, of the rod's tail at the start that no skin of the contact reaches."""
+    contact = model.contact
+    if not isinstance(contact, SurfaceContact) and model.rod_stiffness is not None:
+        return np.zeros((0, 3))  # all skin of a rod that deforms may touch a plane
+    tail = tail_corners(case.bodies)
+    if not isinstance(contact, SurfaceContact):
+        return tail
+    touching = model.start[0][contact.rod.places]
+    gap = np.linalg.norm(tail[:, None] - touching[None], axis=2).min(axis=1)
+    return np.asarray(tail[gap > body_cell(case.bodies)])
 
 
 def _frames(case: Case, model: Model, view: RodState, out: Path, go_on: bool) -> Frames:

@@ -22,10 +22,9 @@ NAN, INF = float("nan"), float("inf")
 MISTAKES = [
     ("impact.v_n", "2.1 m/s", ["impact.v_n = 2.1 m/s", "at most -0.000001 m/s", "out of the barrier"]),
     ("impact.v_n", "0 m/s", ["has v_n below 0"]),
-    ("impact.v_t", "1 m/s", ["impact.v_t", "at most 0 m/s"]),
-    ("impact.angle", "90 deg", ["impact.angle = 90 deg", "below 90 deg"]),
-    ("impact.angle", "95 deg", ["impact.angle = 95 deg", "below 90 deg"]),
-    ("impact.angle", "-1 deg", ["at least 0 deg"]),
+    ("impact.v_t", "501 m/s", ["impact.v_t", "at most 500 m/s"]),
+    ("impact.angle", "95 deg", ["impact.angle = 95 deg", "at most 90 deg"]),
+    ("impact.angle", "-91 deg", ["at least -90 deg"]),
     ("impact.angle", 45, ["impact.angle = 45", "bare number", '"45 deg"', "angle_rad"]),
     ("impact.v_n_m_per_s", NAN, ["impact.v_n", "finite"]),
     ("impact.v_n", "-inf m/s", ["impact.v_n", "finite"]),

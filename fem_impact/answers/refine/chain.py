@@ -14,8 +14,6 @@ from functools import cached_property
 from math import log2
 from pathlib import Path
 
-import numpy as np
-
 from fem_impact.answers.refine.budget import about_s
 from fem_impact.answers.refine.extrapolate import MeshRuns, level_limits
 from fem_impact.case.bodies import Bodies
@@ -44,6 +42,7 @@ JUMP = 2  # splits between two levels at most: a record holds the places of cell
 # measured sets 1.6 to 4.1
 SLOWER = 3.0
 BUDGET = 600.0  # s of wall time for all levels, unless stated
+SLICES = 1 / 3  # of the diameter: height over the tip at which the slices of a body may begin
 STAMP = "level.stamp"
 """File of a level's directory that says what was computed there."""
 UNRESOLVED = Unknown("fewer than two levels resolved the contact; accuracy.levels = 4 adds a finer one")
@@ -125,12 +124,13 @@ class LevelChain:
     @property
     def first(self) -> int:
         """Splits of the pilot: two fewer than those of a stated size, else none or one."""
+        expected, rod = self._expected(0).rod, self._bodies.rod
+        # a side that lands is a polygon of slices where its cells are not split, and slices cannot touch
+        of_side = rod.own_mesh is None and expected.touched[:, 2].max() > SLICES * rod.diameter
+        least = int(of_side and not rod.is_ball)
         if self._is_sized:
-            return max(0, self._usual - JUMP)
-        expected = self._expected(0).rod
-        if np.ptp(expected.touched[:, 2]) > self._bodies.rod.diameter:
-            return 1  # a side that lands is round where its cells are split, else a polygon
-        return max(0, min(1, self._wanted(patch_radius(expected)) - 1))
+            return max(least, self._usual - JUMP)
+        return max(least, min(1, self._wanted(patch_radius(expected)) - 1))
 
     @property
     def finest(self) -> int:
@@ -209,7 +209,8 @@ class LevelChain:
         """Return the scene on cells that are split so often; rod and barrier are split alike."""
         sizes = zip(self._cells, self._splits, strict=True)
         rod, barrier = (cell / 2 ** (usual + splits - self._usual) for cell, usual in sizes)
-        accuracy = replace(self.scene.accuracy, tip_size=rod)
+        # a user's cells may be larger than a scene may state: they are left as they are
+        accuracy = replace(self.scene.accuracy, tip_size=min(rod, self.scene.projectile.diameter / 4))
         if self._bodies.contact.compliant:
             accuracy = replace(accuracy, barrier_size=barrier)
         return replace(self.scene, accuracy=accuracy)

@@ -27,7 +27,7 @@ from fem_impact.answers.verdict.reliability import known_error
 from fem_impact.answers.verdict.screening import Screening, screening
 from fem_impact.answers.verdict.twins import inclined, twins
 from fem_impact.case.case import Case
-from fem_impact.case.limits import FLAT_FACE, not_reduced
+from fem_impact.case.limits import flat_part, not_reduced
 from fem_impact.errors import RunError, SceneError
 from fem_impact.tables.text import plain
 
@@ -140,7 +140,7 @@ def assess(
     bodies = Case(scene).bodies
     lacking = not_reduced(bodies)
     reduced = fidelity == "modal" or not lacking
-    elsewhere = reduced or lacking == FLAT_FACE  # a face that lands flat does so at 0 deg alone
+    elsewhere = reduced or lacking == flat_part(bodies)  # what lands flat does so at this angle alone
     quick, notes = _quick(scene, tell) if reduced else (None, [LACKING.format(lacking)])
     here, used, more = quick, "modal", "--fidelity solid"
     # where nothing like the scene was computed both ways, the reduced model's error is not known well enough
@@ -298,7 +298,8 @@ def _over_angles(scene: Scene, off: float) -> tuple[VibrationEffect | None, tupl
     ``off`` is its error at the scene's own inclination, as far as finite elements show it.
     """
     changes, missing, why = list[VibrationEffect](), list[float](), ""
-    for angle in (float(angle) for angle in ANGLES if not isclose(angle, scene.impact.angle)):
+    side = -1.0 if scene.impact.angle < 0 else 1.0  # that of the tip which comes down first
+    for angle in (side * float(angle) for angle in ANGLES if not isclose(side * angle, scene.impact.angle)):
         try:
             one = inclined(scene, angle)
             pair = modal_pair(one)

@@ -47,7 +47,7 @@ def dropped(scene: Scene) -> RodDropInput:
     rod, impact = scene.projectile, scene.impact
     body = Projectile(rod.length, rod.diameter, rod.tip, rod.tip_radius, DENSITY)
     height = hypot(impact.v_n, impact.v_t) ** 2 / (2 * GRAVITY)
-    return RodDropInput(body, height, impact.angle, scene.surface.state)
+    return RodDropInput(body, height, abs(impact.angle), scene.surface.state)
 
 
 def _not_measured(scene: Scene) -> str:

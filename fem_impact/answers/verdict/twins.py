@@ -7,11 +7,9 @@ from math import cos, hypot, sin
 
 from fem_impact.case.case import Case
 from fem_impact.case.effects.registry import NAMES, with_prerequisites
-from fem_impact.errors import SceneError
 from fem_impact.scene.types import Scene
 
 VIBRATION = "vibration"
-ROUNDING = 1e-9  # of angles, rad
 UNFELT = "contact-heating"
 """It watches the motion, which does not feel it: the twin has no need of it."""
 
@@ -41,11 +39,9 @@ def inclined(scene: Scene, angle: float) -> Scene:
     Raises
     ------
     SceneError
-        The turned velocity points up the slope, as no scene's may.
+        The turned velocity points away from the barrier.
     """
     impact = scene.impact
     speed, way = hypot(impact.v_n, impact.v_t), angle + impact.beside
-    if way < -ROUNDING:
-        raise SceneError("would point up the slope, as no scene's velocity may.", key="impact.v_t")
-    turned = replace(impact, angle=angle, v_n=-speed * cos(way), v_t=min(-speed * sin(way), 0.0))
+    turned = replace(impact, angle=angle, v_n=-speed * cos(way), v_t=-speed * sin(way))
     return replace(scene, impact=turned, measured=None)

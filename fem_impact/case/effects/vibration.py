@@ -24,7 +24,7 @@ def number(bodies: Bodies) -> float:
     if bodies.rod.is_short:
         return inf
     longest = bodies.stretching_period
-    if bodies.scene.impact.angle > 0:
+    if bodies.scene.impact.angle != 0:
         longest = max(longest, bodies.bending_period, bodies.ovalling_period)
     return longest / bodies.estimate.duration
 
