@@ -18,13 +18,15 @@ from meshes import HexMesh, edge_lengths
 ON_PLANE = 1e-11  # m, within which a node that was stopped at a rigid plane lies on it
 FLOWED = 1e-5  # mean plastic strain above which a cell counts as one that flowed
 APART = 2.5  # cells between two places of contact
+LOOKS, RAREST = 8, 10  # looks at the shortest contact at least, and most steps between two
 
 
 class ContactWatch:
-    """Observer of the skin that is pressed: when, and with which part of the impulse, every `every` steps.
+    """Observer of the skin that is pressed: when, and with which part of the impulse.
 
     Attributes
     ----------
+    every : steps between two looks: so few that the shortest contact is seen `LOOKS` times
     rod : (k,) nodes of the rod's mesh that may touch; barrier : (m,) those of a meshed barrier
     first, last : (k,) s, when each node of the rod was seen pressed first and last
     impulse : (k, 2) along n and t, N s, on each node of the rod, of the half model
@@ -32,11 +34,12 @@ class ContactWatch:
     deepest : (m,) largest indentation there, m
     """
 
-    every = 10
     moving: ClassVar[tuple[str, ...]] = ("first", "last", "impulse", "pressed", "deepest")
 
-    def __init__(self, model: Model) -> None:
+    def __init__(self, model: Model, shortest: float) -> None:
+        """Watch a model whose contact lasts at least the time ``shortest``, s."""
         self.model, contact = model, model.contact
+        self.every = max(1, min(RAREST, int(shortest / LOOKS / model.step)))
         layout = model.layout
         self.barrier = np.zeros(0, np.int64)
         if isinstance(contact, SurfaceContact):

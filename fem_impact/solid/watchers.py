@@ -120,7 +120,8 @@ class Watchers:
             from fem_impact.solid.heatwatch import HeatWatch
 
             heat = HeatWatch(model)
-        contact = ContactWatch(model)
+        # a flat end that lands flat leaves when the wave is back from the other end, and no contact before
+        contact = ContactWatch(model, case.bodies.stretching_period)
         return cls(StepGuard(model), watch, history, frames, strain, skin, contact, peak, added, heat, stop)
 
     @property
