@@ -110,7 +110,11 @@ class Revolved:
     @property
     def surface(self) -> Surface:
         """All of the surface, the flat face at the tail included."""
-        outer = np.concatenate([self.line, [[0.0, self.length]]]) if self.line[-1, 0] > 0.0 else self.line
+        first, last = self.bored_from_to
+        start = self.bore[:1] if first <= 0.0 else self.line[:1]  # a face begins beside the hole
+        end = self.bore[-1:] if last >= self.length else np.array([[0.0, self.length]])
+        line = self.line[1:] if self.line[-1, 0] > 0.0 else self.line[1:-1]
+        outer = np.concatenate([start, line, end])
         return Surface((outer, self.hollow) if len(self.bore) else (outer,))
 
 

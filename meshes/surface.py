@@ -22,9 +22,12 @@ class Surface:
     ----------
     lines : tuple of (k, 2) float64, m
         Vertices (rho, z).
+    faceted : tuple of (j, 2) float64, m
+        Further ones: points nearer to these stay where they are, on the facets of the coarse cells.
     """
 
     lines: tuple[FloatArray, ...]
+    faceted: tuple[FloatArray, ...] = ()
 
     @cached_property
     def edges(self) -> FloatArray:
@@ -55,8 +58,9 @@ class Surface:
         (k, 3) float64, m
         """
         place = _in_plane(points)
-        feet = np.stack([closest_on(line, place) for line in self.lines])
+        feet = np.stack([closest_on(line, place) for line in (*self.lines, *self.faceted)])
         nearest = np.linalg.norm(feet - place, axis=2).argmin(axis=0)
+        feet[len(self.lines) :] = place
         target, ends = feet[nearest, np.arange(len(place))], _in_plane(parents)
         same = SAME * max(float(line[:, 0].max()) for line in self.lines)
         for edge in self.edges:

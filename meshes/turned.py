@@ -17,7 +17,7 @@ from meshes.quality import require_positive, scaled_jacobians
 from meshes.refine import reach, refine
 from meshes.revolved import SAME, Revolved, revolved
 from meshes.rod import RodMesh, nose_cells
-from meshes.surface import CORNER
+from meshes.surface import CORNER, Surface
 from meshes.zone import Cloud, Zone
 
 __all__ = ["cells_across", "contact_radius", "turned"]
@@ -256,8 +256,17 @@ def _finished(
 def _refined(
     body: Revolved, mesh: HexMesh, zones: Sequence[Zone | Cloud], buffer: int, frozen: BoolArray | None = None
 ) -> HexMesh:
-    fine = refine(mesh, zones, body.surface.snap, buffer=buffer, frozen=frozen)
-    require_positive(fine)
+    """Refine; where that folds a cell beside the bore, whose facets are wider than it, keep these facets."""
+    surface = body.surface
+    try:
+        fine = refine(mesh, zones, surface.snap, buffer=buffer, frozen=frozen)
+        require_positive(fine)
+    except MeshError:
+        if not len(body.bore):
+            raise
+        kept = Surface(surface.lines[:1], faceted=surface.lines[1:])
+        fine = refine(mesh, zones, kept.snap, buffer=buffer, frozen=frozen)
+        require_positive(fine)
     return fine
 
 

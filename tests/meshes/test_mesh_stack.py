@@ -121,9 +121,9 @@ def short_bodies(draw):
     line = np.array([point for point, there in zip(line, (1, 1, low > 0, high > 0, 1), strict=True) if there])
     if not draw(st.booleans()):
         return line, None
-    radius, thick = draw(st.floats(0.2, 0.95)) * (R - deep.max()), draw(st.floats(0.2, 0.4)) * length
+    radius, thick = draw(st.floats(0.21 * R, 0.95 * (R - deep.max()))), draw(st.floats(0.2, 0.4)) * length
     first, last = draw(st.sampled_from([(0, 1), (0, 0), (1, 1)]))
-    return line, np.array([[radius, (1 - first) * 0 + first * thick], [radius, length - (1 - last) * thick]])
+    return line, np.array([[radius, first * thick], [radius, length - (1 - last) * thick]])
 
 
 @settings(max_examples=40, deadline=None)

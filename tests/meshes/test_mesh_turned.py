@@ -201,6 +201,14 @@ def test_split_cells_beside_a_bore_whose_facets_are_wider_than_they_are_do_not_f
     assert quality(body.mesh).min_scaled_jacobian > 0.3
 
 
+def test_split_cells_of_a_wall_as_thin_as_its_chords_are_deep_keep_the_facets_of_the_bore():
+    line = np.array([[0.0, 0.0], [0.0144, 0.0], [0.0144, 0.29]])
+    bore = np.array([[0.01225, 0.0], [0.01234, 0.29]])
+    for place in ([0.0144, 0.0, 0.0], [0.0, 0.0, 0.0]):
+        body = meshes.turned(line, 6, [about(place, 1.44e-3)] * 3, bore=bore)
+        assert quality(body.mesh).min_scaled_jacobian > 0.25
+
+
 @st.composite
 def profiles(draw):
     """Any profile: a flat or sharp tip, radii that jump by up to five, a flat or pointed tail."""
