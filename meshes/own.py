@@ -17,7 +17,7 @@ from meshes.moments import cell_moments
 from meshes.order import in_order
 from meshes.quality import edge_lengths, scaled_jacobians
 from meshes.reading.read import stored_mesh
-from meshes.reading.stored import StoredMesh
+from meshes.reading.stored import NODES, StoredMesh
 from meshes.symmetry import NEAR, Part, half_of, place_text, size_text
 from meshes.topology import FACES
 
@@ -93,6 +93,10 @@ def read_own(path: str | Path, unit: float = 1.0, stated: Stated | None = None) 
         raise MeshError(f"holds no volume cells{left}. Give hexahedra, wedges or tetrahedra.")
     if stored.points.shape[1:] != (3,):
         raise MeshError(f"has points of {stored.points.shape[1]} coordinates: a body needs three.")
+    for kind, cells in stored.blocks:
+        if cells.shape[1:] != (NODES[kind],) or not len(cells):
+            raise MeshError(f"is damaged: its cells of type {kind} have not {NODES[kind]} nodes each.")
+        _require_numbered(stored.points, cells, -1 if NODES[kind] > 8 else 0)
     chosen = _chosen(stored, stated.sets)
     if stored.masses and not stated.sets:
         raise MeshError(
@@ -191,10 +195,7 @@ def _set_hint(stored: StoredMesh) -> str:
 def _own(part: Part, stated: Stated, hint: str) -> tuple[OwnBody, IntArray]:
     """Return the body of hexahedra, and the cells of the file in which its cells lie."""
     points, cells = part.points, part.cells
-    if not np.isfinite(points[cells]).all() if _numbered(points, cells) else True:
-        raise MeshError(
-            "has points that are no finite numbers, or cells that name points that are not there."
-        )
+    _require_numbered(points, cells, 0)
     used, new = np.unique(cells, return_inverse=True)
     part = Part(points[used], new.reshape(cells.shape), part.parent)
     mesh = from_cells(part.points, part.cells, half_body_tags)
@@ -218,8 +219,13 @@ def _own(part: Part, stated: Stated, hint: str) -> tuple[OwnBody, IntArray]:
     return OwnBody(placed, {}, told), part.parent[order]
 
 
-def _numbered(points: FloatArray, cells: IntArray) -> bool:
-    return bool(cells.min() >= 0 and cells.max() < len(points))
+def _require_numbered(points: FloatArray, cells: IntArray, least: int) -> None:
+    """Refuse cells that name nodes below ``least`` or that are not there, and nodes that are nowhere."""
+    there = cells.min() >= least and cells.max() < len(points)
+    if not there or not np.isfinite(points[cells]).all():
+        raise MeshError(
+            "has points that are no finite numbers, or cells that name points that are not there."
+        )
 
 
 def _require_unfolded(mesh: HexMesh) -> None:

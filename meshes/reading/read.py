@@ -104,7 +104,7 @@ def _tried(reader: Reader, source: Path) -> StoredMesh:
     """Read a file; what the reader stumbles over is told as a broken file."""
     try:
         return reader(source)
-    except (IndexError, KeyError, ValueError, ArithmeticError, OSError, TypeError) as error:
+    except (IndexError, KeyError, ValueError, ArithmeticError, OSError, TypeError, RuntimeError) as error:
         if isinstance(error, MeshError):
             raise
         reason = " ".join(str(error).split())[:80] or type(error).__name__

@@ -334,3 +334,30 @@ def test_cells_with_more_nodes_than_their_type_has_are_refused(tmp_path):
     (tmp_path / "n.bdf").write_text("\n".join(bulk))
     with pytest.raises(MeshError, match="CHEXA 1 of more than 20 nodes"):
         read_own(tmp_path / "n.bdf")
+
+
+@pytest.mark.parametrize("ending", [*decks.TEXTS, ".msh", ".e", ".exo"])
+def test_damaged_files_are_refused_and_never_raise_anything_else(tmp_path, ending):
+    """Cut off, with bytes changed, with lines doubled or left out: read as a mesh, or refused in one line."""
+    points, cells = cells_of("hexahedron")
+    good = decks.write(tmp_path / f"good{ending}", points, cells).read_bytes()
+    rng, refused = np.random.default_rng(11), 0
+    for number in range(40):
+        data = bytearray(good)
+        if number % 3 == 0:
+            data = data[: rng.integers(1, len(data))]
+        elif number % 3 == 1:
+            for place in rng.integers(0, len(data), 5):
+                data[place] = rng.choice(list(b"0159-.,*$/ \nAx\x00\xff"))
+        else:
+            lines = bytes(data).split(b"\n")
+            at = int(rng.integers(0, len(lines)))
+            data = bytearray(b"\n".join(lines[:at] + lines[at + 1 + number % 2 :] + lines[at : at + 2]))
+        path = tmp_path / f"bad{ending}"
+        path.write_bytes(bytes(data))
+        try:
+            read_own(path, 1e-3)
+        except MeshError as error:
+            refused += 1
+            assert "\n" not in str(error)
+    assert refused > 5
