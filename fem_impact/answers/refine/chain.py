@@ -56,11 +56,12 @@ class LevelRun:
     ----------
     splits : how often the cells at the contact are split there
     size : edge of the cells that resolve the contact, m
-    outcome, record : of its last run; repeats : how often it ran again with more room
+    case, outcome, record : of its last run; repeats : how often it ran again with more room
     """
 
     splits: int
     size: float
+    case: Case
     outcome: Outcome
     record: ContactRecord
     repeats: int = 0
@@ -236,7 +237,7 @@ class LevelChain:
                 break
             before = (record if outcome.validity.finished else before).wider()
         size = contact_edge(case.bodies)  # as it came out, which is not always as asked for
-        self.done.append(LevelRun(splits, size, outcome, record, repeats))
+        self.done.append(LevelRun(splits, size, case, outcome, record, repeats))
 
     def _simulated(self, case: Case, before: ContactRecord, splits: int) -> tuple[Outcome, ContactRecord]:
         """Return outcome and record of a level, from its files where it ran before it was resumed."""
