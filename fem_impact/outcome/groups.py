@@ -301,7 +301,7 @@ class ContactInterval:
 
 @group
 class ContactSite:
-    """One place of contact of the whole rod; lengths are those of the barrier's skin that was pressed."""
+    """One place of contact of the whole rod: the skin of the rod that was pressed, as it lay before."""
 
     start: float = key("start_s", "s", "First touch there.")
     end: float = key("end_s", "s", "Last touch there.")

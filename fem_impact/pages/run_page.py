@@ -143,7 +143,7 @@ def run_page(folder: Path) -> str:
         sections.history_figures(outcome, folder),
         html.section(
             "Contact",
-            sections.contact_places(folder),
+            sections.contact_places(outcome),
             html.details("Times and impulses", sections.contacts_table(outcome)),
         ),
         html.section("Heat of the contact", _heat(outcome, rigid)),

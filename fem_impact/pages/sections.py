@@ -8,12 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from fem_impact.answers.compare import compare
-from fem_impact.case.record import ContactRecord
 from fem_impact.errors import ResultError, SceneError
 from fem_impact.figures.runs import comparison_picture, force_picture, ledger_picture, waves_picture
 from fem_impact.figures.style import percent
 from fem_impact.files.atomic import make_directory
-from fem_impact.files.run_directory import RECORD
 from fem_impact.files.waves import read_waves
 from fem_impact.films.movement import FRAMES, QUICK_FRAMES, STUDY_FRAMES
 from fem_impact.outcome.groups import EffectChoice
@@ -173,30 +171,24 @@ def contacts_table(outcome: Outcome) -> Markup:
     return html.table(Table.of(head, rows), "Contact intervals, impulses on the whole rod.")
 
 
-def contact_places(folder: Path) -> Markup:
-    """Return where the bodies touched on the last mesh, nothing where the run left no record of it."""
-    stored = folder / RECORD
-    if not stored.is_file():
-        return Markup("")
-    try:
-        record = ContactRecord.read(stored)
-    except ResultError as error:
-        return html.paragraph(f"No places of contact: {error}")
+def contact_places(outcome: Outcome) -> Markup:
+    """Return where the bodies touched, nothing where that is not known."""
     times, impulses = ("start, µs", "end, µs"), ("normal impulse, N s", "tangential, N s")
-    head = ("place", *times, *impulses, "along t, mm", "across it, mm", "depth, µm")
+    head = ("place", *times, *impulses, "along t, mm", "width, mm", "depth, µm")
+    rigid = isinstance(outcome.cost.elements_barrier, Unknown)
     rows: list[list[Cell]] = []
-    for at, site in enumerate(record.sites, start=1):
-        (t_low, b_low), (t_high, b_high) = site.low, site.high
-        ends = [number(1e3 * end, 3) for end in (t_low, t_high, b_low, b_high)]
-        # a place on the plane of symmetry reaches as far to the other side; one beside it has a twin there
-        across = f"± {ends[3]}" if b_low < record.rod.edge else f"± {ends[2]} to {ends[3]}"
+    for at, site in enumerate(or_none(outcome.contact.sites) or (), start=1):
         when = (f"{site.start * 1e6:.1f}", f"{site.end * 1e6:.1f}")
-        depth = None if record.barrier is None else number(1e6 * site.depth, 3)
-        rows.append([at, *when, site.impulse_n, site.impulse_t, f"{ends[0]} to {ends[1]}", across, depth])
+        given = (number(site.impulse_n, 2), number(site.impulse_t, 2))  # they are sampled every few steps
+        along = f"{number(1e3 * site.low_t, 3)} to {number(1e3 * site.high_t, 3)}"
+        depth = None if rigid else number(1e6 * site.depth, 3)
+        rows.append([at, *when, *given, along, number(1e3 * site.width, 3), depth])
+    cell = or_none(outcome.cost.tip_size)
+    known_to = "" if cell is None else f", known to about a cell, {number(1e3 * cell, 2)} mm"
     caption = (
-        "Places of contact on the last mesh: the projectile's skin that was pressed, as it lies before the "
-        f"impact, from its lowest point and known to about a cell, {number(1e3 * record.rod.edge, 2)} mm; "
-        "the deepest indentation of the barrier there; impulses on the whole projectile."
+        "Places of contact: the projectile's skin that was pressed, as it lies before the impact, from the "
+        f"place that touches first{known_to}; the deepest indentation of the barrier there; impulses on the "
+        "whole projectile."
     )
     return html.table(Table.of(head, rows), caption)
 

@@ -6,17 +6,15 @@ import os
 import re
 from html.parser import HTMLParser
 
-import numpy as np
 import outcome_maker
 import pytest
 import result_maker
 
-from fem_impact.case.record import BodyRecord, ContactRecord, Site
 from fem_impact.errors import ResultError
 from fem_impact.files.atomic import write_bytes
-from fem_impact.files.digests import read_signed, signed, write_digests
+from fem_impact.files.digests import read_signed, signed
 from fem_impact.pages.html import bullets, paragraph, section, table, with_band
-from fem_impact.pages.sections import effects_section
+from fem_impact.pages.sections import contact_places, effects_section
 from fem_impact.pages.study_page import draw_study, read_study
 from fem_impact.pages.write import write_report
 from fem_impact.run.simulate import simulate
@@ -134,45 +132,28 @@ def test_the_waves_have_a_diagram_with_data(run):
     assert "No diagram of the waves" in read(write_report(run))[1]
 
 
-def record_of(*sites, barrier=True):
-    """Return the record of a run whose bodies touched at these places."""
-    body = BodyRecord(np.zeros((1, 3)), np.zeros((1, 3)), np.zeros(1), 3e-4, 4.5e-4, 4.5e-4)
-    return ContactRecord(body, body if barrier else None, sites, resolved=True)
+SITE = ("start_s", "end_s", "impulse_n_Ns", "impulse_t_Ns", "low_t_m", "high_t_m", "width_m", "depth_m")
+HERE = dict(zip(SITE, (1e-6, 161e-6, 0.2918, 0.1354, -1.14e-3, 1.02e-3, 3.38e-3, 61.9e-6), strict=True))
+FOOT = dict(zip(SITE, (4e-6, 30e-6, 0.05, -0.01, 2e-3, 3e-3, 1.1e-3, 12e-6), strict=True))
 
 
-HERE = Site(1e-6, 161e-6, 0.2918, 0.1354, (-1.14e-3, 0.0), (1.02e-3, 1.69e-3), 61.9e-6)
-FOOT = Site(4e-6, 30e-6, 0.05, -0.01, (2e-3, 4.1e-3), (3e-3, 5.2e-3), 12e-6)
+def places(**values):
+    text = contact_places(outcome_maker.outcome(contact_sites=[HERE, FOOT], **values)).text
+    return " ".join(" ".join(Reader(text).words).split())
 
 
-def test_the_places_of_contact_are_told(run):
+def test_the_places_of_contact_are_told():
+    words = places(tip_size_m=3e-4)
+    assert "known to about a cell, 0.3 mm" in words
+    assert "1 1.0 161.0 0.29 0.14 −1.14 to 1.02 3.38 61.9 2 4.0 30.0 0.05 −0.01 2 to 3 1.1 12" in words
+
+
+def test_a_rigid_barrier_is_not_said_to_be_indented():
+    assert "−1.14 to 1.02 3.38 – 2" in places(elements_barrier=None)
+
+
+def test_a_run_without_places_of_contact_has_no_table_of_them(run):
     assert "Places of contact" not in read(write_report(run))[1]
-    record_of(HERE, FOOT).write(run / "contact.npz")
-    words = read(write_report(run))[1]
-    assert "about a cell, 0.3 mm" in words
-    assert "1 1.0 161.0 0.2918 0.1354 −1.14 to 1.02 ± 1.69 61.9 2 4.0" in words
-    assert "0.05 −0.01 2 to 3 ± 4.1 to 5.2 12" in words  # beside the plane of symmetry
-
-
-def test_a_rigid_barrier_is_not_said_to_be_indented(run):
-    record_of(HERE, barrier=False).write(run / "contact.npz")
-    assert "−1.14 to 1.02 ± 1.69 –" in read(write_report(run))[1]
-
-
-@pytest.mark.parametrize("damaged", [b"", b"no record", b"PK", None])
-def test_a_damaged_record_of_the_contact_is_said_and_not_fatal(run, damaged):
-    record_of(HERE).write(run / "contact.npz")
-    whole = (run / "contact.npz").read_bytes()
-    (run / "contact.npz").write_bytes(whole[: len(whole) // 2] if damaged is None else damaged)
-    words = read(write_report(run))[1]
-    assert "No places of contact" in words and "holds no record of a contact" in words
-
-
-def test_a_record_of_another_run_is_not_shown(run):
-    record_of(HERE).write(run / "contact.npz")
-    write_digests(run, ["contact.npz"])
-    assert "Places of contact" in read(write_report(run))[1]
-    record_of(FOOT).write(run / "contact.npz")
-    assert "is not the file that the run wrote" in read(write_report(run))[1]
 
 
 def test_everything_from_outside_is_escaped(run):

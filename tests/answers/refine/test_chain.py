@@ -11,7 +11,8 @@ from fem_impact.answers.refine.extrapolate import MeshRuns, level_limits, mesh_l
 from fem_impact.answers.wanted_error import compiled, simulate
 from fem_impact.case.case import Case
 from fem_impact.case.record import ContactRecord
-from fem_impact.errors import SceneError
+from fem_impact.errors import ResultError, SceneError
+from fem_impact.files.digests import write_digests
 from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import Unknown, known
 from fem_impact.outcome.record import Outcome
@@ -178,3 +179,23 @@ def test_a_record_is_read_back_as_it_was_written(quick, tmp_path):
     assert again.digest() == record.digest() and again.sites == record.sites
     assert np.array_equal(again.rod.touched, record.rod.touched)
     assert again.wider().digest() != record.digest()
+
+
+@pytest.mark.parametrize("damaged", [b"", b"no record", b"PK", None])
+def test_a_damaged_record_is_refused(quick, tmp_path, damaged):
+    path = tmp_path / "contact.npz"
+    quick[0].done[-1].record.write(path)
+    whole = path.read_bytes()
+    path.write_bytes(whole[: len(whole) // 2] if damaged is None else damaged)
+    with pytest.raises(ResultError, match="holds no record of a contact"):
+        ContactRecord.read(path)
+
+
+def test_a_record_of_another_run_is_refused(quick, tmp_path):
+    first, *_, last = [level.record for level in quick[0].done]
+    first.write(tmp_path / "contact.npz")
+    write_digests(tmp_path, ["contact.npz"])
+    assert ContactRecord.read(tmp_path / "contact.npz").digest() == first.digest()
+    last.write(tmp_path / "contact.npz")
+    with pytest.raises(ResultError, match="is not the file that the run wrote"):
+        ContactRecord.read(tmp_path / "contact.npz")
