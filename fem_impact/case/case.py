@@ -190,7 +190,9 @@ class Case:
             *of_scene,
             *limitations("input", *neglected(self.choices)),
             *limitations("model", thin_layer(self.bodies)),
-            *limitations("resolution", coarse_tip(self.bodies), thin_cells(self.scene.projectile)),
+            # a record shows how wide the contact is
+            *limitations("resolution", coarse_tip(self.bodies) if self.record is None else ""),
+            *limitations("resolution", thin_cells(self.scene.projectile)),
             *unstated,
         )
 

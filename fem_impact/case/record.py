@@ -84,6 +84,7 @@ class ContactRecord:
     sites : places of contact in the order of their first touch; none of a record of what may happen
     left : contact or flow reached the end of what the mesh held ready for it
     resolved : enough nodes were pressed at once for coefficients and shares of the run to be given
+    crushed : the run ended because a cell folded or was crushed
     """
 
     rod: BodyRecord
@@ -91,6 +92,7 @@ class ContactRecord:
     sites: tuple[Site, ...] = field(default_factory=tuple)
     left: bool = False
     resolved: bool = False
+    crushed: bool = False
 
     def digest(self) -> str:
         """Return the SHA-256 of all its numbers."""
@@ -102,7 +104,7 @@ class ContactRecord:
 
     def _packed(self) -> bytes:
         arrays = {"sites": np.array([_row(site) for site in self.sites]).reshape(-1, len(SITE))}
-        arrays["flags"] = np.array([self.left, self.resolved])
+        arrays["flags"] = np.array([self.left, self.resolved, self.crushed])
         for name, body in (("rod", self.rod), ("barrier", self.barrier)):
             if body is not None:
                 arrays |= {f"{name}_{key}": np.asarray(getattr(body, key)) for key in BODY}
@@ -118,14 +120,14 @@ class ContactRecord:
             with np.load(BytesIO(path.read_bytes())) as held:
                 rod = _body(held, "rod")
                 barrier = _body(held, "barrier") if "barrier_edge" in held else None
-                left, resolved = map(bool, held["flags"])
+                left, resolved, crushed = map(bool, held["flags"])
                 rows = held["sites"].tolist()
         except (OSError, EOFError, ValueError, KeyError, BadZipFile) as error:
             raise ResultError(f"{path}: holds no record of a contact: {error}") from None
         sites = tuple(
             Site(row[0], row[1], row[2], row[3], (row[4], row[5]), (row[6], row[7]), row[8]) for row in rows
         )
-        return cls(rod, barrier, sites, left, resolved)
+        return cls(rod, barrier, sites, left, resolved, crushed)
 
     def wider(self) -> ContactRecord:
         """Return a record after which the next mesh holds twice as much room ready around what is known."""

@@ -222,7 +222,11 @@ def _result(
             *limitations("run", *(w for f in watchers.frames for w in f.writer.warnings)),
             *limitations("resolution", *outside_zones(model, watchers.skin)),
         ),
-        record=replace(watchers.contact.record(), left=left_zones(model, watchers.skin)),
+        record=replace(
+            watchers.contact.record(),
+            left=left_zones(model, watchers.skin),
+            crushed=bool(watchers.guard.reason),
+        ),
         heat=watchers.heat,
     )
 

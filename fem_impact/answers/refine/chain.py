@@ -21,22 +21,25 @@ from fem_impact.case.case import Case
 from fem_impact.case.cells import body_cell, contact_edge, level_size, levels_of, rod_cell
 from fem_impact.case.record import ContactRecord, expected_record
 from fem_impact.case.recorded import patch_radius
+from fem_impact.errors import ResultError, RunError, SceneError
 from fem_impact.files.atomic import read_text, write_text
 from fem_impact.files.digests import write_digests
 from fem_impact.files.lock import directory_lock
-from fem_impact.files.run_directory import BESIDE, RECORD
+from fem_impact.files.run_directory import BESIDE, RECORD, is_resumable
 from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.limitation import limitations
 from fem_impact.outcome.record import Outcome
 from fem_impact.progress import Notice, Progress
 from fem_impact.run.program import stamp
+from fem_impact.run.resolution import NOT_RESOLVED, without
 from fem_impact.run.simulate import begin, simulate_recorded
 from fem_impact.scene.fields import LEVELS
 from fem_impact.scene.types import Scene
-from fem_impact.scene.write import digest
+from fem_impact.scene.write import digest, to_toml
 
 MOST_REPEATS = 2  # of a level, each with twice the room
+MORE = 1  # levels beyond those asked for, where the last has not resolved the contact: it would have no numbers
 JUMP = 2  # splits between two levels at most: a record holds the places of cells four times as large
 # how much longer a level takes than the one before, where only one has run: of 26 pairs of levels of the 13
 # measured sets 1.6 to 4.1
@@ -77,40 +80,54 @@ class LevelChain:
     options : of all its runs: the files of each level lie in a directory of its own until the last has run
     budget_s : wall time, s, that all levels may take
     done : levels so far
+    failed : why the level after them has no outcome, empty where none failed
     """
 
     case: Case
     options: RunOptions = field(default_factory=RunOptions)
     budget_s: float = BUDGET
     done: list[LevelRun] = field(default_factory=list)
+    failed: str = ""
 
     def run(self) -> Outcome:
         """Run levels from coarse to fine until the contact is resolved; return the last one's outcome.
 
-        It has the limits and bands of the last two levels that resolve the contact. Its files stand in
+        Where that fails or is cut off, the outcome is that of the finest level that came to its end, and says
+        why. It has the limits and bands of two levels that resolve the contact. Its files stand in
         ``options.out``, those of the other levels below it.
 
         Raises
         ------
-        SceneError, RunError, ResultError, OutputPathError
-            As of `fem_impact.run.simulate.simulate`, of the first level that fails.
+        SceneError, RunError
+            As of `fem_impact.run.simulate.simulate`, of the first level.
+        ResultError, OutputPathError
+            As there, of any level.
         """
         out = self.options.out
         with nullcontext() if out is None else directory_lock(out):
-            if out is not None and not self.options.resume:
-                begin(self.scene, out)
+            if out is not None:
+                self._begin(out)
             splits: int | None = self.first
-            while splits is not None:
-                self._run_level(splits)
+            while splits is not None and self._ran(splits):
                 splits = self._next
             outcome = self._stated()
             if out is not None:
-                for file in self._place(len(self.done)).iterdir():
+                for file in self._place(self.counted, self.done[self.counted - 1].repeats).iterdir():
                     if file.is_file() and file.name not in ("scene.toml", STAMP):
                         file.replace(out / file.name)
                 outcome.write(out / "outcome.json")
                 write_digests(out, BESIDE)
         return outcome
+
+    def _begin(self, out: Path) -> None:
+        """Make the directory ready for a new run, or go on with what an interrupted one left there."""
+        if not (self.options.resume and is_resumable(out)):
+            begin(self.scene, out)
+        elif read_text(out / "scene.toml") != to_toml(self.scene):
+            raise ResultError(
+                f"{out / 'scene.toml'}: is another scene than the one that is to go on. Go on with that one, "
+                "or leave out --resume: the older run is kept beside the new one."
+            )
 
     def pilot(self) -> Case:
         """Return the case of the first level.
@@ -143,15 +160,18 @@ class LevelChain:
         levels = self.scene.accuracy.levels
         if self._is_sized or not self.done:
             wanted = self._usual
-        else:
+        else:  # levels that were asked for are run, however well the pilot resolves its contact
             wanted = max(self._wanted(patch_radius(self.done[-1].record.rod)), self.done[0].splits + 1)
-        return min(max(wanted + levels - LEVELS, self.first), self.first + JUMP * max(levels - 2, 0) + 1)
+        least = self.first + (levels > 1 and not self._is_sized)
+        return min(max(wanted + levels - LEVELS, least), self.first + JUMP * max(levels - 2, 0) + 1)
 
     @property
     def _next(self) -> int | None:
         """Splits of the next level; None after the last, or where the budget does not hold another."""
-        ran, finest = self.done[-1].splits, self.finest
-        if ran >= finest:
+        ran, finest, record = self.done[-1].splits, self.finest, self.done[-1].record
+        if not (record.resolved or self._is_sized) and len(self.done) < self.scene.accuracy.levels + MORE:
+            finest = max(finest, ran + 1)
+        if ran >= finest or record.crushed:  # smaller cells are crushed sooner
             return None
         then = finest if finest - ran == 1 else min(ran + JUMP, finest - 1)
         forecast_s, spent_s = self._forecast_s(then), self._spent_s
@@ -162,6 +182,15 @@ class LevelChain:
             f"budget of {about_s(self.budget_s)} are used up: the run ends with level {len(self.done)}."
         )
         return None
+
+    @property
+    def counted(self) -> int:
+        """The number, from 1, of the level whose outcome counts: the finest that saw the bodies part.
+
+        It is the last one where none did.
+        """
+        parted = [n for n, one in enumerate(self.done, 1) if not isinstance(one.outcome.motion.V_n, Unknown)]
+        return parted[-1] if parted else len(self.done)
 
     @property
     def scene(self) -> Scene:
@@ -222,6 +251,17 @@ class LevelChain:
         sizes = zip(self._cells, self._splits, strict=True)
         return expected_record(self._bodies, *(cell / 2 ** max(0, usual + more) for cell, usual in sizes))
 
+    def _ran(self, splits: int) -> bool:
+        """Run a level; return whether it has an outcome, which the first must have."""
+        try:
+            self._run_level(splits)
+        except (SceneError, RunError) as error:  # a mesh that folds is found when it is made
+            if not self.done:
+                raise
+            self.failed = str(error)
+            return False
+        return True
+
     def _run_level(self, splits: int) -> None:
         """Run a level, again with more room where it needs that, and add it to what is done."""
         last = bool(self.done) and splits >= self.finest
@@ -232,16 +272,18 @@ class LevelChain:
             scene = replace(scene, accuracy=accuracy, save=replace(scene.save, frames=0, strain_samples=0))
         for repeats in range(MOST_REPEATS + 1):
             case = Case.of(scene, "solid", before)
-            outcome, record = self._simulated(case, before, splits)
-            if not record.left or (outcome.validity.finished and not last) or repeats == MOST_REPEATS:
+            outcome, record = self._simulated(case, before, self._options(splits, repeats))
+            ended = outcome.validity.finished
+            if not record.left or record.crushed or (ended and not last) or repeats == MOST_REPEATS:
                 break
-            before = (record if outcome.validity.finished else before).wider()
+            before = (record if ended else before).wider()
         size = contact_edge(case.bodies)  # as it came out, which is not always as asked for
         self.done.append(LevelRun(splits, size, case, outcome, record, repeats))
 
-    def _simulated(self, case: Case, before: ContactRecord, splits: int) -> tuple[Outcome, ContactRecord]:
+    def _simulated(
+        self, case: Case, before: ContactRecord, options: RunOptions
+    ) -> tuple[Outcome, ContactRecord]:
         """Return outcome and record of a level, from its files where it ran before it was resumed."""
-        options = self._options(splits)
         computed = f"{stamp(case.scene)}record {before.digest()}\n"
         out = options.out
         if out is not None and options.resume and (out / STAMP).is_file():
@@ -255,15 +297,15 @@ class LevelChain:
         assert record is not None, "finite elements leave a record"
         return outcome, record
 
-    def _place(self, number: int) -> Path:
-        """Return the directory of a level, counted from 1."""
+    def _place(self, number: int, repeats: int) -> Path:
+        """Return the directory of a level, counted from 1, run again so often with more room."""
         assert self.options.out is not None, "files are wanted"
-        return self.options.out / f"level-{number}"
+        return self.options.out / (f"level-{number}-wider-{repeats}" if repeats else f"level-{number}")
 
-    def _options(self, splits: int) -> RunOptions:
+    def _options(self, splits: int, repeats: int) -> RunOptions:
         """Return the options of the next level, whose progress names it and knows about later ones."""
         number, show = len(self.done) + 1, self.options.progress
-        out = self.options.out and self._place(number)
+        out = self.options.out and self._place(number, repeats)
         if show is None:
             return replace(self.options, out=out)
         later = range(splits + 1, max(self.finest, splits) + 1)
@@ -283,29 +325,48 @@ class LevelChain:
             self.options.progress(Notice(sentence))
 
     def _stated(self) -> Outcome:
-        """Return the outcome of the last level, of the scene as stated, with limits and bands."""
-        last = self.done[-1]
-        meshes = [MeshRuns(level.size, [level.outcome]) for level in self.done]
-        banded = len(meshes) > 1 and all(level.record.resolved for level in self.done[-2:])
+        """Return the outcome of the level that counts, of the scene as stated, with limits and bands."""
+        upto = self.done[: self.counted]
+        counted, beyond = upto[-1], self.done[self.counted :]
+        meshes = [MeshRuns(level.size, [level.outcome]) for level in upto]
+        banded = len(meshes) > 1 and all(level.record.resolved for level in upto[-2:])
         limits, bands = level_limits(meshes) if banded else (UNRESOLVED, UNRESOLVED)
         left = (
-            f"Contact or flow left the zones held ready, after {last.repeats} repeats with more room."
-            if last.record.left
+            f"Contact or flow left the zones held ready, after {counted.repeats} repeats with more room."
+            if counted.record.left
             else ""
         )
-        radius = patch_radius(last.record.rod)
-        wanted = self._wanted(radius) - last.splits
+        radius = patch_radius(counted.record.rod)
+        wanted = self._wanted(radius) - counted.splits
         short = (
             f"The contact, {2e3 * radius:.2g} mm wide, would be resolved as advised by cells halved "
             f"{wanted} times more: give a larger accuracy.levels or --budget."
-            if wanted > 0 and (last.splits < self.finest or not self._is_sized)
+            if wanted > 0 and (counted.splits < self.finest or not self._is_sized)
             else ""
         )
+        cut = beyond[0].outcome.validity.stopped_because if beyond else self.failed
+        ended = f"The numbers are those of level {len(upto)}: level {len(upto) + 1} was cut off. {cut}"
+        outcome = self._without_unresolved(counted)
         validity = replace(
-            last.outcome.validity,
+            outcome.validity,
             mesh_limit=limits,
             mesh_band=bands,
-            limitations=(*last.outcome.validity.limitations, *limitations("resolution", left, short)),
+            limitations=(
+                *outcome.validity.limitations,
+                *limitations("run", ended if cut else ""),
+                *limitations("resolution", left, short),
+            ),
         )
-        origin = replace(last.outcome.provenance, scene_digest=digest(self.scene))
-        return replace(last.outcome, validity=validity, provenance=origin)
+        return replace(
+            outcome,
+            validity=validity,
+            provenance=replace(outcome.provenance, scene_digest=digest(self.scene)),
+        )
+
+    def _without_unresolved(self, counted: LevelRun) -> Outcome:
+        """Return a level's outcome without the numbers that a scene withholds where they are not resolved."""
+        outcome = counted.outcome
+        if counted.record.resolved or self.scene.accuracy.unresolved == "report":
+            return outcome
+        reasons = [one.text for one in outcome.validity.limitations if one.text.startswith(NOT_RESOLVED)]
+        return without(outcome, Unknown(reasons[0])) if reasons else outcome

@@ -1,0 +1,132 @@
+"""Levels of a run that end early: what they leave, when no other follows, and how they go on."""
+
+from dataclasses import replace
+
+import pytest
+
+from fem_impact.answers.refine import chain
+from fem_impact.answers.refine.chain import LevelChain
+from fem_impact.answers.wanted_error import simulate
+from fem_impact.case.case import Case
+from fem_impact.errors import ResultError, RunError
+from fem_impact.options import RunOptions
+from fem_impact.outcome.keys import Unknown, known
+from fem_impact.outcome.record import Outcome
+from fem_impact.run.resolution import without_end
+from fem_impact.scene.read import read_toml
+from fem_impact.scene.shipped import load, replace_all
+
+QUICK = replace_all(load("quick"), {"save.frames": 0})
+FREE = replace(QUICK, accuracy=replace(QUICK.accuracy, tip_size=None, barrier_size=None))
+
+
+@pytest.fixture(scope="module")
+def level():
+    """Return the first level of a scene, which does not resolve its contact."""
+    levels = LevelChain(Case(QUICK), budget_s=1e-3)
+    levels.run()
+    return levels.done[0]
+
+
+def test_two_levels_are_two(level):
+    scene = replace(FREE, accuracy=replace(FREE.accuracy, levels=2))
+    levels = LevelChain(Case(scene), done=[level])
+    assert levels.finest > level.splits
+
+
+def test_one_more_level_runs_where_the_last_resolved_nothing(level):
+    levels = LevelChain(Case(FREE), done=[replace(level, splits=splits) for splits in (0, 2)])
+    levels.done.append(replace(level, splits=levels.finest))
+    assert levels._next == levels.finest + 1
+    resolved = replace(level, splits=levels.finest, record=replace(level.record, resolved=True))
+    assert LevelChain(Case(FREE), done=[*levels.done[:2], resolved])._next is None
+    levels.done.append(replace(level, splits=levels.finest + 1))
+    assert levels._next is None
+
+
+def test_smaller_cells_do_not_follow_crushed_ones(level):
+    levels = LevelChain(Case(FREE), done=[level])
+    assert levels._next is not None
+    levels.done[0] = replace(level, record=replace(level.record, crushed=True))
+    assert levels._next is None
+
+
+@pytest.fixture
+def failing(monkeypatch):
+    """Let the second level end as a function of its outcome and record says."""
+    run, ran = chain.simulate_recorded, []
+
+    def set_up(end):
+        def ended(scene, fidelity, options, case):
+            ran.append(scene)
+            outcome, record = run(scene, fidelity, options, case)
+            return end(outcome, record) if len(ran) == 2 else (outcome, record)
+
+        monkeypatch.setattr(chain, "simulate_recorded", ended)
+        return ran
+
+    return set_up
+
+
+def not_finite(outcome, record):
+    raise RunError("The motion is not finite.")
+
+
+def crushed(outcome, record):
+    return without_end(outcome, "An element was crushed."), replace(record, crushed=True, left=True)
+
+
+@pytest.mark.parametrize(("end", "why"), [(not_finite, "not finite"), (crushed, "finish")])
+def test_what_coarser_levels_found_is_kept_where_a_finer_one_fails(failing, end, why, tmp_path):
+    ran = failing(end)
+    accuracy = replace(QUICK.accuracy, unresolved="report")
+    outcome = simulate(replace(QUICK, accuracy=accuracy), options=RunOptions(tmp_path))
+    assert len(ran) == 2
+    assert 0 < known(outcome.restitution.edge.e) < 1
+    assert isinstance(outcome.validity.mesh_band, Unknown)
+    (told,) = [one.text for one in outcome.validity.limitations if "cut off" in one.text]
+    assert "level 1" in told
+    assert Outcome.read(tmp_path / "outcome.json") == outcome
+    assert (tmp_path / "contact.npz").is_file()
+
+
+def test_numbers_of_a_coarser_level_that_did_not_resolve_the_contact_are_withheld(failing):
+    failing(not_finite)
+    outcome = simulate(QUICK)
+    assert "fewer than" in outcome.restitution.edge.e.reason
+
+
+def test_a_pilot_that_fails_is_an_error(monkeypatch):
+    monkeypatch.setattr(chain, "simulate_recorded", lambda *_: not_finite(*_[:2]))
+    with pytest.raises(RunError, match="not finite"):
+        simulate(QUICK)
+
+
+def test_a_level_killed_in_the_middle_goes_on_from_its_checkpoint(tmp_path):
+    whole = simulate(QUICK)
+
+    def kill(progress):
+        if "level 2" in progress.note and progress.step > 400:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        simulate(QUICK, options=RunOptions(tmp_path, kill, checkpoint_s=0.0))
+    steps = []
+    again = RunOptions(tmp_path, lambda p: steps.append((p.note, p.step)), resume=True)
+    outcome = simulate(QUICK, options=again)
+    of_second = [step for note, step in steps if "level 2" in note and step]
+    assert not [note for note, _ in steps if "level 1" in note] and of_second[0] > 400
+    assert outcome.restitution.edge.e == whole.restitution.edge.e
+    assert outcome.energy.vibration == whole.energy.vibration
+
+
+def test_to_resume_where_nothing_is_begins_and_another_scene_is_refused(failing, tmp_path):
+    def interrupted(outcome, record):
+        raise KeyboardInterrupt
+
+    failing(interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        simulate(QUICK, options=RunOptions(tmp_path, resume=True))
+    assert read_toml(tmp_path / "scene.toml") == QUICK
+    with pytest.raises(ResultError, match="another scene"):
+        simulate(replace_all(QUICK, {"impact.speed": "2 m/s"}), options=RunOptions(tmp_path, resume=True))
