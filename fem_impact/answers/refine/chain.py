@@ -39,7 +39,9 @@ from fem_impact.scene.types import Scene
 from fem_impact.scene.write import digest, to_toml
 
 MOST_REPEATS = 2  # of a level, each with twice the room
-MORE = 1  # levels beyond those asked for, where the last has not resolved the contact: it would have no numbers
+MORE = (
+    1  # levels beyond those asked for, where the last has not resolved the contact: it would have no numbers
+)
 JUMP = 2  # splits between two levels at most: a record holds the places of cells four times as large
 # how much longer a level takes than the one before, where only one has run: of 26 pairs of levels of the 13
 # measured sets 1.6 to 4.1
