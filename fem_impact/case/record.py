@@ -48,9 +48,9 @@ class BodyRecord:
     reach: float
     spread: float
 
-    def wider(self) -> BodyRecord:
-        """Return the record with twice the room around it."""
-        return replace(self, reach=2 * self.reach, spread=2 * self.spread)
+    def wider(self, factor: float) -> BodyRecord:
+        """Return the record with so many times the room around it."""
+        return replace(self, reach=factor * self.reach, spread=factor * self.spread)
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,10 +129,10 @@ class ContactRecord:
         )
         return cls(rod, barrier, sites, left, resolved, crushed)
 
-    def wider(self) -> ContactRecord:
-        """Return a record after which the next mesh holds twice as much room ready around what is known."""
-        barrier = self.barrier and self.barrier.wider()
-        return replace(self, rod=self.rod.wider(), barrier=barrier)
+    def wider(self, factor: float = 2.0) -> ContactRecord:
+        """Return a record after which the next mesh holds more room ready around what is known."""
+        barrier = self.barrier and self.barrier.wider(factor)
+        return replace(self, rod=self.rod.wider(factor), barrier=barrier)
 
 
 BODY = ("touched", "flowed", "strain", "edge", "reach", "spread")

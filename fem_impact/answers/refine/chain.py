@@ -268,7 +268,7 @@ class LevelChain:
         """Run a level, again with more room where it needs that, and add it to what is done."""
         last = bool(self.done) and splits >= self.finest
         scene = self._at(splits)
-        before = self.done[-1].record if self.done else self._expected(splits)
+        before = known = self.done[-1].record if self.done else self._expected(splits)
         if not last:  # a coarse level tells all it finds
             accuracy = replace(scene.accuracy, unresolved="report")
             scene = replace(scene, accuracy=accuracy, save=replace(scene.save, frames=0, strain_samples=0))
@@ -278,7 +278,8 @@ class LevelChain:
             ended = outcome.validity.finished
             if not record.left or record.crushed or (ended and not last) or repeats == MOST_REPEATS:
                 break
-            before = (record if ended else before).wider()
+            known = record if ended else known
+            before = known.wider(2.0 ** (repeats + 1))  # a record has the room of a first run
         size = contact_edge(case.bodies)  # as it came out, which is not always as asked for
         self.done.append(LevelRun(splits, size, case, outcome, record, repeats))
 

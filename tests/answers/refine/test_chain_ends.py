@@ -52,6 +52,20 @@ def test_smaller_cells_do_not_follow_crushed_ones(level):
     assert levels._next is None
 
 
+def test_each_repeat_has_twice_the_room_of_the_one_before(level, monkeypatch):
+    rooms = []
+
+    def left(scene, fidelity, options, case):
+        rooms.append((case.record.rod.reach, case.record.barrier.spread))
+        return level.outcome, replace(level.record, left=True)
+
+    monkeypatch.setattr(chain, "simulate_recorded", left)
+    levels = LevelChain(Case(QUICK), done=[level])
+    levels._run_level(2)
+    assert levels.done[-1].repeats == 2
+    assert rooms == [(k * level.record.rod.reach, k * level.record.barrier.spread) for k in (1.0, 2.0, 4.0)]
+
+
 @pytest.fixture
 def failing(monkeypatch):
     """Let the second level end as a function of its outcome and record says."""
