@@ -241,6 +241,8 @@ def compiled(scene: Scene, fidelity: str) -> Case:
         return Case.of(scene, fidelity)
     case = Case(scene)
     LevelChain(case).pilot()
+    if scene.accuracy.tip_size is not None:
+        case.require_memory()  # of the last level, whose cells are stated
     return case
 
 

@@ -98,8 +98,12 @@ class Case:
             require_rest(self.bodies, self._estimated)
         if slots.skin and slots.barrier_law:
             require_layer(slots.skin, self.zones.barrier_size, self.zones.skin_rows)
+        self.require_memory()
+
+    def require_memory(self) -> None:
+        """Refuse a mesh that needs more memory than there is (SceneError)."""
         if self.scene.accuracy.target is None:  # a target chooses its own mesh
-            require_memory(slots, self.bodies, self._estimated)
+            require_memory(self.slots, self.bodies, self._estimated)
 
     @cached_property
     def decision(self) -> Decision:

@@ -116,7 +116,7 @@ def test_numbers_in_refusals_are_short(value, shown):
         (("--set", "impact.angle_rad=1.6789012345"), "angle = 96.2 deg: "),
         (("--set", "projectile.diameter='1000.00012 mm'"), "diameter = 1000.0001 mm: "),
         (("--set", "projectile.diameter_m=1.23456789"), "diameter = 1.23e+03 mm: "),
-        (("--set", "accuracy.tip_size_m=0.00467862"), 'tip_size = "4.68 mm": '),
+        (("--set", "accuracy.tip_size_m=0.00567862"), 'tip_size = "5.68 mm": '),
         (("--set", "projectile.tip_radius='12.3456789 mm'"), 'tip_radius = "12.3 mm": '),
         (("--set", "surface.friction=-0.123456789"), "friction = -0.123: "),
     ],

@@ -153,7 +153,7 @@ def test_an_empty_or_missing_file(cli, tmp_path):
     [
         (("--d-c", "22 mm"), 2, "one arm alone"),
         (("--length", "80"), 2, '--length "240 mm"'),
-        (("--angle", "95 deg"), 3, "from 0 up to 90"),
+        (("--angle", "95 deg"), 3, "from -90 to 90"),
         (("--tip-radius", "12 mm"), 3, "tip_radius"),
         (("--diameter", "-19 mm"), 3, "diameter must be positive"),
     ],
