@@ -1,5 +1,6 @@
 """What a mesh file holds: its nodes, its volume cells, their sets, and what of it is left out."""
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -10,6 +11,8 @@ from meshes.errors import MeshError
 
 __all__ = ["NODES", "Elements", "StoredMesh", "counted", "number_of", "whole_number"]
 
+# a number, of which Fortran may leave the E of the exponent out
+NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+))(?:E([+-]?\d+)|(?<=[\d.])([+-]\d+))?")
 #: Nodes of each kind of volume cell; corners first, then the middles of edges, in VTK's order.
 NODES = {
     "tetra": 4,
@@ -120,17 +123,10 @@ def number_of(text: str, where: str) -> float:
         If it is none; ``where`` says what it belongs to.
     """
     bare = text.strip().upper().replace("D", "E")
-    try:
-        return float(bare) if bare else 0.0
-    except ValueError:
-        pass
-    for sign in "+-":  # Fortran leaves the E of an exponent out
-        head, _, tail = bare.rpartition(sign)
-        try:
-            return float(f"{head}E{sign}{tail}")
-        except ValueError:
-            continue
-    raise MeshError(f"has {text.strip()!r} for a number of {where}.")
+    found = NUMBER.fullmatch(bare or "0")
+    if not found:
+        raise MeshError(f"has {text.strip()!r} for a number of {where}.")
+    return float(f"{found[1]}E{found[2] or found[3] or 0}")
 
 
 def whole_number(text: str, where: str) -> int:
