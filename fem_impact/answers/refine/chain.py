@@ -50,7 +50,7 @@ BUDGET = 600.0  # s of wall time for all levels, unless stated
 SLICES = 1 / 3  # of the diameter: height over the tip at which the slices of a body may begin
 STAMP = "level.stamp"
 """File of a level's directory that says what was computed there."""
-UNRESOLVED = Unknown("fewer than two levels resolved the contact; accuracy.levels = 4 adds a finer one")
+UNRESOLVED = Unknown("the last level did not resolve the contact; accuracy.levels = 4 adds a finer one")
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,7 +95,7 @@ class LevelChain:
         """Run levels from coarse to fine until the contact is resolved; return the last one's outcome.
 
         Where that fails or is cut off, the outcome is that of the finest level that came to its end, and says
-        why. It has the limits and bands of two levels that resolve the contact. Its files stand in
+        why. It has the limits and bands of its levels, if it resolves the contact. Its files stand in
         ``options.out``, those of the other levels below it.
 
         Raises
@@ -164,7 +164,7 @@ class LevelChain:
             wanted = self._usual
         else:  # levels that were asked for are run, however well the pilot resolves its contact
             wanted = max(self._wanted(patch_radius(self.done[-1].record.rod)), self.done[0].splits + 1)
-        least = self.first + (levels > 1 and not self._is_sized)
+        least = self.first + (0 if self._is_sized else min(levels, LEVELS) - 1)
         return min(max(wanted + levels - LEVELS, least), self.first + JUMP * max(levels - 2, 0) + 1)
 
     @property
@@ -332,8 +332,8 @@ class LevelChain:
         upto = self.done[: self.counted]
         counted, beyond = upto[-1], self.done[self.counted :]
         meshes = [MeshRuns(level.size, [level.outcome]) for level in upto]
-        banded = len(meshes) > 1 and all(level.record.resolved for level in upto[-2:])
-        limits, bands = level_limits(meshes) if banded else (UNRESOLVED, UNRESOLVED)
+        banded = len(meshes) > 1 and counted.record.resolved
+        limits, bands = level_limits(meshes, upto[-2].record.resolved) if banded else (UNRESOLVED, UNRESOLVED)
         left = (
             f"Contact or flow left the zones held ready, after {counted.repeats} repeats with more room."
             if counted.record.left

@@ -149,20 +149,29 @@ def mesh_limits(meshes: Sequence[MeshRuns]) -> tuple[MeshNumbers, MeshNumbers]:
     )
 
 
-def level_limits(meshes: Sequence[MeshRuns]) -> tuple[MeshNumbers, MeshNumbers]:
-    """Return limits and half-widths, by key, of levels from coarse to fine that ran once each.
+def level_limits(meshes: Sequence[MeshRuns], resolved: bool = True) -> tuple[MeshNumbers, MeshNumbers]:
+    """Return limits and half-widths, by key, of two or more levels from coarse to fine that ran once each.
 
     They are those of the finest two, but no half-width is less than `HALVED` of the change between the two
-    levels before: two levels may agree by chance.
+    levels before: two levels may agree by chance. Where only the finest ``resolved`` its contact, nothing is
+    extrapolated: its own value stands, with what order `LOWEST` leaves of the change to it.
     """
     limits, bands = mesh_limits(meshes[-2:])
-    if len(meshes) < 3 or isinstance(bands, Unknown):
+    if isinstance(bands, Unknown) or isinstance(limits, Unknown):
         return limits, bands
-    wider = {}
-    for name, band in bands.items():
-        before = [mesh.mean([KEY_TABLE[name]]) for mesh in meshes[-3:-1]]
-        change = 0.0 if None in before else abs(float(np.diff(np.array(before, float))[0]))
-        wider[name] = max(band, HALVED * change)
+    values = {
+        name: [mesh.mean([KEY_TABLE[name]]) or 0.0 for mesh in meshes[-3:]] for name in bands
+    }  # a number that a coarser level does not know changes by itself
+    if not resolved:
+        left = (meshes[-2].size / meshes[-1].size) ** LOWEST - 1
+        limits = {name: of[-1] for name, of in values.items()}
+        bands = {name: abs(of[-1] - of[-2]) / left for name, of in values.items()}
+        if (vibration := VIBRATION[0].name) in bands:
+            bands[vibration] = floored(bands[vibration], meshes[-1].runs)
+    wider = {
+        name: max(band, HALVED * abs(values[name][-2] - values[name][-3])) if len(meshes) > 2 else band
+        for name, band in bands.items()
+    }
     return limits, wider
 
 

@@ -101,6 +101,9 @@ def test_no_band_is_narrower_than_half_of_the_change_before():
 
     _, bands = level_limits(levels(0.4, 0.3, 0.3001))
     assert known(bands)["e_edge"] == pytest.approx(0.05)
+    limits, bands = level_limits(levels(0.4, 0.3, 0.25), resolved=False)
+    assert known(limits)["e_edge"] == 0.25  # nothing is extrapolated from a level that resolves nothing
+    assert known(bands)["e_edge"] == pytest.approx(0.05 / (2**0.75 - 1))
     steady = levels(0.4, 0.3, 0.25)
     assert known(level_limits(steady)[1])["e_edge"] == known(mesh_limits(steady[-2:])[1])["e_edge"] > 0.05
 
