@@ -125,8 +125,9 @@ def _compute(case: Case, options: RunOptions) -> tuple[Outcome, ContactRecord | 
         return reduce_modal(case, result), None
     from threadpoolctl import threadpool_limits
 
+    from fem_impact.outcome.limitation import texts
     from fem_impact.run.program import stamp
-    from fem_impact.run.resolution import unresolved
+    from fem_impact.run.resolution import NOT_RESOLVED
     from fem_impact.run.solid import reduce
     from fem_impact.solid.run import solve
 
@@ -134,7 +135,10 @@ def _compute(case: Case, options: RunOptions) -> tuple[Outcome, ContactRecord | 
     # run takes four times the processor time
     with threadpool_limits(1, "blas"):
         end = solve(case, replace(options, stamp=stamp(case.scene)))
-        return reduce(end), replace(end.record, resolved=not unresolved(end))
+        outcome = reduce(end)
+    told = texts(outcome.validity.limitations, "resolution")
+    resolved = not any(sentence.startswith(NOT_RESOLVED) for sentence in told)
+    return outcome, replace(end.record, resolved=resolved)
 
 
 def _write(outcome: Outcome, record: ContactRecord | None, out: Path) -> None:

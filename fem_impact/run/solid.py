@@ -8,24 +8,28 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import rigid
+from fem_impact.case.cells import advice
 from fem_impact.case.effects.heating import halves
 from fem_impact.errors import RunError
 from fem_impact.outcome.groups import ContactSite, Energy, Heat, RodMotion, RunCost
-from fem_impact.outcome.keys import Num, Unknown, known, unknown
+from fem_impact.outcome.keys import Num, Unknown, known, or_none, unknown
 from fem_impact.outcome.limitation import limitations
 from fem_impact.physics.contact import fall
 from fem_impact.physics.flash import flash
 from fem_impact.run.assemble import ImpactEnd, Reduction
 from fem_impact.run.common import CUT_OFF, MASSIVE, UNBENT, after, heat
 from fem_impact.run.markers import replay
-from fem_impact.run.resolution import unresolved
+from fem_impact.run.resolution import NOT_RESOLVED, unresolved
+from fem_impact.run.unusual import LEAST_RATIO, PLOUGHING
 
 if TYPE_CHECKING:
+    from fem_impact.case.case import Case
     from fem_impact.case.record import Site
     from fem_impact.outcome.record import Outcome
     from fem_impact.solid.run import SolidResult
 
 
+MOST_E = 1.2  # of an impact whose energy comes back by friction and bending
 RINGING, LEAST = 0.1, 1e-4  # of E_vib and of E_0: so much above the modes is told
 STIFF = Unknown("the vibration effect is off: the rod is rigid behind its nose")
 IN_WAVES = Unknown(
@@ -66,7 +70,7 @@ def reduce(result: SolidResult) -> Outcome:
         turn=result.turned,
     )
     reduction = Reduction.of(case, end)
-    energy, narrow = _energy(result, reduction.motion), unresolved(result)
+    energy, narrow = _energy(result, reduction.motion), unresolved(result) or _held(reduction, case)
     # measured shares of the run time take the place of expected ones
     choices = (replace(choice, share=result.shares.get(choice.name, choice.share)) for choice in case.choices)
     return reduction.outcome(
@@ -84,6 +88,21 @@ def reduce(result: SolidResult) -> Outcome:
         ),
         withheld=narrow if case.scene.accuracy.unresolved == "withhold" else "",
         sites=tuple(map(_site, result.record.sites)),
+    )
+
+
+def _held(reduction: Reduction, case: Case) -> str:
+    """Return why a contact counts as not resolved whose e and mu are both beyond what friction explains.
+
+    A single row of nodes on an edge may be caught by one facet and thrown back: e was 3.8 on such a mesh.
+    """
+    e, mu = or_none(reduction.restitution.edge.e), or_none(reduction.restitution.mu)
+    f = reduction.motion.friction
+    if e is None or mu is None or e <= MOST_E or abs(mu) <= PLOUGHING * f + LEAST_RATIO:
+        return ""
+    return (
+        f"{NOT_RESOLVED} e = {e:.3g} with mu = {mu:.3g} beyond f = {f:g}: single nodes were caught by the "
+        f"facets of few cells. {advice(case.bodies)}"
     )
 
 
