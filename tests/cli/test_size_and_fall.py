@@ -12,6 +12,8 @@ from fem_impact.scene.write import to_toml
 
 def test_check_tells_elements_memory_steps_and_time(cli):
     code, out, err = cli("check", "t5b")
+    assert code == 0 and "A run with finite elements" in out and "takes seconds" in out
+    code, out, err = cli("check", "t5b", "--set", "accuracy.levels=1")
     assert code == 0 and not err
     assert "Size of a run with finite elements" in out and "MB of memory" in out and "of computing" in out
     size = json.loads(cli("check", "t5b", "--json")[1])["size"]

@@ -71,7 +71,7 @@ def test_a_wrong_command_line_is_two(cli, line, complaint):
         ("check", "t5b", "--set", "projectile.lenght=80 mm"),
         ("verify", "modes", "--set", "length=50 m"),
         ("assess", *DROP, "--angle", "95 deg"),
-        ("assess", *DROP, "--diameter", "200 mm"),
+        ("assess", *DROP, "--diameter", "2 m"),
     ],
 )
 def test_what_is_understood_and_refused_is_three(cli, line):

@@ -22,9 +22,9 @@ from fem_impact.solid.rodview import RodState
 from fem_impact.solid.run import solve
 from fem_impact.solid.watchers import Stopwatch, Watchers
 
-# together these sets name every effect that a scene can name
+# together these sets name every effect that finite elements can hold
 SETS = (
-    tuple(n for n in NAMES if n not in ("barrier-rigid", "barrier-elastic", "plate-bending")),
+    tuple(n for n in NAMES if n not in ("barrier-rigid", "barrier-elastic", "plate-bending", "contact-loss")),
     ("vibration", "friction", "barrier-rigid", "rod-plasticity", "large-rotation", "contact-heating"),
     ("vibration", "friction", "barrier-elastic", "plate-bending"),
     ("friction", "rod-plasticity", "barrier-rigid", "large-rotation"),
