@@ -89,7 +89,8 @@ MUTANTS = (
         "friction of the reduced model moved by the last speed of its contact, not by its place",
         "fem_impact/modal/march.py",
         "meet(law, flow, springs, groove, depth, rate, place, place - before)",
-        "meet(law, flow, springs, groove, depth, rate, place, dt * (rigid[AT.V_t] + rigid[AT.Omega] * arm[3]))",
+        "meet(law, flow, springs, groove, depth, rate, place, "
+        "dt * (rigid[AT.V_t] + rigid[AT.Omega] * arm[3]))",
         "tests/modal/test_modal.py::test_friction_takes_energy_whatever_the_step",
     ),
     Mutant(

@@ -67,7 +67,7 @@ def outcome_numbers(result):
 
 
 def test_these_sets_name_every_effect():
-    assert {name for names in SETS for name in names} == set(NAMES)
+    assert {name for names in SETS for name in names} == set(NAMES) - {"contact-loss"}
 
 
 @pytest.mark.parametrize("effects", SETS)
