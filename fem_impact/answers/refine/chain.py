@@ -143,13 +143,13 @@ class LevelChain:
 
     @property
     def first(self) -> int:
-        """Splits of the pilot: two fewer than those of a stated size, else none or one."""
+        """Splits of the pilot: two fewer than those of a stated size, of two levels one; else none or one."""
         expected, rod = self._expected(0).rod, self._bodies.rod
         # a side that lands is a polygon of slices where its cells are not split, and slices cannot touch
         of_side = rod.own_mesh is None and expected.touched[:, 2].max() > SLICES * rod.diameter
         least = int(of_side and not rod.is_ball)
         if self._is_sized:
-            return max(least, self._usual - JUMP)
+            return max(least, self._usual - (JUMP if self.scene.accuracy.levels > JUMP else 1))
         return max(least, min(1, self._wanted(patch_radius(expected)) - 1))
 
     @property
@@ -165,7 +165,8 @@ class LevelChain:
         else:  # levels that were asked for are run, however well the pilot resolves its contact
             wanted = max(self._wanted(patch_radius(self.done[-1].record.rod)), self.done[0].splits + 1)
         least = self.first + (0 if self._is_sized else min(levels, LEVELS) - 1)
-        return min(max(wanted + levels - LEVELS, least), self.first + JUMP * max(levels - 2, 0) + 1)
+        more = max(levels - LEVELS, 0) if self._is_sized else levels - LEVELS
+        return min(max(wanted + more, least), self.first + JUMP * max(levels - 2, 0) + 1)
 
     @property
     def _next(self) -> int | None:

@@ -48,6 +48,12 @@ def test_a_pilot_and_two_finer_levels_end_on_the_stated_size(quick):
     assert outcome.provenance.scene_digest == digest(QUICK)
 
 
+@pytest.mark.parametrize(("levels", "splits"), [(2, [1, 2]), (3, [0, 1, 2]), (4, [0, 2, 3])])
+def test_a_stated_size_is_that_of_the_last_level_unless_more_are_asked_for(levels, splits):
+    chained = LevelChain(Case(replace(QUICK, accuracy=replace(QUICK.accuracy, levels=levels))))
+    assert chained.first == splits[0] and chained.finest == splits[-1]
+
+
 def test_every_level_closes_its_ledger(quick):
     assert max(abs(level.outcome.energy.residual) for level in quick[0].done) < 1e-5
 
