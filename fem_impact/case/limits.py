@@ -249,7 +249,7 @@ def _require_tip(bodies: Bodies, body: Faceted, fidelity: str) -> None:
 def _any_part(fidelity: str) -> str:
     """Return what to use where not a point of the tip touches, in place of a fidelity."""
     if fidelity == "solid":
-        return "Leave out accuracy.levels = 1: levels of meshes find what touches."
+        return "`fem-impact run` finds what touches, on several meshes (accuracy.levels above 1)."
     return f"Use --fidelity solid{', or state restitution' if fidelity == 'rigid' else ''}."
 
 

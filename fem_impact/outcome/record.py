@@ -13,6 +13,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, ClassVar, get_type_hints
 
+from fem_impact.errors import UsageError, did_you_mean
 from fem_impact.files.atomic import read_text, write_text
 from fem_impact.files.digests import read_signed, signed
 from fem_impact.outcome.check import SCHEMA_VERSION, check_record
@@ -103,8 +104,16 @@ class Outcome:
         values = ((key.name, key.of(self)) for key in KEYS if key.nullable)
         return {name: value.reason for name, value in values if isinstance(value, Unknown)}
 
-    def estimate(self, key: Key) -> tuple[Num, float | None]:
-        """Return limit and half-width that two meshes give a number, else its value in this run and None."""
+    def estimate(self, key: Key | str) -> tuple[Num, float | None]:
+        """Return limit and half-width that meshes give a number, else its value in this run and None.
+
+        ``key`` is that of the number or its name, such as ``"e_edge"`` (UsageError: there is none).
+        """
+        if isinstance(key, str):
+            if key not in KEY_TABLE:
+                hint = did_you_mean(key, KEY_TABLE, "The table of keys in the documentation lists them.")
+                raise UsageError("is no key of an outcome.", key="key", value=key, remedy=hint)
+            key = KEY_TABLE[key]
         limits, bands = (or_none(v) or {} for v in (self.validity.mesh_limit, self.validity.mesh_band))
         return (limits[key.name], bands[key.name]) if key.name in bands else (key.of(self), None)
 

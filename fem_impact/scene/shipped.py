@@ -117,7 +117,7 @@ def _changed(scene: Scene, changes: Mapping[str, Any]) -> dict[str, Any]:
             data["title"] = _title(data["title"], measured, other)
     if data.get("surface", {}).get("state") == "pair" and any(".material" in key for key in changes):
         for key in PAIR:
-            data["surface"].pop(key)  # it follows from both materials
+            data["surface"].pop(key, None)  # it follows from both materials
     if new := moved(changes):
         data["impact"] = restated(scene.impact, data["impact"], new)
     if any(key.startswith("projectile.") for key in changes) and "projectile.segments" not in changes:

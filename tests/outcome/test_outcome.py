@@ -15,7 +15,7 @@ from outcome_maker import altered
 from result_maker import values
 
 import fem_impact
-from fem_impact.errors import ResultError
+from fem_impact.errors import ResultError, UsageError
 from fem_impact.outcome.groups import ARMS, Energy, Heat
 from fem_impact.outcome.keys import Unknown, known, markdown_table, or_none, unknown
 from fem_impact.outcome.record import KEY_TABLE, KEYS, Outcome, installed_versions
@@ -297,3 +297,10 @@ def test_a_notebook_shows_every_number_with_its_meaning(record):
     page = Outcome.from_dict(record)._repr_html_()
     assert page.count("<tr>") == 1 + sum(key.kind == "number" for key in KEYS)
     assert "Impulse ratio: tangential over normal impulse" in page
+
+
+def test_an_estimate_is_asked_for_by_the_name_of_its_key():
+    run = OUTCOME
+    assert run.estimate("mu") == run.estimate(KEY_TABLE["mu"])
+    with pytest.raises(UsageError, match="Did you mean mu"):
+        run.estimate("muu")

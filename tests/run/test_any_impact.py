@@ -151,7 +151,7 @@ def test_a_side_that_lands_asks_for_finite_elements_or_a_restitution():
         Case.of(stated, "modal")
     with pytest.raises(SceneError, match=r"straight side.*or state restitution"):
         Case.of(stated, "rigid")
-    with pytest.raises(SceneError, match=r"Leave out accuracy\.levels = 1"):
+    with pytest.raises(SceneError, match=r"on several meshes \(accuracy\.levels above 1\)"):
         Case.of(changed(stated, "accuracy.levels", 1), "solid")
     assert Case.of(replace(stated, restitution=0.5), "rigid")
     assert LevelChain(Case(stated)).pilot()

@@ -186,6 +186,8 @@ def test_another_material_takes_the_friction_of_its_own_pair():
     own = replace(scene, "surface.friction", 0.5)
     assert (own.surface.state, own.surface.friction_low) == ("custom", 0.5)
     assert replace(T5B, "surface.state", "pair").surface.friction == 0.465
+    both = {"surface.state": "pair", "projectile.material": "plate-steel"}
+    assert replace_all(T5B, both).surface.friction == 0.465
 
 
 def test_values_beside_the_state_of_a_pair_may_only_repeat_it():
