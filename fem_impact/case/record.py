@@ -15,6 +15,7 @@ import numpy as np
 
 from fem_impact.arrays import Array
 from fem_impact.case.bodies import Bodies
+from fem_impact.case.zones import SLIDE
 from fem_impact.errors import ResultError
 from fem_impact.files.atomic import write_bytes
 from fem_impact.files.digests import check_digest
@@ -24,7 +25,6 @@ from rigid import Faceted, Projectile
 AROUND = 16  # places of half a round surface at which its height is looked at
 ABOVE = 0.35  # of a cell, within which skin of the lowest point may touch in a run on such cells
 DEEP = 1.5  # radii of the estimated contact, and cells, up to which metal may flow from where it may touch
-SLIDE = 5.0  # depths of the estimated contact over which a projectile that comes down obliquely drags it
 
 
 @dataclass(frozen=True, slots=True)
@@ -156,17 +156,15 @@ def _plain(value: Array) -> Any:
     return value if value.ndim else float(value)
 
 
-def expected_record(
-    bodies: Bodies, rod_edge: float, barrier_edge: float, wider: float = 1.0
-) -> ContactRecord:
+def expected_record(bodies: Bodies, rod_edge: float, barrier_edge: float) -> ContactRecord:
     """Return what may touch and flow on cells of these edges, m, from the shapes alone.
 
     May touch what lies no higher over the barrier than `FLAT` estimated depths or `ABOVE` of a cell,
-    whichever is more; ``wider`` is a factor of that, of a run that found contact outside it.
+    whichever is more.
     """
     size, turn = bodies.estimate, bodies.mesh_inclination
     edge = max(rod_edge, barrier_edge)
-    high = wider * max(FLAT * size.depth, ABOVE * edge)
+    high = max(FLAT * size.depth, ABOVE * edge)
     skin = skin_of(bodies, 0.5 * rod_edge)
     away = skin - bodies.lowest_point
     t = away[:, 0] * cos(turn) + away[:, 2] * sin(turn)
@@ -175,12 +173,12 @@ def expected_record(
     touched, under = skin[low], np.stack([t[low], away[low, 1], np.zeros(low.sum())], axis=1)
     # no wider than what may touch, which a flat face or a flank limits
     radius = min(size.radius, 0.5 * float(np.linalg.norm(np.ptp(under, axis=0))) + 0.5 * edge)
-    spread = wider * DEEP * max(edge, radius)
+    spread = DEEP * max(edge, radius)
     slid = SLIDE * size.depth * bodies.contact.sliding / max(bodies.contact.approach, 1e-6)
     steps = np.linspace(0.0, slid, 2 + int(abs(slid) / edge)) if slid else np.zeros(1)
     under = np.concatenate([under + np.array([step, 0.0, 0.0]) for step in steps])
-    rod = BodyRecord(touched, touched, np.zeros(len(touched)), rod_edge, wider * rod_edge, spread)
-    barrier = BodyRecord(under, under, np.zeros(len(under)), barrier_edge, wider * barrier_edge, spread)
+    rod = BodyRecord(touched, touched, np.zeros(len(touched)), rod_edge, rod_edge, spread)
+    barrier = BodyRecord(under, under, np.zeros(len(under)), barrier_edge, barrier_edge, spread)
     return ContactRecord(rod, barrier if bodies.contact.compliant else None)
 
 

@@ -88,7 +88,8 @@ class RecordedZones:
 
     def block(self, margin: float) -> Corners:
         """Return the corners of the barrier's block, ``margin``, m, wider than the zone that may yield."""
-        low, high = (np.array(end) for end in _ends(_flow(self._of_barrier)))
+        corners = _flow(self._of_barrier).corners()
+        low, high = corners.min(axis=0), corners.max(axis=0)
         low[2] -= self.rise
         low, high = low - margin, high + margin
         return np.array([low[0], 0.0, low[2]]), np.array([high[0], high[1], 0.0])
@@ -152,8 +153,3 @@ def _flow(record: BodyRecord) -> Cloud:
 
 def _near(cloud: Cloud, mesh: HexMesh) -> Bools:
     return np.asarray(cloud.gap(mesh.points[mesh.cells], np.zeros(len(mesh.cells))) <= 0)
-
-
-def _ends(cloud: Cloud) -> Corners:
-    corners = cloud.corners()
-    return corners.min(axis=0), corners.max(axis=0)

@@ -149,10 +149,12 @@ def _say_comparison(scene: Scene, outcome: Outcome, options: Options) -> None:
 
 def _one_mesh_refused(case: Case) -> str:
     """Return why a scene that runs on several meshes cannot run on one, empty where it can."""
+    from fem_impact.case.case import Case
+
     if case.scene.accuracy.levels == 1:
         return ""
     try:
-        type(case).of(case.scene)
+        Case.of(case.scene)
     except SceneError as refusal:
         return f"{refusal.key}: {refusal.problem}"
     return ""

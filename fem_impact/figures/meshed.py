@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fem_impact.figures.outline import FILLS, mark
 from fem_impact.figures.style import INK, PALETTE, QUIET, figure
 from meshes import SKIN, SYMMETRY, owners
 
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
     from meshes import HexMesh
 
 HEIGHT = 3.6  # inches
-FILLS = ("sky", "orange", "green", "purple", "yellow", "sand")  # one material after the other
 
 
 def draw_mesh(
@@ -53,9 +53,7 @@ def draw_mesh(
         wide = max(1.0, float(np.ptp(mm[:, 2]) / max(np.ptp(mm[:, 0]), 2 * mm[:, 1].max())))
         left, right = drawn.subplots(1, 2, width_ratios=(min(wide, 4.0), 1.0))
         _fill(left, mm[side[0]][:, :, [2, 0]] * [1, -1], of[side[1]], names)
-        left.axhline(0.0, color=QUIET, linewidth=0.7, dashes=(12, 3, 2, 3), label="axis")
-        left.plot(1e3 * touch[1], -1e3 * touch[0], "v", color=PALETTE["vermilion"], label="touches first")
-        left.plot(1e3 * centre[1], -1e3 * centre[0], "P", color=INK, label="mass centre")
+        mark(left, touch, centre)
         left.set(aspect="equal", xlabel="z, from the tip, mm", ylabel="-x, mm")
         corners = mm[front[0]]
         normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])

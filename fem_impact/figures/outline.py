@@ -68,11 +68,16 @@ def draw(body: Body, touch: tuple[float, float], parts: Sequence[Part], path: Pa
     with figure(path, HEIGHT) as drawn:
         axes = drawn.add_subplot()
         _fill(axes, body, parts)
-        axes.axhline(0.0, color=QUIET, linewidth=0.7, dashes=(12, 3, 2, 3), label="axis")
-        axes.plot(1e3 * touch[1], -1e3 * touch[0], "v", color=PALETTE["vermilion"], label="touches first")
-        axes.plot(1e3 * body.z_c, 0.0, "P", color=INK, label="mass centre")
+        mark(axes, touch, (0.0, body.z_c))
         axes.set(aspect="equal", xlabel="from the tip, mm", ylabel="from the axis, mm")
         drawn.legend(loc="outside upper center", ncols=4)
+
+
+def mark(axes: Axes, touch: tuple[float, float], centre: tuple[float, float]) -> None:
+    """Draw the axis, the point that touches first and the mass centre, both (x, z), m; x points down."""
+    axes.axhline(0.0, color=QUIET, linewidth=0.7, dashes=(12, 3, 2, 3), label="axis")
+    axes.plot(1e3 * touch[1], -1e3 * touch[0], "v", color=PALETTE["vermilion"], label="touches first")
+    axes.plot(1e3 * centre[1], -1e3 * centre[0], "P", color=INK, label="mass centre")
 
 
 def _fill(axes: Axes, body: Body, parts: Sequence[Part]) -> None:

@@ -105,9 +105,9 @@ class ContactWatch:
         cells, strain = [np.zeros(0, np.int64)], [np.zeros(0)]
         for zone in self.model.zones:
             if zone.body == name:
-                flowed = zone.plastic_strain() > FLOWED
-                cells.append(zone.cells[flowed])
-                strain.append(zone.plastic_strain()[flowed])
+                spent = zone.plastic_strain()
+                cells.append(zone.cells[spent > FLOWED])
+                strain.append(spent[spent > FLOWED])
         flowing = np.concatenate(cells)
         at = np.flatnonzero(np.isin(mesh.cells, touched).any(axis=1))
         edge = float(edge_lengths(mesh, at).mean()) if len(at) else self.model.geometry.tip_size

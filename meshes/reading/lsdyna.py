@@ -59,14 +59,8 @@ def lsdyna(path: Path) -> StoredMesh:
         elif name.startswith("RIGIDWALL"):
             found.leave(f"wall (*{name})")
     for part, nodes in solids:
-        missing = [node for node in nodes if node not in place]
-        if missing:
-            raise MeshError(
-                f"has a solid of part {part} that names the node {missing[0]}, which is not there."
-            )
         kind = {8: "hexahedron", 10: "tetra10"}[len(nodes)]
-        names = {f"PART {part}", titles.get(part, "")} - {""}
-        found.add(kind, tuple(place[node] for node in nodes), *names)
+        found.add_of_part(kind, nodes, place, str(part), titles.get(part, ""))
     return found.stored(np.array(points, dtype=np.float64).reshape(-1, 3))
 
 

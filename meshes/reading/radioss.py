@@ -58,13 +58,7 @@ def radioss(path: Path) -> StoredMesh:
         elif kind == "RWALL":
             found.leave("wall (/RWALL)")
     for part, nodes in solids:
-        missing = [node for node in nodes if node not in place]
-        if missing:
-            raise MeshError(
-                f"has a solid of part {part} that names the node {missing[0]}, which is not there."
-            )
-        names = {f"PART {part}", titles.get(part, "")} - {""}
-        found.add(KINDS[len(nodes)], tuple(place[node] for node in nodes), *names)
+        found.add_of_part(KINDS[len(nodes)], nodes, place, part, titles.get(part, ""))
     return found.stored(np.array(points, dtype=np.float64).reshape(-1, 3))
 
 

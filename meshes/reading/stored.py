@@ -84,6 +84,26 @@ class Elements:
             self.sets.setdefault(name, []).append(place)
         return place
 
+    def add_of_part(
+        self, kind: str, nodes: list[int], place: Mapping[int, int], part: str, title: str
+    ) -> None:
+        """Add a cell of a part by the numbers of its nodes, whose places in the list of points are known.
+
+        It is in the sets of the part's number and of its title, if there is one.
+
+        Raises
+        ------
+        MeshError
+            If a node is not there, or their number is not that of the kind.
+        """
+        missing = [node for node in nodes if node not in place]
+        if missing:
+            raise MeshError(
+                f"has a solid of part {part} that names the node {missing[0]}, which is not there."
+            )
+        names = {f"PART {part}", title} - {""}
+        self.add(kind, tuple(place[node] for node in nodes), *names)
+
     def leave(self, what: str, count: int = 1, mass: bool = False) -> None:
         """Count what is left out, in one word or more, and whether it has a mass of its own."""
         counts = self.masses if mass else self.left_out

@@ -39,9 +39,8 @@ from fem_impact.scene.types import Scene
 from fem_impact.scene.write import digest, to_toml
 
 MOST_REPEATS = 2  # of a level, each with twice the room
-MORE = (
-    1  # levels beyond those asked for, where the last has not resolved the contact: it would have no numbers
-)
+# levels beyond those asked for, where the last has not resolved the contact: it would have no numbers
+MORE = 1
 JUMP = 2  # splits between two levels at most: a record holds the places of cells four times as large
 # how much longer a level takes than one with cells twice as large, where only one has run: the most of 24
 # pairs of levels of the 13 measured sets, whose median was 1.9
@@ -141,7 +140,7 @@ class LevelChain:
         """
         return Case.of(self._at(self.first), "solid", self._expected(self.first))
 
-    @property
+    @cached_property
     def first(self) -> int:
         """Splits of the pilot: two fewer than those of a stated size, of two levels one; else none or one."""
         expected, rod = self._expected(0).rod, self._bodies.rod
