@@ -187,8 +187,8 @@ def _body_entry(bodies: Bodies) -> dict[str, float]:
     }
 
 
-def _body_lines(body: dict[str, float]) -> Iterable[str]:
-    """Return the projectile's numbers in words."""
+def _body_lines(body: dict[str, float], bends_as: str) -> Iterable[str]:
+    """Return the projectile's numbers in words; ``bends_as`` is what the period of bending is that of."""
     mm = {key: 1e3 * value for key, value in body.items() if key.endswith("_m")}
     length, period = mm["touch_length_m"], body["ovalling_period_s"]
     part = f"with {length:.3g} mm at once, the middle of it " if length else ""
@@ -200,10 +200,15 @@ def _body_lines(body: dict[str, float]) -> Iterable[str]:
         f" with radii {mm['R1_m']:.3g} mm (meridian) and {mm['R2_m']:.3g} mm (around)",
         f"arms there: d_c = {mm['d_c_m']:.4g} mm, d_d = {mm['d_d_m']:.4g} mm",
         f"periods: bending T1 = {plain(1e6 * body['bending_period_s'])} us, longitudinal "
-        f"{plain(1e6 * body['stretching_period_s'])} us (beam and bar)"
+        f"{plain(1e6 * body['stretching_period_s'])} us ({bends_as} and bar)"
         f"{ovalling}",
         f"gamma {body['gamma']:.4g} m^-0.3815, from the largest diameter, {mm['diameter_m']:.4g} mm",
     )
+
+
+def _bends_as(case: Case) -> str:
+    """Return as what a projectile bends whose period is told."""
+    return "plate" if case.scene.projectile.is_short else "beam"
 
 
 def _drawing(case: Case) -> list[str]:
@@ -260,7 +265,7 @@ def _long(case: Case, statement: dict[str, Any], place: Path) -> str:
     lines += ["", "Values used where a scene does not state them"]
     lines += _wrapped(f"{d['key']} = {d['value']}: {d['source']}" for d in statement["defaults"])
     lines += ["", "Projectile", *_drawing(case)]
-    lines += _wrapped([*statement["mesh"], *_body_lines(statement["body"])])
+    lines += _wrapped([*statement["mesh"], *_body_lines(statement["body"], _bends_as(case))])
     lines += ["", "Effects"]
     lines += [line for choice in case.choices for line in _effect_lines(choice)]
     return "\n".join([*lines, *_size_lines(case), *_end_lines(case, statement)]) + "\n"
@@ -277,7 +282,8 @@ def _short(case: Case, statement: dict[str, Any]) -> str:
     """Return projectile, barrier and contact, effects with their numbers, size and limitations."""
     scene = case.scene
     lines = [headed(scene.id, scene.title), "", "Projectile", *_drawing(case)]
-    lines += _wrapped([_material_line(scene), *statement["mesh"], *_body_lines(statement["body"])])
+    lines += _wrapped([_material_line(scene), *statement["mesh"]])
+    lines += _wrapped(_body_lines(statement["body"], _bends_as(case)))
     lines += ["", "Barrier and contact", *_wrapped(_contact_lines(case))]
     lines += ["", "Laws in force", *_wrapped(statement["laws"].values()), "", "Effects"]
     lines += _wrapped(
@@ -315,7 +321,7 @@ def _contact_lines(case: Case) -> Iterator[str]:
             "its thickness changes nothing: a plate on a base is computed as a half-space. "
             'One that is free underneath and bends: barrier.support = "infinite"'
         )
-    yield ", ".join(f"{key} {value}" for key, value in tables["impact"].items())
+    yield ", ".join(f"{key} {value}" for key, value in tables["impact"].items()) + _energy_text(case)
     surface = scene.surface
     low, high = surface.friction_low, surface.friction_high
     sure = f"{low:g} to {high:g}" if low < high else "no interval stated: it counts as exact"
@@ -325,6 +331,14 @@ def _contact_lines(case: Case) -> Iterator[str]:
         f"{1e3 * size.depth:.2g} mm deep, for {1e6 * size.duration:.3g} us"
     )
     yield f"{screening(case.bodies).sentence}. The verdict: `fem-impact assess`"
+
+
+def _energy_text(case: Case) -> str:
+    """Return speed and energy of the projectile as the barrier sees it."""
+    seen, body = case.scene.relative, case.bodies.body
+    speed2 = seen.v_n**2 + seen.v_t**2
+    energy = 0.5 * body.mass * (speed2 + body.k2 * seen.omega**2)
+    return f": {speed2**0.5:.4g} m/s, E_0 = {energy:.4g} J"
 
 
 def _size_lines(case: Case) -> list[str]:
@@ -396,5 +410,6 @@ def _effect_lines(effect: EffectChoice) -> list[str]:
 
 
 def _decided(effect: EffectChoice) -> str:
-    number = "not finite" if effect.number is None else f"{effect.number:.2g}"
-    return f"{effect.measure}: {number}, threshold {effect.threshold:g}"
+    if effect.number is None:
+        return f"{effect.measure}: without bound, on in any case"
+    return f"{effect.measure}: {effect.number:.2g}, threshold {effect.threshold:g}"

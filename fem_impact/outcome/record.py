@@ -139,12 +139,18 @@ class Outcome:
     def read(cls, path: str | Path) -> Outcome:
         """Read a record back, refusing one that is damaged, edited or of another version.
 
+        Parameters
+        ----------
+        path : path
+            An ``outcome.json``, or the directory of results in which it stands.
+
         Raises
         ------
         ResultError
             With file, key and value.
         """
-        return cls.from_json(read_text(path), source=str(path))
+        file = Path(path) / "outcome.json" if Path(path).is_dir() else Path(path)
+        return cls.from_json(read_text(file), source=str(file))
 
     @classmethod
     def from_json(cls, text: str, source: str = "JSON text") -> Outcome:

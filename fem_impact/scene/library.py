@@ -100,14 +100,20 @@ def read_material(table: Table | str) -> Material:
 def _nearest_material(name: str, known: Collection[str]) -> str:
     """Return the shipped materials that a name is a part of, in either spelling, or that have a grade of it.
 
-    Where there are none, the nearest name.
+    So are those of the family that a word of the name tells. Where there are none, the nearest name.
     """
     part = name.lower().replace("aluminum", "aluminium")
     grades = {word for word in part.split("-") if word[-1:].isdigit()}
-    family = [one for one in known if part in one or grades & set(one.split("-"))]
-    if len(family) > 1 and part:
-        return f"Some that are: {', '.join(family)}. {ALL_MATERIALS}"
-    return f"Did you mean {family[0]}?" if len(family) == 1 else did_you_mean(part, known, ALL_MATERIALS)
+    family = family_by_words(part)
+    of = _table("materials.toml")
+    found = [
+        one
+        for one in known
+        if part in one or grades & set(one.split("-")) or (family and family == of[one].get("family"))
+    ]
+    if len(found) > 1 and part:
+        return f"Some that are: {', '.join(found)}. {ALL_MATERIALS}"
+    return f"Did you mean {found[0]}?" if len(found) == 1 else did_you_mean(part, known, ALL_MATERIALS)
 
 
 def family_of(metal: Material) -> str:

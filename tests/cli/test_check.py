@@ -163,3 +163,14 @@ def test_a_thickness_without_support_is_said_to_change_nothing(cli):
     assert words in " ".join(cli(*plate)[1].split())
     assert words not in " ".join(cli(*plate, "--set", "barrier.support=infinite")[1].split())
     assert words not in " ".join(cli("check", "t5b")[1].split())
+
+
+def test_a_fall_is_told_as_speed_and_energy_and_a_coin_as_a_plate(cli):
+    """Half a metre of fall gives sqrt(2 g h) and m g h; a coin has no part that could be rigid."""
+    said = " ".join(cli("check", "t5b", "--set", "impact.height='0.5 m'")[1].split())
+    mass = load("t5b").projectile.body().mass
+    assert f"height 0.5 m: 3.132 m/s, E_0 = {mass * 9.80665 * 0.5:.4g} J" in said
+    assert "us (beam and bar)" in said
+    coin = "projectile={profile=[['0 mm', '12 mm'], ['2 mm', '12 mm']], material='brass'}"
+    said = " ".join(cli("check", "t5b", "--set", coin, "--set", "measured=")[1].split())
+    assert "us (plate and bar)" in said and "contact time: without bound, on in any case" in said

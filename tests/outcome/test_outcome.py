@@ -31,6 +31,10 @@ def test_reads_back_what_was_written(tmp_path, record):
     read = Outcome.read(tmp_path / "outcome.json")
     assert read == written
     assert read.to_dict() == record
+    assert Outcome.read(tmp_path) == written
+    with pytest.raises(ResultError, match=r"none/outcome\.json: cannot be read"):
+        (tmp_path / "none").mkdir()
+        Outcome.read(tmp_path / "none")
 
 
 @pytest.mark.parametrize("name", ["keys", "record"])

@@ -39,6 +39,7 @@ MISTAKES = [
     ("projectile.lenght", "240 mm", ["projectile.lenght", "Did you mean length"]),
     ("projectile.tip", "C", ["projectile.tip", '"A", "B" or "plain"']),
     ("projectile.material", "rod-stel", ["Did you mean rod-steel?"]),
+    ("barrier.material", "mild-steel", ["Some that are: rod-steel, plate-steel", "s235, s275"]),
     ("projectile.material", 7850, ["projectile.material", "table"]),
     ("projectile.material.nu", 0.5, ["projectile.material.nu", "below 0.5"]),
     ("projectile.material.nu", "0.29", ["projectile.material.nu", "text"]),
