@@ -14,6 +14,7 @@ from meshes.halving import across, halved_tetrahedra, straight
 from meshes.hexahedra import as_hexahedra
 from meshes.hexmesh import SYMMETRY, HexMesh, face_keys, from_cells, half_body_tags
 from meshes.moments import cell_moments
+from meshes.oblique import Tip, is_oblique, stood_up
 from meshes.order import in_order
 from meshes.quality import edge_lengths, scaled_jacobians
 from meshes.reading.read import stored_mesh
@@ -45,12 +46,12 @@ class Stated:
     Attributes
     ----------
     symmetry : which part of the body it is, see `PARTS`
-    tip : where the tip points, a key of `TIPS`
+    tip : where the tip points: a key of `TIPS`, a direction in the file, "-axis" or "+axis" (see `stood_up`)
     sets : sets of the file whose cells are the body
     """
 
     symmetry: str | None = None
-    tip: str | None = None
+    tip: Tip | None = None
     sets: tuple[str, ...] = ()
 
 
@@ -103,7 +104,12 @@ def read_own(path: str | Path, unit: float = 1.0, stated: Stated | None = None) 
             f"holds {' and '.join(stored.masses)}: mass without volume, which the body would lack. Leave it "
             "out, or state by mesh_sets the sets whose cells are the body."
         )
-    points, blocks, of, cut = _halved(stored.points * unit, _blocks(stored, chosen), stated)
+    points, blocks = stored.points * unit, _blocks(stored, chosen)
+    stood = tuple[str, ...]()
+    if is_oblique(stated.tip):
+        whole = as_hexahedra(points, blocks)
+        points, stated, stood = _stood(whole.points, whole.cells, points, stated)
+    points, blocks, of, cut = _halved(points, blocks, stated)
     made = as_hexahedra(points, blocks)
     parent = np.flatnonzero(chosen)[of[made.parent]]
     if cut:
@@ -112,7 +118,7 @@ def read_own(path: str | Path, unit: float = 1.0, stated: Stated | None = None) 
     ignored = (f"left out: {', '.join(stored.ignored)}",) if stored.ignored else ()
     sets = {name: np.isin(body[1], cells) for name, cells in stored.sets.items()}
     present = {name: here for name, here in sets.items() if here.any()}
-    return replace(body[0], sets=present, told=(*ignored, *cut, *made.told, *body[0].told))
+    return replace(body[0], sets=present, told=(*ignored, *stood, *cut, *made.told, *body[0].told))
 
 
 def own_body(points: FloatArray, cells: IntArray, stated: Stated | None = None) -> OwnBody:
@@ -135,7 +141,24 @@ def own_body(points: FloatArray, cells: IntArray, stated: Stated | None = None) 
         If a cell is folded, the body is in parts, its surface is not closed, it does not lie along z, it is
         not symmetric about y = 0, or it is not certain which part of the body the mesh is.
     """
-    return _own(Part(points, cells, np.arange(len(cells))), stated or Stated(), "")[0]
+    stated, stood = stated or Stated(), tuple[str, ...]()
+    if is_oblique(stated.tip):
+        points, stated, stood = _stood(points, cells, points, stated)
+    body = _own(Part(points, cells, np.arange(len(cells))), stated, "")[0]
+    return replace(body, told=(*stood, *body.told))
+
+
+def _stood(
+    nodes: FloatArray, cells: IntArray, points: FloatArray, stated: Stated
+) -> tuple[FloatArray, Stated, tuple[str, ...]]:
+    """Return points (n, 3) of an oblique body turned so that its tip points to -z, what is stated then, told.
+
+    ``nodes`` and hexahedral ``cells`` are those of its volume. A body of which nothing is stated is whole.
+    """
+    assert stated.tip is not None, "the tip is stated"
+    symmetry = stated.symmetry or "whole"
+    turn, origin, told = stood_up(nodes, cells, stated.tip, symmetry == "whole")
+    return (points - origin) @ turn.T, replace(stated, tip="-z", symmetry=symmetry), (told,)
 
 
 def _chosen(stored: StoredMesh, sets: tuple[str, ...]) -> BoolArray:
@@ -295,13 +318,14 @@ def _require_closed(mesh: HexMesh) -> None:
         )
 
 
-def _turned(part: Part, tip: str) -> Part:
+def _turned(part: Part, tip: Tip) -> Part:
     """Return a part turned so that its tip, which points along an axis of the file, points to -z."""
     return Part(_axes(part.points, tip), part.cells, part.parent, part.told)
 
 
-def _axes(points: FloatArray, tip: str | None) -> FloatArray:
+def _axes(points: FloatArray, tip: Tip | None) -> FloatArray:
     """Return points (n, 3) of the file in axes in which the tip points to -z."""
+    assert not isinstance(tip, tuple), "an oblique body stands upright by now"
     (x, sx), (y, sy), (z, sz) = TIPS[tip or "-z"]
     return np.asarray(points[:, [x, y, z]] * [sx, sy, sz] + 0.0)
 
@@ -314,7 +338,8 @@ def _require_upright(part: Part, times: float) -> None:
         raise MeshError(
             f"is {1e3 * extent[2]:.4g} mm long along z and {1e3 * extent.max():.4g} mm along {longest}: the "
             "axis of a projectile is z, with the tip at the lowest z. State where the tip points: "
-            f'mesh_tip = "-{longest}" or "+{longest}", or "-z" for a body that is wider than long.'
+            f'mesh_tip = "-{longest}" or "+{longest}", or "-z" for a body that is wider than long, or '
+            '"-axis" or "+axis" for one that lies askew.'
         )
 
 
@@ -327,7 +352,10 @@ def _leaning(mesh: HexMesh) -> tuple[str, ...]:
     lean = 0.5 * np.rad2deg(np.arctan2(2.0 * (weight @ (x * z)), weight @ (z**2) - weight @ (x**2)))
     if not LEAN <= abs(lean) <= 45.0 or weight @ z**2 < SLENDER * (weight @ x**2):
         return ()
-    return (f"its axis of least inertia leans by {lean:.3g} deg from z towards x",)
+    return (
+        f"its axis of least inertia leans by {lean:.3g} deg from z towards x; of a whole body mesh_tip = "
+        '"-axis" or "+axis" takes that axis',
+    )
 
 
 def _placed(mesh: HexMesh) -> tuple[HexMesh, IntArray]:

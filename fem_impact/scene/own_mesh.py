@@ -6,6 +6,7 @@ import hashlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -21,7 +22,8 @@ if TYPE_CHECKING:
 UNITS = tuple(unit.symbol for unit in DIMENSIONS["length"].units)
 PARTS = ("whole", "half", "quarter", "eighth")
 KEYS = ("mesh", "mesh_unit", "mesh_content", "mesh_symmetry", "mesh_tip", "mesh_sets", "mesh_materials")
-TIPS = ("-z", "+z", "-x", "+x", "-y", "+y")
+TIPS = ("-z", "+z", "-x", "+x", "-y", "+y", "-axis", "+axis")
+Tip = str | tuple[float, float, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +35,7 @@ class OwnMesh:
     Attributes
     ----------
     symmetry : which part of the body the mesh is, one of `PARTS`; None: recognised
-    tip : where the tip points in the file, one of `TIPS`; None: to its lowest z
+    tip : where the tip points in the file, one of `TIPS` or a direction; None: to its lowest z
     sets : sets of cells of the file that are the body; empty: all cells
     """
 
@@ -41,7 +43,7 @@ class OwnMesh:
     unit: str
     content: str
     symmetry: str | None = None
-    tip: str | None = None
+    tip: Tip | None = None
     sets: tuple[str, ...] = ()
 
     @classmethod
@@ -51,7 +53,7 @@ class OwnMesh:
         unit: str = "m",
         content: str | None = None,
         symmetry: str | None = None,
-        tip: str | None = None,
+        tip: Tip | None = None,
         sets: tuple[str, ...] = (),
     ) -> OwnMesh:
         """Return the mesh of a file; a stated ``content`` must be the file's.
@@ -62,9 +64,10 @@ class OwnMesh:
             If the file is missing or has changed, or a word is none of its choices.
         """
         check_choice(unit, UNITS, "mesh_unit")
-        for value, choices, key in ((symmetry, PARTS, "mesh_symmetry"), (tip, TIPS, "mesh_tip")):
-            if value is not None:
-                check_choice(value, choices, key)
+        if symmetry is not None:
+            check_choice(symmetry, PARTS, "mesh_symmetry")
+        if tip is not None and not isinstance(tip, tuple):
+            check_choice(tip, TIPS, "mesh_tip", "a direction such as [1, 0, -1]")
         found = _content(path)
         if content not in (None, found):
             problem = f"has changed: its SHA-256 is {found[:12]}..., the scene was stated with that of"
@@ -105,7 +108,16 @@ def stated(table: Mapping[str, Any]) -> OwnMesh:
     content, symmetry, tip = (table.get(key) for key in ("mesh_content", "mesh_symmetry", "mesh_tip"))
     path, unit = check_text(table["mesh"], "mesh", 1000), table.get("mesh_unit", "m")
     names = tuple(check_text(name, "mesh_sets", 200) for name in named)
-    return OwnMesh.of(path, unit, content, symmetry, tip, names)
+    return OwnMesh.of(path, unit, content, symmetry, _direction(tip) if isinstance(tip, list) else tip, names)
+
+
+def _direction(parts: list[Any]) -> tuple[float, float, float]:
+    """Return the direction (3,) that a list states."""
+    numbers = [float(part) for part in parts if type(part) in (int, float) and isfinite(part)]
+    if len(numbers) != 3 or len(parts) != 3 or not any(numbers):
+        remedy = "Give three numbers of which one is not zero, such as [1, 0, -1]."
+        raise SceneError("is no direction.", key="mesh_tip", value=parts, remedy=remedy)
+    return numbers[0], numbers[1], numbers[2]
 
 
 def _content(path: str) -> str:

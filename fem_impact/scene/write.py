@@ -80,7 +80,8 @@ def _shape(rod: ProjectileSpec) -> dict[str, Any]:
     if isinstance(shape, Profile):
         return {"profile": _points(shape.points), "profile_smooth": shape.smooth}
     if isinstance(shape, OwnMesh):
-        named = {"mesh_symmetry": shape.symmetry, "mesh_tip": shape.tip, "mesh_sets": list(shape.sets)}
+        tip = list(shape.tip) if isinstance(shape.tip, tuple) else shape.tip
+        named = {"mesh_symmetry": shape.symmetry, "mesh_tip": tip, "mesh_sets": list(shape.sets)}
         file = {"mesh": shape.path, "mesh_unit": shape.unit, "mesh_content": shape.content}
         regions = {one.name: _material(one.material) for one in rod.regions}
         materials = {"mesh_materials": regions} if regions else {}

@@ -187,3 +187,27 @@ def test_a_body_on_two_feet_is_planned_with_its_feet_in_the_fine_zone(tmp_path):
     case = Case.of(stated(write(tmp_path / "feet.vtu", points, cells)))
     assert case.zones.half[1] > 6e-3
     assert case.zones.rod_base == pytest.approx(8e-3, rel=0.1)
+
+
+def test_an_oblique_body_is_stated_by_a_direction_or_found_and_told(tmp_path):
+    """A bar that lies along (1, 2, 3) of its file is the bar that stands along z."""
+    points, cells = taper(width=10e-3, length=0.1, end=0.8, cells=(6, 3, 10), whole=True)
+    axis = np.array([1.0, 2.0, 3.0]) / sqrt(14)
+    x = np.cross([0.0, 1.0, 0.0], axis) / np.linalg.norm(np.cross([0.0, 1.0, 0.0], axis))
+    laid = points @ np.array([x, np.cross(axis, x), axis])
+    plain = stated(write(tmp_path / "plain.vtu", points, cells)).projectile.rigid_body
+    path = write(tmp_path / "laid.vtu", laid, cells)
+    for tip in ("-axis", [-1, -2, -3], [-0.5, -1, -1.5]):
+        scene = stated(path, mesh_tip=tip)
+        body = scene.projectile.rigid_body
+        assert (body.mass, body.k2, body.z_c) == pytest.approx((plain.mass, plain.k2, plain.z_c), rel=1e-9)
+        assert "its tip points along (-0.2673, -0.5345, -0.8018)" in scene.projectile.own_mesh.body().told[0]
+        assert read_toml_text(to_toml(scene), tmp_path) == scene
+    for wrong, reason in (("axis", "a direction such as"), ([0, 0, 0], "is no direction"), ([1, 0], "three")):
+        with pytest.raises(SceneError, match=reason):
+            stated(path, mesh_tip=wrong)
+
+
+def read_toml_text(text, place):
+    (place / "written.toml").write_text(text)
+    return read_toml(place / "written.toml")
