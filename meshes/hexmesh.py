@@ -48,7 +48,7 @@ class HexMesh:
     face_tag : (k,) int8
         SKIN, SYMMETRY (plane y = b = 0) or OUTER (artificial boundary of a block).
     region : (m,) int64 or None
-        Number of the material of each cell; None: all are of one.
+        Number of the cell of a user's mesh in which each lies; None: it is not one.
     """
 
     points: FloatArray

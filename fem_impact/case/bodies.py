@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from fem_impact.arrays import Array
+from fem_impact.arrays import Array, Ints
 from fem_impact.physics.beam import bending_period, latest_time, stretching_period
 from fem_impact.physics.contact import ContactEstimate, ContactPair, Plate
 from fem_impact.physics.wall import ovalling_period
@@ -15,6 +15,8 @@ from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.types import Scene
 from rigid import Body
+
+SAME_PLACE = 1e-6  # of the length, as far as nodes of a user's mesh may lie from where they touch
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,12 +63,30 @@ class Bodies:
             rod_yields="rod-plasticity" in self.effects,
             barrier_yields="barrier-elastoplastic" in self.effects,
             compliant="barrier-rigid" not in self.effects,
-            f=self.scene.surface.friction if "friction" in self.effects else 0.0,
+            f=self.friction if "friction" in self.effects else 0.0,
             barrier_mass=barrier.mass,
             barrier_inertia=barrier.inertia,
             centre_offset=barrier.centre_offset,
             plate=Plate(steel.E, steel.nu, steel.rho, h) if barrier.bends and h is not None else None,
         )
+
+    @cached_property
+    def friction(self) -> float:
+        """The Coulomb coefficient of the face that touches first, whether friction acts or not."""
+        stated, rod = self.scene.surface.friction, self.rod
+        if not rod.faces:
+            return stated
+        return float(rod.cell_friction(stated)[self.touching_cells].max())
+
+    @cached_property
+    def touching_cells(self) -> Ints:
+        """The numbers of the cells of a mesh of its own at the place that touches first."""
+        mesh = self.rod.own_mesh
+        assert mesh is not None, "only a mesh has cells of its own"
+        half, (x, z) = mesh.half(), self.body.contact_point(self.scene.impact.angle)
+        away = np.hypot(half.points[:, 0] - float(x), half.points[:, 2] - float(z))
+        at_contact = away <= max(float(away.min()), SAME_PLACE * self.rod.length)
+        return np.flatnonzero(at_contact[half.cells].any(axis=1))
 
     @property
     def estimate(self) -> ContactEstimate:

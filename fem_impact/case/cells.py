@@ -31,7 +31,6 @@ from math import ceil, log2, sqrt
 import numpy as np
 
 import meshes
-from fem_impact.arrays import Ints
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.mesh import no_mesh
 from fem_impact.scene.fields import TIP_SIZE
@@ -44,7 +43,6 @@ ERROR = {"elastic": 0.08, "yielding": 0.25}  # of e and of mu, times the number 
 RIM = 0.4  # cells by which the nodes that are pressed reach beyond the estimated radius, of 38 runs
 COARSEST = 0.7  # of the body's cells: larger ones leave the tip without a fine zone
 THIN = 10.0  # median thickness of a user's cells over that of one that makes the step small
-SAME_PLACE = 1e-6  # of the length, as far as nodes of a user's mesh may lie from where they touch
 FINEST = TIP_SIZE.low  # m
 
 
@@ -79,17 +77,7 @@ def rod_cell(bodies: Bodies) -> float:
     mesh = bodies.rod.own_mesh
     if mesh is None:
         return body_cell(bodies)
-    return float(meshes.edge_lengths(mesh.half(), touching_cells(bodies)).mean())
-
-
-def touching_cells(bodies: Bodies) -> Ints:
-    """Return the numbers of the cells of a mesh of its own at the place that touches first."""
-    mesh = bodies.rod.own_mesh
-    assert mesh is not None, "only a mesh has cells of its own"
-    half, (x, z) = mesh.half(), bodies.body.contact_point(bodies.scene.impact.angle)
-    away = np.hypot(half.points[:, 0] - float(x), half.points[:, 2] - float(z))
-    at_contact = away <= max(float(away.min()), SAME_PLACE * bodies.rod.length)
-    return np.flatnonzero(at_contact[half.cells].any(axis=1))
+    return float(meshes.edge_lengths(mesh.half(), bodies.touching_cells).mean())
 
 
 @lru_cache(maxsize=256)

@@ -7,7 +7,6 @@ from collections.abc import Collection
 from dataclasses import replace
 
 from fem_impact.case.bodies import Bodies
-from fem_impact.case.cells import touching_cells
 from fem_impact.case.plates import is_wider, thin_plate
 from fem_impact.errors import SceneError
 from fem_impact.outcome.limitation import Limitation, limitations
@@ -190,7 +189,7 @@ def require_point(bodies: Bodies, fidelity: str) -> None:
 def require_first_part(bodies: Bodies) -> None:
     """Refuse another segment than the first, or a set of a mesh, that touches first (SceneError)."""
     if regions := bodies.rod.regions:
-        of = bodies.rod.cell_materials()[touching_cells(bodies)]
+        of = bodies.rod.cell_materials()[bodies.touching_cells]
         if of.all():
             name = regions[int(of[0]) - 1].name
             raise SceneError(

@@ -325,7 +325,8 @@ def _contact_lines(case: Case) -> Iterator[str]:
     surface = scene.surface
     low, high = surface.friction_low, surface.friction_high
     sure = f"{low:g} to {high:g}" if low < high else "no interval stated: it counts as exact"
-    yield f"friction f {surface.friction:g} ({sure}), {surface.state} surfaces"
+    faces = "".join(f"; {one.name} f {one.surface.friction:g}" for one in scene.projectile.faces)
+    yield f"friction f {surface.friction:g} ({sure}), {surface.state} surfaces{faces}"
     yield (
         f"the contact, estimated: {1e3 * size.a_t:.2g} mm x {1e3 * size.a_b:.2g} mm in radius, "
         f"{1e3 * size.depth:.2g} mm deep, for {1e6 * size.duration:.3g} us"

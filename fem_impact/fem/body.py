@@ -27,6 +27,7 @@ from fem_impact.fem.slices import SliceOperator
 from fem_impact.fem.sparse import assemble, assemble_mass, tie_operator
 from fem_impact.physics.contact import pressure_speed
 from fem_impact.scene.material import Material
+from fem_impact.scene.own_mesh import cell_regions
 from fem_impact.scene.projectile import Segment
 from meshes import OUTER, HexMesh, RodMesh
 from rigid import Turned
@@ -251,9 +252,10 @@ class MeshedBodies:
         parts = self.scene.projectile.segments or (Segment(np.inf, steel),)
         z = g.rod.mesh.points[g.rod.mesh.cells, 2].mean(axis=1)
         rod = of_materials(rod, z, tuple((part.to, part.material) for part in parts))
-        if g.rod.mesh.region is not None:
-            regions = self.scene.projectile.regions
-            rod = of_regions(rod, g.rod.mesh.region, [region.material for region in regions])
+        if (own := self.scene.projectile.own_mesh) and (regions := self.scene.projectile.regions):
+            assert g.rod.mesh.region is not None, "the cells of a mesh of its own are numbered"
+            of = cell_regions(own, tuple(region.name for region in regions))[g.rod.mesh.region]
+            rod = of_regions(rod, of, [region.material for region in regions])
         rod, cut = replace(rod, touching=g.touching), self.cut_off
         missing = self.case.bodies.body.mass / 2 - rod.mass.sum() - self.rest_mass
         if cut.any():

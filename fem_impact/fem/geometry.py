@@ -16,7 +16,6 @@ from fem_impact.case.recorded import AnyZones
 from fem_impact.case.size import no_rest
 from fem_impact.case.zones import BUFFER, Zones
 from fem_impact.errors import SceneError
-from fem_impact.scene.own_mesh import cell_regions
 from meshes import Cloud, HexMesh, RodMesh, Zone
 from rigid import Projectile, Turned
 
@@ -117,8 +116,7 @@ def _rod(bodies: Bodies, lowest: Array, zones: Sequence[Zone | Cloud]) -> RodMes
     try:
         if own := bodies.rod.own_mesh:
             half = own.half()
-            if names := tuple(region.name for region in bodies.rod.regions):
-                half = replace(half, region=cell_regions(own, names))
+            half = replace(half, region=np.arange(len(half.cells)))
             return RodMesh.plain(meshes.refine(half, zones, buffer=BUFFER) if zones else half)
         if isinstance(body, Turned):
             return meshes.turned(
@@ -159,7 +157,7 @@ def _require_tip_first(points: Array, base: float, on_feet: bool) -> None:
 def _first_segment(bodies: Bodies, mesh: HexMesh) -> Bools:
     """Return the mask (m,) of the rod's cells of the material that touches; the others stay elastic."""
     if mesh.region is not None:
-        return np.asarray(mesh.region == 0)
+        return np.asarray(bodies.rod.cell_materials()[mesh.region] == 0)
     segments = bodies.rod.segments
     end = segments[0].to if segments else np.inf
     return np.asarray(mesh.points[mesh.cells, 2].mean(axis=1) < end)

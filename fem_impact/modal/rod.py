@@ -19,7 +19,8 @@ from fem_impact.scene.fields import ACCURACY
 from fem_impact.scene.impact import Impact
 from fem_impact.scene.material import Material
 from fem_impact.scene.projectile import ProjectileSpec
-from fem_impact.scene.types import Accuracy, Scene, Surface
+from fem_impact.scene.surface import Surface
+from fem_impact.scene.types import Accuracy, Scene
 from rigid import Faceted
 
 COARSEST = next(f.high for f in ACCURACY if f.key == "tip_size")  # m

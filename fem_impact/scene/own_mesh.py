@@ -21,7 +21,10 @@ if TYPE_CHECKING:
 
 UNITS = tuple(unit.symbol for unit in DIMENSIONS["length"].units)
 PARTS = ("whole", "half", "quarter", "eighth")
-KEYS = ("mesh", "mesh_unit", "mesh_content", "mesh_symmetry", "mesh_tip", "mesh_sets", "mesh_materials")
+KEYS = (
+    *("mesh", "mesh_unit", "mesh_content", "mesh_symmetry", "mesh_tip", "mesh_sets"),
+    *("mesh_materials", "mesh_surfaces"),
+)
 TIPS = ("-z", "+z", "-x", "+x", "-y", "+y", "-axis", "+axis")
 Tip = str | tuple[float, float, float]
 
@@ -150,8 +153,10 @@ def _body(mesh: OwnMesh) -> OwnBody:
 
 
 @lru_cache(maxsize=8)
-def cell_regions(mesh: OwnMesh, names: tuple[str, ...]) -> Ints:
+def cell_regions(mesh: OwnMesh, names: tuple[str, ...], key: str = "mesh_materials") -> Ints:
     """Return for each cell (m,) of the half the number, from 1, of the set that holds it; 0 where none does.
+
+    The ``key`` of the scene states something of these sets.
 
     Raises
     ------
@@ -166,12 +171,12 @@ def cell_regions(mesh: OwnMesh, names: tuple[str, ...]) -> Ints:
         if name.upper() not in sets:
             known = ", ".join(sorted(mesh.body().sets)[:12]) or "none"
             remedy = f"It has {known}."
-            raise SceneError("is no set of cells of the mesh.", key=f"mesh_materials.{name}", remedy=remedy)
+            raise SceneError("is no set of cells of the mesh.", key=f"{key}.{name}", remedy=remedy)
         here = sets[name.upper()]
         if region[here].any():
             remedy = f"Leave one of {name} and {names[int(region[here].max()) - 1]} out."
             problem = f"holds {int((region[here] > 0).sum())} cells that another set holds too."
-            raise SceneError(problem, key=f"mesh_materials.{name}", remedy=remedy)
+            raise SceneError(problem, key=f"{key}.{name}", remedy=remedy)
         region[here] = number
     return region
 

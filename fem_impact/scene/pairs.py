@@ -8,7 +8,7 @@ from fem_impact.errors import SceneError
 from fem_impact.scene.family import widening
 from fem_impact.scene.library import family_of, friction_pairs
 from fem_impact.scene.material import Material
-from fem_impact.scene.types import Surface
+from fem_impact.scene.surface import Surface
 
 OWN = 'surface = { state = "custom", friction = 0.3, source = "our own tests" }'
 

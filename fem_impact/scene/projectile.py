@@ -22,6 +22,7 @@ from fem_impact.scene.shapes import (
     outline_of,
     turned_body,
 )
+from fem_impact.scene.surface import Surface
 
 if TYPE_CHECKING:
     from fem_impact.arrays import Array, Ints
@@ -53,12 +54,21 @@ class Region:
 
 
 @dataclass(frozen=True, slots=True)
+class Face:
+    """Outer faces of a mesh with a state of their own: the set of the file that holds their cells."""
+
+    name: str
+    surface: Surface
+
+
+@dataclass(frozen=True, slots=True)
 class ProjectileSpec:
     """The projectile: length, diameter and tip_radius in m; tip A (round nose), B (rounded edge) or plain.
 
     A ``shape`` of its own takes the place of the tip, see `turned` and `meshed`; ``bore`` holds points
     (z, radius), m, of the inner surface. ``segments`` follow each other from the tip; ``material`` is that of
-    the first. Cells of a mesh that are in one of ``regions`` are of its material, the others of ``material``.
+    the first. Cells of a mesh that are in one of ``regions`` are of its material, the others of ``material``;
+    the outer faces of those in one of ``faces`` have its surface.
     """
 
     length: float
@@ -70,6 +80,7 @@ class ProjectileSpec:
     bore: tuple[Point, ...] = ()
     segments: tuple[Segment, ...] = ()
     regions: tuple[Region, ...] = ()
+    faces: tuple[Face, ...] = ()
 
     @classmethod
     def turned(
@@ -91,13 +102,14 @@ class ProjectileSpec:
         material: Material,
         segments: tuple[Segment, ...] = (),
         regions: tuple[Region, ...] = (),
+        faces: tuple[Face, ...] = (),
     ) -> ProjectileSpec:
         """Return a projectile whose shape is a mesh; length and largest width follow from it."""
         points = mesh.half().points
         wide = max(float(points[:, 0].max() - points[:, 0].min()), 2.0 * float(points[:, 1].max()))
         try:
             length = float(points[:, 2].max())
-            return cls(length, wide, "shape", 0.0, material, mesh, (), segments, regions)
+            return cls(length, wide, "shape", 0.0, material, mesh, (), segments, regions, faces)
         except SceneError as error:
             if error.key not in ("length", "diameter"):
                 raise
@@ -169,6 +181,17 @@ class ProjectileSpec:
         of = np.searchsorted(ends, half.points[half.cells, 2].mean(axis=1))
         regions = cell_regions(self.shape, tuple(region.name for region in self.regions))
         return np.asarray(np.where(regions > 0, max(len(self.segments), 1) - 1 + regions, of))
+
+    def cell_friction(self, other: float) -> Array:
+        """Return the Coulomb coefficient (m,) of the outer faces of each cell of the half of a mesh.
+
+        That of cells in none of `faces` is the ``other``.
+        """
+        import numpy as np
+
+        assert isinstance(self.shape, OwnMesh), "only a mesh has cells of its own"
+        of = cell_regions(self.shape, tuple(face.name for face in self.faces), "mesh_surfaces")
+        return np.array([other, *(face.surface.friction for face in self.faces)])[of]
 
     def body(self) -> Turned | Faceted:
         """Return the rigid body."""

@@ -18,7 +18,7 @@ from fem_impact.scene.impact import WAYS, Impact, the_way
 from fem_impact.scene.library import read_material
 from fem_impact.scene.material import Material
 from fem_impact.scene.pairs import pair_surface
-from fem_impact.scene.projectile import ProjectileSpec, Region, Segment
+from fem_impact.scene.projectile import Face, ProjectileSpec, Region, Segment
 from fem_impact.scene.shapes import (
     HEIGHT,
     RADIUS,
@@ -32,6 +32,7 @@ from fem_impact.scene.shapes import (
     stated_by_length,
     stated_points,
 )
+from fem_impact.scene.surface import Surface
 from fem_impact.scene.tables import UNKNOWN_KEY, Table, check_keys, listed, needed, numbers_of, within
 from fem_impact.scene.types import (
     OWN,
@@ -39,7 +40,6 @@ from fem_impact.scene.types import (
     Heating,
     Save,
     Scene,
-    Surface,
 )
 from fem_impact.scene.units import parse_number, parse_quantity, parse_share
 
@@ -279,7 +279,18 @@ def _of_mesh(table: Table, own: dict[str, Any]) -> ProjectileSpec:
     if stated and own["segments"]:
         raise SceneError("stands beside segments.", key="mesh_materials", remedy="State one of them.")
     regions = tuple(Region(name, _region(stated[name], name)) for name in stated)
-    return ProjectileSpec.meshed(mesh, within(table, "material", read_material), own["segments"], regions)
+    faces = within(table, "mesh_surfaces", _faces) if "mesh_surfaces" in table else ()
+    material = within(table, "material", read_material)
+    return ProjectileSpec.meshed(mesh, material, own["segments"], regions, faces)
+
+
+def _faces(table: Table) -> tuple[Face, ...]:
+    """Read the surface of each set whose outer faces have a state of their own."""
+    found = tuple(Face(name, surface) for name in table if (surface := within(table, name, _surface)))
+    for name in set(table) - {face.name for face in found}:
+        remedy = "Leave it out, or name another state, such as custom."
+        raise SceneError("is the state of the scene's surface.", key=f"{name}.state", remedy=remedy)
+    return found
 
 
 def _region(material: Any, name: str) -> Material:

@@ -7,7 +7,7 @@ are the same object and pass the same checks.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, get_args
+from typing import get_args
 
 from fem_impact.errors import SceneError
 from fem_impact.scene import fields
@@ -16,6 +16,7 @@ from fem_impact.scene.checks import check_choice, check_id, check_names, check_n
 from fem_impact.scene.impact import WAYS, Impact
 from fem_impact.scene.material import Material
 from fem_impact.scene.projectile import ProjectileSpec
+from fem_impact.scene.surface import Surface
 
 MEASURED_SETS = (
     *("t2", "t3-machined", "t3-contaminated", "t3-cleaned", "t4"),
@@ -24,38 +25,6 @@ MEASURED_SETS = (
 
 OWN = ".csv"
 """End of a name in ``measured`` that is a file of the user's own tests, not a published set."""
-
-
-@dataclass(frozen=True, slots=True)
-class Surface:
-    """State of the two surfaces: Coulomb f that goes in, its interval and where they come from.
-
-    ``pair`` is that of a table of dry pairs of materials, for a scene that states no surface.
-    ``skin_depth``, m, and ``skin_factor`` are those of the layer that cutting has hardened, of freshly cut
-    surfaces alone; None: no layer is known.
-    """
-
-    state: Literal["machined", "contaminated", "cleaned", "pair", "custom"]
-    friction: float
-    friction_low: float
-    friction_high: float
-    source: str
-    skin_depth: float | None = None
-    skin_factor: float | None = None
-
-    def __post_init__(self) -> None:
-        check_choice(self.state, ("machined", "contaminated", "cleaned", "pair", "custom"), "state")
-        check_numbers(self, fields.SURFACE)
-        check_numbers(self, fields.SKIN)
-        check_text(self.source, "source", 1000)
-        _check_skin(self)
-        if not self.friction_low <= self.friction <= self.friction_high:
-            raise SceneError(
-                f"lies outside its own interval, {self.friction_low:g} to {self.friction_high:g}.",
-                key="friction",
-                value=self.friction,
-                remedy="Give friction_low <= friction <= friction_high.",
-            )
 
 
 @dataclass(frozen=True, slots=True)
@@ -206,20 +175,6 @@ def _check_approach(scene: Scene) -> None:
             parameter.checked(seen_speed)
         except SceneError as error:
             raise error.under("impact") from None
-
-
-def _check_skin(surface: Surface) -> None:
-    """Refuse half a hardened layer, or one on surfaces that were not freshly cut."""
-    stated = [key for key in ("skin_depth", "skin_factor") if getattr(surface, key) is not None]
-    if len(stated) == 1:
-        other = "skin_factor" if stated == ["skin_depth"] else "skin_depth"
-        raise SceneError("is missing.", key=other, remedy=f"Give it beside {stated[0]}, or leave out both.")
-    if stated and surface.state in ("contaminated", "cleaned"):
-        raise SceneError(
-            f"means nothing on {surface.state} surfaces: the layer is that of freshly cut ones.",
-            key="skin_depth",
-            remedy='Leave it out, or use state = "machined" or "custom".',
-        )
 
 
 def _check_tip_size(scene: Scene) -> None:

@@ -21,6 +21,7 @@ from fem_impact.scene.own_mesh import OwnMesh
 from fem_impact.scene.parameter import Parameter
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.shapes import HEIGHT, RADIUS, NamedShape, Point, Profile, sizes_of
+from fem_impact.scene.surface import Surface
 from fem_impact.scene.types import OWN, Accuracy, Scene
 
 
@@ -31,11 +32,10 @@ def to_dict(scene: Scene) -> dict[str, Any]:
         top["measured"] = scene.measured
     if scene.restitution is not None:
         top["restitution"] = scene.restitution
-    surface = {"state": scene.surface.state, "source": scene.surface.source}
     return top | {
         "projectile": _projectile(scene.projectile),
         "barrier": _barrier(scene.barrier),
-        "surface": surface | _written(scene.surface, (*fields.SURFACE, *fields.SKIN)),
+        "surface": _surface(scene.surface),
         "impact": _impact(scene.impact),
         "accuracy": _accuracy(scene.accuracy),
         "save": _written(scene.save, fields.SAVE),
@@ -62,6 +62,11 @@ def digest(scene: Scene) -> str:
     return hashlib.sha256(text.encode()).hexdigest()
 
 
+def _surface(surface: Surface) -> dict[str, Any]:
+    stated = {"state": surface.state, "source": surface.source}
+    return stated | _written(surface, (*fields.SURFACE, *fields.SKIN))
+
+
 def _projectile(rod: ProjectileSpec) -> dict[str, Any]:
     if rod.segments:
         parts = [{"to": HEIGHT.write(part.to), "material": _material(part.material)} for part in rod.segments]
@@ -84,8 +89,9 @@ def _shape(rod: ProjectileSpec) -> dict[str, Any]:
         named = {"mesh_symmetry": shape.symmetry, "mesh_tip": tip, "mesh_sets": list(shape.sets)}
         file = {"mesh": shape.path, "mesh_unit": shape.unit, "mesh_content": shape.content}
         regions = {one.name: _material(one.material) for one in rod.regions}
-        materials = {"mesh_materials": regions} if regions else {}
-        return file | {key: value for key, value in named.items() if value} | materials
+        faces = {one.name: _surface(one.surface) for one in rod.faces}
+        sets = {"mesh_materials": regions, "mesh_surfaces": faces}
+        return file | {key: value for key, value in (named | sets).items() if value}
     return {"tip": rod.tip, **_written(rod, fields.PROJECTILE)}
 
 

@@ -33,7 +33,7 @@ from fem_impact.solid.frame import FixedFrame, TurningFrame, mass_centre
 from fem_impact.solid.ground import Ground
 from fem_impact.solid.items import Force, Impulse
 from fem_impact.solid.model import Model
-from meshes import SKIN
+from meshes import SKIN, owners
 from rigid import Faceted
 
 if TYPE_CHECKING:
@@ -83,10 +83,17 @@ def facing_skin(body: MeshedBody) -> Ints:
 
 
 def surface_contact(
-    bodies: list[MeshedBody], inverse_mass: Array, f: float, h: float, x: Array, conforming: bool
+    bodies: list[MeshedBody], inverse_mass: Array, f: Array, h: float, x: Array, conforming: bool
 ) -> SurfaceContact:
-    """Return the contact of a rod's skin with a barrier's, whose cells are ``h`` m wide there."""
-    rod, barrier = (make_patch(facing_skin(body), body.places, body.points) for body in bodies)
+    """Return the contact of a rod's skin with a barrier's, whose cells are ``h`` m wide there.
+
+    ``f`` (n,) are the Coulomb coefficients of the rod's nodes.
+    """
+    skins = [facing_skin(body) for body in bodies]
+    rod, barrier = (
+        make_patch(skin, body.places, body.points) for skin, body in zip(skins, bodies, strict=True)
+    )
+    f = f[np.unique(skins[0])]
     if not conforming:
         return SurfaceContact.of(rod, barrier, inverse_mass, f, 0.0, BAND * h, x)
     return SurfaceContact.of(rod.rounded(x), barrier, inverse_mass, f, PLAY * h, BAND * h, x)
@@ -242,7 +249,7 @@ class Builder:
     @cached_property
     def contact(self) -> PlaneContact | MovingPlane | SurfaceContact:
         """Return the contact; the rigid section behind the nose of a rigid rod has no part in it."""
-        g, f = self.meshed.geometry, self.spec.friction or 0.0
+        g, f = self.meshed.geometry, self.friction
         if self.meshed.barrier:
             return surface_contact(
                 self.meshed.bodies, self.meshed.inverse_mass, f, g.barrier_size, self.meshed.x, g.conforming
@@ -252,8 +259,25 @@ class Builder:
             skin = np.setdiff1d(skin, g.rod.body_nodes)
         nodes, inverse = self.meshed.rod.places[skin], self.meshed.inverse_mass
         if self.scene.barrier.mass is not None:
-            return MovingPlane.of(nodes, self.ground, inverse, f)
-        return PlaneContact(nodes, inverse, f)
+            return MovingPlane.of(nodes, self.ground, inverse, f[skin])
+        return PlaneContact(nodes, inverse, f[skin])
+
+    @cached_property
+    def friction(self) -> Array:
+        """Return the Coulomb coefficient (n,) of each node of the rod's mesh.
+
+        Between faces of several states of their surface the largest counts.
+        """
+        mesh, rod = self.meshed.geometry.rod.mesh, self.scene.projectile
+        f = np.full(len(mesh.points), self.spec.friction or 0.0)
+        if self.spec.friction is None or not rod.faces:
+            return f
+        assert mesh.region is not None, "the cells of a mesh of its own are numbered"
+        of_quad = rod.cell_friction(self.spec.friction)[mesh.region[owners(mesh)]]
+        skin = mesh.face_tag == SKIN
+        f[mesh.faces[skin]] = 0.0
+        np.maximum.at(f, mesh.faces[skin], of_quad[skin, None])
+        return f
 
     def weight(self, gravity: float) -> Weight:
         """Return the rod's weight under the acceleration ``gravity``, m/s2."""

@@ -114,7 +114,7 @@ def cell_shear(bodies: Bodies, mesh: HexMesh, depth: Array) -> Array:
     rod, strata = bodies.rod, bodies.barrier.strata
     z, metals = mesh.points[mesh.cells, 2].mean(axis=1), rod.materials
     if mesh.region is not None:
-        own = np.array([lame_constants(m.E, m.nu)[1] for m in metals])[mesh.region]
+        own = np.array([lame_constants(m.E, m.nu)[1] for m in metals])[rod.cell_materials()[mesh.region]]
     else:
         own = _shear([part.to for part in rod.segments[:-1]], metals, z)
     return np.concatenate(

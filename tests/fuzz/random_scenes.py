@@ -11,7 +11,8 @@ from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.impact import Impact
 from fem_impact.scene.material import Material
 from fem_impact.scene.projectile import ProjectileSpec
-from fem_impact.scene.types import Accuracy, Save, Scene, Surface
+from fem_impact.scene.surface import Surface
+from fem_impact.scene.types import Accuracy, Save, Scene
 
 METALS = (
     Material("aluminium", 70e9, 0.33, 2700.0, 270e6, 310e6),

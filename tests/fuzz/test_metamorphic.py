@@ -17,7 +17,8 @@ from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.impact import Impact
 from fem_impact.scene.material import Material
 from fem_impact.scene.projectile import ProjectileSpec
-from fem_impact.scene.types import Accuracy, Save, Scene, Surface
+from fem_impact.scene.surface import Surface
+from fem_impact.scene.types import Accuracy, Save, Scene
 
 BOUND = {"solid": 2e-3, "modal": 1e-5}  # of e, mu and each share of E_0
 TITANIUM, COPPER = METALS[1], METALS[2]

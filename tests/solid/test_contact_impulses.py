@@ -36,7 +36,7 @@ def system(seed, count=8, tilt=0.2, masters=12):
 def test_signorini_and_coulomb_hold_at_every_contact(seed, f):
     nodes, s, inverse, normal, target, v = system(seed)
     before, p = v.copy(), np.zeros((len(s), 3))
-    sweeps = solve(len(s), v, inverse, nodes, s, normal, target, f, p)
+    sweeps = solve(len(s), v, inverse, nodes, s, normal, target, np.full(len(s), f), p)
     assert sweeps < MOST_SWEEPS
     size = abs(p).max() + 1e-12
     exact = before.copy()
@@ -64,7 +64,7 @@ def test_momentum_of_two_bodies_is_kept_and_energy_never_made(seed, f):
     inverse[:] = np.repeat(inverse[::3], 3)
     v[nodes[0, 0, 2]] = -8.0 * s[0, 0]  # one pair at least closes
     mass, before = 1 / inverse, v.copy()
-    solve(len(s), v, inverse, nodes, s, normal, np.zeros(len(s)), f, np.zeros((len(s), 3)))
+    solve(len(s), v, inverse, nodes, s, normal, np.zeros(len(s)), np.full(len(s), f), np.zeros((len(s), 3)))
     gained = (mass * (v - before)).reshape(-1, 3).sum(axis=0)
     assert gained == pytest.approx(0.0, abs=1e-12)
     assert abs(v - before).max() > 1e-3
@@ -78,7 +78,7 @@ def _block(v, f, normal=(0.0, 0.0, 1.0), inverse=2.0, target=0.0):
     nodes = np.arange(15).reshape(1, 5, 3)
     p = np.zeros((1, 3))
     s = np.array([[1.0, -0.25, -0.25, -0.25, -0.25]])
-    solve(1, v, masses, nodes, s, np.array([normal]), np.array([target]), f, p)
+    solve(1, v, masses, nodes, s, np.array([normal]), np.array([target]), np.array([f]), p)
     return v[:3], p[0]
 
 
@@ -108,9 +108,9 @@ def test_an_allowed_gap_may_close():
 def test_a_good_guess_is_kept_and_a_bad_one_let_go():
     nodes, s, inverse, normal, target, v = system(5)
     cold, p = v.copy(), np.zeros((len(s), 3))
-    sweeps = solve(len(s), cold, inverse, nodes, s, normal, target, 0.3, p)
+    sweeps = solve(len(s), cold, inverse, nodes, s, normal, target, np.full(len(s), 0.3), p)
     warm = v.copy()
-    assert solve(len(s), warm, inverse, nodes, s, normal, target, 0.3, p) < sweeps
+    assert solve(len(s), warm, inverse, nodes, s, normal, target, np.full(len(s), 0.3), p) < sweeps
     assert warm == pytest.approx(cold, abs=1e-8)
     parted = np.abs(v)  # rod nodes leave upwards: nothing may stick
     parted[3 * len(s) :] = 0.0
@@ -123,7 +123,7 @@ def test_a_good_guess_is_kept_and_a_bad_one_let_go():
         np.abs(s) * np.sign([1, -1, -1, -1, -1]),
         np.tile([0.0, 0, 1], (len(s), 1)),
         target,
-        0.3,
+        np.full(len(s), 0.3),
         guess,
     )
     assert not guess.any()

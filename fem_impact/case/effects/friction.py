@@ -11,8 +11,9 @@ if TYPE_CHECKING:
 
 
 def number(bodies: Bodies) -> float:
-    """Return f. It matters in an upright impact too: friction restrains the radial spread of the tip."""
-    return bodies.scene.surface.friction
+    """Return the largest f. It matters in an upright impact too: it restrains the spread of the tip."""
+    faces = bodies.scene.projectile.faces
+    return max(bodies.scene.surface.friction, *(face.surface.friction for face in faces), 0.0)
 
 
 def fill(bodies: Bodies, spec: ModelSpec) -> None:

@@ -50,7 +50,7 @@ def number(bodies: Bodies) -> float:
     heating = bodies.scene.heating
     if None in thermal(bodies).values():
         return 0.0
-    rise = expected_rise(bodies.contact, bodies.scene.surface.friction, halves(bodies))
+    rise = expected_rise(bodies.contact, bodies.friction, halves(bodies))
     return rise / (heating.ignition - heating.ambient)
 
 

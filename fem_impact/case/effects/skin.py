@@ -15,7 +15,7 @@ from fem_impact.physics.hardening import Skin
 
 if TYPE_CHECKING:
     from fem_impact.case.bodies import Bodies
-    from fem_impact.scene.types import Surface
+    from fem_impact.scene.surface import Surface
 
 
 def layer(surface: Surface) -> Skin | None:

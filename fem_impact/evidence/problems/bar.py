@@ -95,7 +95,8 @@ def _many_strikes(p: Values, exact: BarImpact) -> list[Check]:
     gap = FLIGHT * exact.duration * p["speed"]
     model = _model(p, slices, 6)
     top = model.geometry.rod_points[:, 2] > 0.999 * p["length"]
-    ceiling = Ceiling(PlaneContact(model.layout.rod[top], model.inverse_mass, 0.0), p["length"] + gap)
+    smooth = PlaneContact(model.layout.rod[top], model.inverse_mass, np.zeros(int(top.sum())))
+    ceiling = Ceiling(smooth, p["length"] + gap)
     walled = replace(model, impulses=[*model.impulses, ceiling])
     state = walled.initial_state()
     state.x[model.layout.rod[:, 2]] += 0.5 * gap

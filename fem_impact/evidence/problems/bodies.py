@@ -202,6 +202,7 @@ def _contact(
     if body.friction is None:
         return None
     if body.block is None:
-        return PlaneContact(parts[0].places[body.mesh.mesh.free_skin], inverse, body.friction)
-    conforming = body.block.law is not None
-    return build.surface_contact(parts, inverse, body.friction, body.block.size, x, conforming)
+        skin = body.mesh.mesh.free_skin
+        return PlaneContact(parts[0].places[skin], inverse, np.full(len(skin), body.friction))
+    conforming, f = body.block.law is not None, np.full(len(parts[0].points), body.friction)
+    return build.surface_contact(parts, inverse, f, body.block.size, x, conforming)

@@ -18,7 +18,8 @@ from fem_impact.scene.own_mesh import OwnMesh
 from fem_impact.scene.parameter import Parameter
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.shapes import NamedShape
-from fem_impact.scene.types import Accuracy, Save, Scene, Surface
+from fem_impact.scene.surface import Surface
+from fem_impact.scene.types import Accuracy, Save, Scene
 from fem_impact.solid.build import build
 from fem_impact.solid.model import Model
 from meshes import HexMesh

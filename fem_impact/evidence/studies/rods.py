@@ -10,7 +10,8 @@ from fem_impact.scene.fields import FlowLaw
 from fem_impact.scene.impact import Impact
 from fem_impact.scene.library import surfaces
 from fem_impact.scene.shipped import load, replace_all
-from fem_impact.scene.types import Save, Scene, Surface
+from fem_impact.scene.surface import Surface
+from fem_impact.scene.types import Save, Scene
 from rigid.slenderness import EXPONENT
 
 PAPER_RODS = {"0.24 m": 0.24, "0.12 m": 0.12, "0.08 m": 0.08}

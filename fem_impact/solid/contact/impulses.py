@@ -67,7 +67,10 @@ def _project(p, normal, f, rel_t, rel_b, rel_n, target, along, across):  # type:
 
 @kernel
 def solve(count, v, inverse_mass, nodes, s, normal, target, f, p):  # type: ignore[no-untyped-def]
-    """Sweep until the impulses ``p`` (count, 3) stand still; velocities follow. Returns the sweeps."""
+    """Sweep until the impulses ``p`` (count, 3) stand still; velocities follow. Returns the sweeps.
+
+    ``f`` (count,) are the Coulomb coefficients of the contacts.
+    """
     for k in range(count):
         push(v, inverse_mass, nodes[k], s[k], p[k, 0], p[k, 1], p[k, 2])
     for sweep in range(MOST_SWEEPS):
@@ -75,7 +78,7 @@ def solve(count, v, inverse_mass, nodes, s, normal, target, f, p):  # type: igno
         for k in range(count):
             along, across = _compliance(inverse_mass, nodes[k], s[k], normal[k])
             rel_t, rel_b, rel_n = relative(v, nodes[k], s[k])
-            q_t, q_b, q_n = _project(p[k], normal[k], f, rel_t, rel_b, rel_n, target[k], along, across)
+            q_t, q_b, q_n = _project(p[k], normal[k], f[k], rel_t, rel_b, rel_n, target[k], along, across)
             d_t, d_b, d_n = q_t - p[k, 0], q_b - p[k, 1], q_n - p[k, 2]
             push(v, inverse_mass, nodes[k], s[k], d_t, d_b, d_n)
             p[k, 0], p[k, 1], p[k, 2] = q_t, q_b, q_n

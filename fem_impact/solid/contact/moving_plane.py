@@ -21,13 +21,14 @@ from fem_impact.solid.state import State
 
 @dataclass(slots=True)
 class MovingPlane:
-    """Unilateral contact with Coulomb friction ``f`` on a plane that is a free barrier's foundation.
+    """Unilateral contact with Coulomb friction on a plane that is a free barrier's foundation.
 
     Every impulse changes the velocity of the plane, so the nodes are solved together.
 
     Attributes
     ----------
-    nodes : (k, 3) unknowns of the rod's nodes; ground : the motion of the plane
+    nodes : (k, 3) unknowns of the rod's nodes; f : (k,) their Coulomb coefficients
+    ground : the motion of the plane
     """
 
     effect: ClassVar[str] = "contact"
@@ -37,12 +38,12 @@ class MovingPlane:
     nodes: Ints
     ground: Ground
     inverse_mass: Array
-    f: float
+    f: Array
     points: Points
     book: ContactBook = field(default_factory=ContactBook)
 
     @classmethod
-    def of(cls, nodes: Ints, ground: Ground, inverse_mass: Array, f: float) -> MovingPlane:
+    def of(cls, nodes: Ints, ground: Ground, inverse_mass: Array, f: Array) -> MovingPlane:
         """Build with room for all nodes."""
         return cls(nodes, ground, inverse_mass, f, make_points(len(nodes)))
 
@@ -52,10 +53,10 @@ class MovingPlane:
         c = self.points
         if self.ground.turns:
             turning = self.ground.foundation, self.ground.turn[0], self.ground.centre
-            count = over_turning_plane(self.nodes, *turning, motion, c)
+            count = over_turning_plane(self.nodes, self.f, *turning, motion, c)
         else:
-            count = over_plane(self.nodes, self.ground.foundation, motion, c)
-        settle(count, motion, c, self.f, self.book, state.time)
+            count = over_plane(self.nodes, self.f, self.ground.foundation, motion, c)
+        settle(count, motion, c, self.book, state.time)
 
     def clearance(self, x: Array) -> float:
         """Return the smallest height, m, of the nodes over the plane at positions ``x``."""

@@ -15,10 +15,11 @@ from fem_impact.solid.state import State
 
 @dataclass(slots=True)
 class PlaneContact:
-    """Unilateral contact with Coulomb friction ``f`` on a rigid plane, node by node.
+    """Unilateral contact with Coulomb friction on a rigid plane, node by node.
 
     A node whose predicted position would lie below the plane gets the smallest impulse that lets it
     arrive exactly there (Fekak et al. 2017, doi:10.1007/s00466-017-1397-0, with the predicted gap).
+    ``f`` (k,) are the Coulomb coefficients of the ``nodes`` (k, 3).
     """
 
     effect: ClassVar[str] = "contact"
@@ -27,7 +28,7 @@ class PlaneContact:
     moving: ClassVar[tuple[str, ...]] = MOVING
     nodes: Ints
     inverse_mass: Array
-    f: float
+    f: Array
     book: ContactBook = field(default_factory=ContactBook)
 
     def resolve(self, state: State) -> None:
@@ -47,7 +48,7 @@ class PlaneContact:
 
 @kernel
 def touch_plane(nodes, x, v, force, inverse_mass, kick, dt, f):  # type: ignore[no-untyped-def]
-    """Resolve all nodes (k, 3): change their velocities and return the step's record."""
+    """Resolve all nodes (k, 3): change their velocities and return the step's record; ``f`` (k,)."""
     impulse_t, impulse_n, moment, friction, closing, active = 0.0, 0.0, 0.0, 0.0, 0.0, 0
     for i in range(len(nodes)):
         t, b, n = nodes[i, 0], nodes[i, 1], nodes[i, 2]
@@ -60,7 +61,7 @@ def touch_plane(nodes, x, v, force, inverse_mass, kick, dt, f):  # type: ignore[
         if p <= 0.0:
             continue
         slip = np.sqrt(v[t] * v[t] + v[b] * v[b])
-        share = min(1.0, f * p * inverse_mass[t] / slip) if slip > 0.0 else 0.0
+        share = min(1.0, f[i] * p * inverse_mass[t] / slip) if slip > 0.0 else 0.0
         p_t, p_b = -share * v[t] / inverse_mass[t], -share * v[b] / inverse_mass[t]
         v[t] += inverse_mass[t] * p_t
         v[b] += inverse_mass[b] * p_b

@@ -32,7 +32,8 @@ class Points(NamedTuple):
     nodes : (k, 5, 3) int64, unknowns of the five nodes; one with equal unknowns stands for a body's angle
     weights : (k, 5), signed
     normal : (k, 3); target : (k,) lowest normal rate, m/s; before : (k, 3) rates before the kick
-    p : (k, 3) impulses on the rod, N s; owner : (k,) slave node; memory : (slaves, 3) last impulses
+    f : (k,) Coulomb coefficients; p : (k, 3) impulses on the rod, N s
+    owner : (k,) slave node; memory : (slaves, 3) last impulses
     """
 
     nodes: Ints
@@ -40,6 +41,7 @@ class Points(NamedTuple):
     normal: Array
     target: Array
     before: Array
+    f: Array
     p: Array
     owner: Ints
     memory: Array
@@ -53,6 +55,7 @@ def make_points(n: int) -> Points:
         np.zeros((n, 3)),
         np.zeros(n),
         np.zeros((n, 3)),
+        np.zeros(n),
         np.zeros((n, 3)),
         np.zeros(n, dtype=np.int64),
         np.zeros((n, 3)),
@@ -92,8 +95,8 @@ def _join(c, k, a, places, weight):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def rod_over_barrier(count, rod, barrier, normals, last, play, band, motion, c):  # type: ignore[no-untyped-def]
-    """Append contacts of rod nodes more than ``play`` under barrier quads.
+def rod_over_barrier(count, rod, f, barrier, normals, last, play, band, motion, c):  # type: ignore[no-untyped-def]
+    """Append contacts of rod nodes more than ``play`` under barrier quads; ``f`` (rod nodes,) is Coulomb's.
 
     Returns the new number of contacts, and that of rod nodes below the surface that lie beside all quads.
     """
@@ -122,13 +125,17 @@ def rod_over_barrier(count, rod, barrier, normals, last, play, band, motion, c):
             n_n += w[a] * normals[node, 2]
         length = np.sqrt(n_t * n_t + n_b * n_b + n_n * n_n)
         c.normal[count, 0], c.normal[count, 1], c.normal[count, 2] = n_t / length, n_b / length, n_n / length
+        c.f[count] = f[i]
         count += _enter(count, i, (n - surface) * c.normal[count, 2] + play, band, motion, c)
     return count, outside
 
 
 @kernel
-def over_plane(nodes, plane, motion, c):  # type: ignore[no-untyped-def]
-    """Collect contacts of ``nodes`` (k, 3) with a plane of unknowns ``plane``; returns the number."""
+def over_plane(nodes, f, plane, motion, c):  # type: ignore[no-untyped-def]
+    """Collect contacts of ``nodes`` (k, 3) with a plane of unknowns ``plane``; returns the number.
+
+    ``f`` (k,) are the nodes' Coulomb coefficients.
+    """
     x, count = motion.x, 0
     for i in range(len(nodes)):
         _join(c, count, 0, nodes[i], 1.0)
@@ -136,16 +143,18 @@ def over_plane(nodes, plane, motion, c):  # type: ignore[no-untyped-def]
         for a in range(2, 5):
             _join(c, count, a, plane, 0.0)
         c.normal[count, 0], c.normal[count, 1], c.normal[count, 2] = 0.0, 0.0, 1.0
+        c.f[count] = f[i]
         count += _enter(count, i, x[nodes[i, 2]] - x[plane[2]], 0.0, motion, c)
     return count
 
 
 @kernel
-def over_turning_plane(nodes, plane, turn, centre, motion, c):  # type: ignore[no-untyped-def]
+def over_turning_plane(nodes, f, plane, turn, centre, motion, c):  # type: ignore[no-untyped-def]
     """Collect contacts of ``nodes`` (k, 3) with a plane that turns; returns the number.
 
-    ``plane`` (3,) and ``turn`` are the unknowns of its body's place and angle, ``centre`` (2,), m, is where
-    that body's mass centre was at the start, when the plane was n = 0.
+    ``f`` (k,) are the nodes' Coulomb coefficients. ``plane`` (3,) and ``turn`` are the unknowns of its body's
+    place and angle, ``centre`` (2,), m, is where that body's mass centre was at the start, when the plane was
+    n = 0.
     """
     x, count, still = motion.x, 0, plane[1]
     s, cos = np.sin(x[turn]), np.cos(x[turn])
@@ -158,6 +167,7 @@ def over_turning_plane(nodes, plane, turn, centre, motion, c):  # type: ignore[n
         _join(c, count, 3, (still, still, turn), t)
         _join(c, count, 4, plane, 0.0)
         c.normal[count, 0], c.normal[count, 1], c.normal[count, 2] = s, 0.0, cos
+        c.f[count] = f[i]
         count += _enter(count, i, t * s + n * cos + centre[1], 0.0, motion, c)
     return count
 
@@ -179,8 +189,11 @@ def _reach(rod, x, height):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def barrier_under_rod(rod, rod_normals, barrier, normals, last, band, motion, c):  # type: ignore[no-untyped-def]
-    """Collect contacts of barrier nodes with the rod's surface; returns their number."""
+def barrier_under_rod(rod, f, rod_normals, barrier, normals, last, band, motion, c):  # type: ignore[no-untyped-def]
+    """Collect contacts of barrier nodes with the rod's surface; returns their number.
+
+    ``f`` (rod nodes,) are Coulomb coefficients, between which those of the places on a quad are weighted.
+    """
     x, first, top, count = motion.x, len(rod.places), 0.0, 0
     for i in range(len(barrier.places)):
         top = max(top, x[barrier.places[i, 2]])
@@ -195,9 +208,11 @@ def barrier_under_rod(rod, rod_normals, barrier, normals, last, band, motion, c)
         last[first + i] = q
         w = bilinear(xi, eta)
         surface, flat, n_t, n_b, n_n = 0.0, False, 0.0, 0.0, 0.0
+        c.f[count] = 0.0
         for a in range(4):
             node = rod.quads[q, a]
             _join(c, count, a + 1, rod.places[node], w[a])
+            c.f[count] += w[a] * f[node]
             flat = flat or rod.bend[node] == 0.0
             n_t += w[a] * rod_normals[node, 0]
             n_b += w[a] * rod_normals[node, 1]
@@ -213,11 +228,11 @@ def barrier_under_rod(rod, rod_normals, barrier, normals, last, band, motion, c)
 
 
 def settle(
-    count: int, motion: PointState, c: Points, f: float, book: ContactBook, time: float, outside: int = 0
+    count: int, motion: PointState, c: Points, book: ContactBook, time: float, outside: int = 0
 ) -> None:
     """Solve the impulses of the collected contacts, book their work and close the step."""
     if count:
-        solve(count, motion.v, motion.inverse_mass, c.nodes, c.weights, c.normal, c.target, f, c.p)
+        solve(count, motion.v, motion.inverse_mass, c.nodes, c.weights, c.normal, c.target, c.f, c.p)
     book.close_step(work_of_points(count, motion, c, outside), time)
 
 

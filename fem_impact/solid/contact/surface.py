@@ -37,10 +37,11 @@ from fem_impact.solid.state import State
 
 @dataclass(slots=True)
 class SurfaceContact:
-    """Coulomb contact ``f`` between two patches.
+    """Coulomb contact between two patches.
 
     Attributes
     ----------
+    f : (rod nodes,) Coulomb coefficients
     play : how deep a node of the rod may lie under the barrier's quads before it is held, m
     rod_normals : of a rod with bent quads
     band : gap within which a pressed node stays a contact, m: facets and averaged normals differ by
@@ -55,7 +56,7 @@ class SurfaceContact:
     rod: Patch
     barrier: Patch
     inverse_mass: Array
-    f: float
+    f: Array
     play: float
     band: float
     last: Ints
@@ -66,7 +67,7 @@ class SurfaceContact:
 
     @classmethod
     def of(
-        cls, rod: Patch, barrier: Patch, inverse_mass: Array, f: float, play: float, band: float, x: Array
+        cls, rod: Patch, barrier: Patch, inverse_mass: Array, f: Array, play: float, band: float, x: Array
     ) -> SurfaceContact:
         """Build and find each node's first quad at positions ``x``."""
         last = np.concatenate([nearest_quads(x, rod, barrier), nearest_quads(x, barrier, rod)])
@@ -89,9 +90,11 @@ class SurfaceContact:
         c, rod, barrier = self.points, self.rod, self.barrier
         self._turn_normals(state.x)
         last, normals, band = self.last, self.normals, self.band
-        under = barrier_under_rod(rod, self.rod_normals, barrier, normals, last, band, motion, c)
-        count, outside = rod_over_barrier(under, rod, barrier, normals, last, self.play, band, motion, c)
-        settle(count, motion, c, self.f, self.book, state.time, outside)
+        under = barrier_under_rod(rod, self.f, self.rod_normals, barrier, normals, last, band, motion, c)
+        count, outside = rod_over_barrier(
+            under, rod, self.f, barrier, normals, last, self.play, band, motion, c
+        )
+        settle(count, motion, c, self.book, state.time, outside)
 
     def clearance(self, x: Array) -> float:
         """Return the smallest height, m, of one patch over the other at positions ``x`` (inf: none is)."""
