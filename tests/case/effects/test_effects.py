@@ -53,7 +53,7 @@ def test_bare_model_has_nothing_to_spare():
     assert made.geometry.barrier is None
     assert len(made.layout.barrier) == 0
     assert isinstance(made.rod.frame, FixedFrame)
-    assert made.contact.f == 0.0
+    assert not made.contact.f.any()
     assert made.layout.size == made.layout.free_size + 3 * made.geometry.rod.mesh.is_hanging.sum() + 24
 
 
@@ -67,7 +67,8 @@ def test_an_effect_adds_its_item_alone(name, item):
 
 
 def test_friction_reaches_the_contact():
-    assert model("vibration", "friction", "barrier-rigid").contact.f == load("t5b").surface.friction
+    made = model("vibration", "friction", "barrier-rigid")
+    assert (made.contact.f == load("t5b").surface.friction).all() and len(made.contact.f)
 
 
 def test_large_rotation_changes_the_frame_alone():
