@@ -99,6 +99,12 @@ def about(value: float) -> str:
     return f"{float(f'{value:.2g}'):,.0f}".replace(",", " ")
 
 
+def time_class(time: float) -> str:
+    """Return the class of a computing time, s, that is known within a factor of two or three."""
+    classes = {20.0: "seconds", 100.0: "about a minute", 1000.0: "minutes", 6000.0: "about an hour"}
+    return next((name for most, name in classes.items() if time <= most), "hours")
+
+
 def machine_memory() -> float:
     """Return the bytes of memory that a process may use here: the machine's, or its group's limit."""
     whole = float(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"))

@@ -346,7 +346,7 @@ def _size_lines(case: Case) -> list[str]:
     if case.scene.accuracy.target:
         return []
     from fem_impact.case.cells import contact_radius
-    from fem_impact.case.size import about
+    from fem_impact.case.size import about, time_class
 
     size = case.size
     if case.scene.accuracy.levels > 1:
@@ -356,7 +356,7 @@ def _size_lines(case: Case) -> list[str]:
             f"it found, about {case.scene.accuracy.levels} in all. Each number comes with its band",
             f"if the contact is as estimated, {1e3 * radius:.2g} mm in radius, the last of them has about "
             f"{about(size.rod + size.barrier)} elements, {about(size.memory / 1e6)} MB of memory, and takes "
-            f"{_class_of(size.time)}; the run tells more after its pilot",
+            f"{time_class(size.time)}; the run tells more after its pilot",
         )
         return ["", "A run with finite elements", *_wrapped(found)]
     sentences = (
@@ -367,12 +367,6 @@ def _size_lines(case: Case) -> list[str]:
         "machine of the stored costs, within a factor of two there",
     )
     return ["", "Size of a run with finite elements", *_wrapped(sentences)]
-
-
-def _class_of(time: float) -> str:
-    """Return the class of a computing time, s, that is known within a factor of two or three."""
-    classes = {20.0: "seconds", 100.0: "about a minute", 1000.0: "minutes", 6000.0: "about an hour"}
-    return next((name for most, name in classes.items() if time <= most), "hours")
 
 
 # over the measured sets, means over places of the grid (`fem-impact cost paper`)

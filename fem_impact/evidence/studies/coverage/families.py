@@ -1,0 +1,162 @@
+"""Families of projectiles whose sizes are drawn at random: the table of a scene's projectile."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from fem_impact.evidence.studies.coverage.bodies import BODIES
+
+Tables = dict[str, Any]
+"""Tables of a scene, as in its file."""
+Values = Mapping[str, float]
+"""Drawn numbers by name: ``diameter``, m, and ``slenderness``, ``first`` and ``second``, shares of ranges."""
+
+
+@dataclass(frozen=True, slots=True)
+class Projectile:
+    """A projectile without its material.
+
+    Attributes
+    ----------
+    length, diameter : m
+    filled : share of the cylinder of that length and diameter that is filled, about
+    tables : of its shape, as in a scene's file; none of a mesh
+    body, sizes : name and sizes, m, of one of `BODIES`; empty of a body of revolution
+    """
+
+    length: float
+    diameter: float
+    filled: float = 1.0
+    tables: Tables = field(default_factory=dict)
+    body: str = ""
+    sizes: Mapping[str, float] = field(default_factory=dict)
+
+
+def metres(value: float) -> str:
+    """Return a length as in a scene's file."""
+    return f"{value:.6g} m"
+
+
+def between(share: float, low: float, high: float) -> float:
+    """Return the number that lies so far from one end to the other."""
+    return low + (high - low) * share
+
+
+def _sized(values: Values, least: float, most: float) -> tuple[float, float]:
+    """Return length and diameter, m, with a slenderness between two ends."""
+    diameter = values["diameter"]
+    return diameter * between(values["slenderness"], least, most), diameter
+
+
+def _turned(length: float, width: float, filled: float, /, **shape: Any) -> Projectile:
+    return Projectile(length, width, filled, {"length": metres(length), **shape})
+
+
+def _tip(length: float, diameter: float, tip: str, radius: float) -> Projectile:
+    return _turned(length, diameter, 1.0, diameter=metres(diameter), tip=tip, tip_radius=metres(radius))
+
+
+def _rounded_edge(values: Values) -> Projectile:
+    length, diameter = _sized(values, 2.0, 8.0)
+    return _tip(length, diameter, "B", between(values["first"], 0.05, 0.9) * diameter / 2)
+
+
+def _round_nose(values: Values) -> Projectile:
+    length, diameter = _sized(values, 2.0, 8.0)
+    return _tip(length, diameter, "A", between(values["first"], 0.3, 1.0) * diameter / 2)
+
+
+def _sharp(values: Values) -> Projectile:
+    return _tip(*_sized(values, 2.0, 8.0), "plain", 0.0)
+
+
+def _flat_pin(values: Values) -> Projectile:
+    return _tip(*_sized(values, 0.5, 2.0), "plain", 0.0)
+
+
+def _tube(values: Values) -> Projectile:
+    length, diameter = _sized(values, 1.5, 6.0)
+    wall = between(values["first"], 0.12, 0.3) * diameter
+    edge = between(values["second"], 0.1, 0.4) * wall
+    inner = diameter / 2 - wall
+    return _turned(
+        length,
+        diameter,
+        1.0 - (2 * inner / diameter) ** 2,
+        diameter=metres(diameter),
+        tip="B",
+        tip_radius=metres(edge),
+        bore=[[metres(at), metres(inner)] for at in (0.0, length)],
+    )
+
+
+def _profile(diameter: float, filled: float, *points: tuple[float, float]) -> Projectile:
+    """Return a turned body with straight lines between points (z, r), m."""
+    profile = [[metres(z), metres(r)] for z, r in points]
+    return Projectile(points[-1][0], diameter, filled, {"profile": profile})
+
+
+def _stepped(values: Values) -> Projectile:
+    length, diameter = _sized(values, 2.0, 6.0)
+    thin, step = between(values["first"], 0.4, 0.8), between(values["second"], 0.2, 0.6) * length
+    r = diameter / 2
+    points = (0.0, thin * r), (step, thin * r), (step + 0.1 * length, r), (length, r)
+    return _profile(diameter, 0.8, *points)
+
+
+def _tapered(values: Values) -> Projectile:
+    length, diameter = _sized(values, 1.5, 6.0)
+    tip = between(values["first"], 0.3, 0.9)
+    return _profile(diameter, (1 + tip + tip**2) / 3, (0.0, tip * diameter / 2), (length, diameter / 2))
+
+
+def _nosed(values: Values) -> Projectile:
+    """Return an ogive or a blunt cone."""
+    length, diameter = _sized(values, 2.5, 6.0)
+    sphere = between(values["second"] * 2 % 1.0, 0.15, 0.6) * diameter / 2
+    sizes = {"diameter": metres(diameter), "nose_radius": metres(sphere)}
+    if values["second"] < 0.5:
+        return _turned(
+            length, diameter, 0.8, shape="ogive", calibre_radius=between(values["first"], 0.7, 3.0), **sizes
+        )
+    angle = f"{between(values['first'], 20.0, 70.0):.6g} deg"
+    return _turned(length, diameter, 0.8, shape="sphere-cone", cone_angle=angle, **sizes)
+
+
+def _disc(values: Values) -> Projectile:
+    """Return a disc, or a ring where the first share is above a half; twice as wide as other projectiles."""
+    length, diameter = (2.0 * size for size in _sized(values, 0.1, 0.35))
+    hole = between(values["first"] * 2 % 1.0, 0.3, 0.7) if values["first"] > 0.5 else 0.0
+    bore = {"bore": [[metres(at), metres(hole * diameter / 2)] for at in (0.0, length)]} if hole else {}
+    return _turned(length, diameter, 1.0 - hole**2, diameter=metres(diameter), tip="plain", **bore)
+
+
+def _own_mesh(values: Values) -> Projectile:
+    """Return one of `BODIES`, as the first share says."""
+    length, width = _sized(values, 1.5, 6.0)
+    sizes = {
+        "width": width,
+        "length": length,
+        "thickness": between(values["second"], 0.15, 0.5) * width,
+        "bend": between(values["second"], -0.15, 0.15) * length,
+        "share": between(values["second"], 0.4, 0.8),
+    }
+    body = [*BODIES][int(values["first"] * len(BODIES))]
+    return Projectile(length, width, 0.8, body=body, sizes=sizes)
+
+
+FAMILIES: Mapping[str, Callable[[Values], Projectile]] = {
+    "rounded edge": _rounded_edge,
+    "round nose": _round_nose,
+    "sharp edge": _sharp,
+    "tube": _tube,
+    "stepped": _stepped,
+    "tapered": _tapered,
+    "nosed": _nosed,
+    "flat pin": _flat_pin,
+    "disc, ring": _disc,
+    "own mesh": _own_mesh,
+}
+"""Functions of drawn numbers to a projectile."""

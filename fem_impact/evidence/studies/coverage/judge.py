@@ -1,0 +1,206 @@
+"""Told errors beside those that finer runs show: how often the truth lies inside, with Wilson intervals."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from fem_impact.case.size import time_class
+from fem_impact.evidence.studies.coverage.run import DEFAULT, FINER, FINEST, MODAL, CoverageResult
+from fem_impact.evidence.studies.coverage.scenes import DrawnScene
+from fem_impact.outcome.keys import or_none
+from fem_impact.outcome.limitation import texts
+from fem_impact.outcome.record import KEY_TABLE, Outcome
+
+if TYPE_CHECKING:
+    import pandas
+
+
+KEYS: Mapping[str, str] = {
+    "e": "e_edge",
+    "mu": "mu",
+    "Omega": "Omega_rad_per_s",
+    "E_vib": "E_vib_over_E_0",
+    "friction": "W_friction_over_E_0",
+    "plastic rod": "E_plastic_rod_over_E_0",
+    "plastic barrier": "E_plastic_barrier_over_E_0",
+}
+"""Judged quantities and their keys in an outcome."""
+LEVELS, LEVELS_TWO, REDUCED = "levels", "levels, two finer", "reduced model"
+"""Told errors: the bands of a default run beside one level more and two, the error of the reduced model
+beside finite elements."""
+ZERO = 1e-9
+"""In the unit of the quantity: what is smaller on both sides is zero by physics and tells nothing."""
+FACTOR = 2.0  # within which a forecast of time counts as met
+AIM = 0.95
+LOWEST, HIGHEST = "low", "high"
+# e .03 and .07, as the reduced model tells the errors that half of its scenes and nine tenths stay below
+_SENTENCE = r"(?<![\w.]){} [\d.e+-]+ and ([\d.]+(?:e[+-]?\d+)?)"
+Results = Mapping[tuple[str, str], CoverageResult]
+"""Results by scene and model."""
+
+
+@dataclass(frozen=True, slots=True)
+class ToldError:
+    """One number with its told error beside the truth, in the unit of the quantity.
+
+    Attributes
+    ----------
+    scene, family, barrier : name of the scene, family of its projectile, kind of barrier
+    told, quantity : what told the error, and of what
+    value, half : the number and its told half-width
+    truth : limit that the finer run's own levels give the number, its value where they give none
+    finest : value on the finest mesh of that run
+    """
+
+    scene: str
+    family: str
+    barrier: str
+    told: str
+    quantity: str
+    value: float
+    half: float
+    truth: float
+    finest: float
+
+
+def told_errors(scenes: Iterable[DrawnScene], results: Results) -> pandas.DataFrame:
+    """Return one row a `ToldError`, with ``error``, whether it is ``inside``, and ``inside_finest``."""
+    import pandas
+
+    rows = [row for scene in scenes for row in _of_scene(scene, results)]
+    table = pandas.DataFrame(rows, columns=list(ToldError.__dataclass_fields__))
+    table["error"] = (table["value"] - table["truth"]).abs()
+    table["inside"] = table["error"] <= table["half"]
+    table["inside_finest"] = (table["value"] - table["finest"]).abs() <= table["half"]
+    return table
+
+
+def _of_scene(scene: DrawnScene, results: Results) -> Iterator[ToldError]:
+    runs = {model: _known(results.get((scene.name, model))) for model in (DEFAULT, FINER, FINEST, MODAL)}
+    default, finer, finest, modal = runs.values()
+    place = scene.name, scene.family, scene.group
+    for told, run in ((LEVELS, finer), (LEVELS_TWO, finest)):
+        if default and run and _is_finer(run, default):
+            for name, key in KEYS.items():
+                yield from _row((*place, told, name), default.estimate(key), run, key)
+    best = finest or finer or default
+    if modal and best:
+        for name, key in KEYS.items():
+            half = told_of_reduced(modal, name)
+            yield from _row((*place, REDUCED, name), (modal.estimate(key)[0], half), best, key)
+
+
+def _known(result: CoverageResult | None) -> Outcome | None:
+    """Return the outcome of a run that gave its numbers."""
+    return result.outcome if result is not None and result.has_numbers else None
+
+
+def _is_finer(run: Outcome, than: Outcome) -> bool:
+    """Say whether a run came to a finer mesh: a budget may have ended it before."""
+    sizes = or_none(run.cost.tip_size), or_none(than.cost.tip_size)
+    return sizes[0] is not None and sizes[1] is not None and sizes[0] < 0.99 * sizes[1]
+
+
+def _row(
+    place: tuple[str, str, str, str, str], told: tuple[object, float | None], run: Outcome, key: str
+) -> Iterator[ToldError]:
+    """Yield the row of a number that both runs know and whose error is told."""
+    every = (*told, run.estimate(key)[0], KEY_TABLE[key].of(run))
+    known = [number for number in every if isinstance(number, float)]
+    if len(known) == len(every):
+        value, half, truth, finest = known
+        if max(abs(value), abs(truth), abs(finest)) > ZERO:
+            yield ToldError(*place, value, half, truth, finest)
+
+
+def told_of_reduced(outcome: Outcome, quantity: str) -> float | None:
+    """Return the error that nine tenths stay below, as the reduced model tells it; None where it does not."""
+    banded = outcome.estimate(KEYS[quantity])[1]
+    if banded is not None:
+        return banded
+    for sentence in texts(outcome.validity.limitations, "model"):
+        found = re.search(_SENTENCE.format(re.escape(quantity)), sentence)
+        if found and "nine tenths" in sentence:
+            return float(found[1])
+    return None
+
+
+def coverage(errors: pandas.DataFrame, by: list[str]) -> pandas.DataFrame:
+    """Return by columns such as told and quantity how often the truth lies inside.
+
+    Columns: ``n``, ``inside``, ``inside_finest``, ``share`` with its 95 % Wilson interval ``low`` to
+    ``high``, medians ``half`` and ``error``, and ``needed``: by what half-widths had to be multiplied to hold
+    `AIM` of the errors.
+    """
+    import pandas
+    from scipy.stats import binomtest
+
+    rows = []
+    for place, group in errors.groupby(by, sort=False):
+        n, inside = len(group), int(group["inside"].sum())
+        interval = binomtest(inside, n).proportion_ci(method="wilson")
+        ratio = (group["error"] / group["half"].where(group["half"] > 0)).fillna(float("inf"))
+        rows.append(
+            {
+                **dict(zip(by, place, strict=True)),
+                "n": n,
+                "inside": inside,
+                "inside_finest": int(group["inside_finest"].sum()),
+                "share": inside / n,
+                "low": interval.low,
+                "high": interval.high,
+                "half": group["half"].median(),
+                "error": group["error"].median(),
+                "needed": ratio.quantile(AIM, interpolation="higher"),
+            }
+        )
+    return pandas.DataFrame(rows)
+
+
+def ends(scenes: Iterable[DrawnScene], results: Results, model: str) -> pandas.DataFrame:
+    """Return how the runs of a model ended, a row a scene: ``end``, ``reason``, ``cpu_s``."""
+    import pandas
+
+    rows = []
+    for scene in scenes:
+        result = results.get((scene.name, model))
+        if result is None:
+            continue
+        rows.append(
+            {
+                "scene": scene.name,
+                "family": scene.family,
+                "barrier": scene.group,
+                "end": result.end,
+                "reason": " ".join(result.why.strip().splitlines()[-1:]),
+                "cpu_s": result.cpu_s,
+            }
+        )
+    return pandas.DataFrame(rows, columns=["scene", "family", "barrier", "end", "reason", "cpu_s"])
+
+
+def times(scenes: Iterable[DrawnScene], results: Results) -> pandas.DataFrame:
+    """Return told times beside what was taken, s: columns ``told``, ``said``, ``taken`` and ``inside``.
+
+    Before a run the class of its last level's processor time is told; after the pilot what is left of the
+    wall time, which counts as met within a factor of `FACTOR`.
+    """
+    import pandas
+
+    rows: list[tuple[str, str, float, float, bool]] = []
+    for scene in scenes:
+        result = results.get((scene.name, DEFAULT))
+        if result is None or result.outcome is None:
+            continue
+        took, said = result.outcome.cost.whole_cpu, result.planned_s
+        if said is not None:
+            same = time_class(said) == time_class(took)
+            rows.append((scene.name, "class before the run", said, took, same))
+        if result.forecast_s and result.left_s:
+            ratio = result.left_s / result.forecast_s
+            near = 1 / FACTOR <= ratio <= FACTOR
+            rows.append((scene.name, "time left after the pilot", result.forecast_s, result.left_s, near))
+    return pandas.DataFrame(rows, columns=["scene", "told", "said", "taken", "inside"])

@@ -1,0 +1,197 @@
+"""The report of the study: how often what was told held, and how runs ended; sentences, tables, figures."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fem_impact.answers.report import Sheet, StudyReport
+from fem_impact.evidence.studies.coverage.judge import (
+    AIM,
+    FACTOR,
+    KEYS,
+    LEVELS,
+    LEVELS_TWO,
+    REDUCED,
+    Results,
+    coverage,
+    ends,
+    times,
+    told_errors,
+)
+from fem_impact.evidence.studies.coverage.run import DEFAULT, FINER, FINEST, MODAL, MOST
+from fem_impact.evidence.studies.coverage.scenes import SEED, DrawnScene
+from fem_impact.figures.panels import Mark, Panel, Picture, Series
+from fem_impact.tables.table import Column, Table
+from fem_impact.tables.text import plain
+
+if TYPE_CHECKING:
+    import pandas
+
+
+MEANT = {
+    LEVELS: "the band of a default run holds the limit of a run with one level more",
+    LEVELS_TWO: "the band of a default run holds the limit of a run with two levels more",
+    REDUCED: "the error that the reduced model tells (nine tenths stay below) holds finite elements",
+}
+SHOWN = ("n", "inside", "inside_finest", "share", "low", "high", "half", "error", "needed")
+HEAD = (
+    Column("n"),
+    Column("inside"),
+    Column("inside_finest", "inside, value on its finest mesh"),
+    Column("share", digits=3),
+    Column("low", "95 % low", digits=3),
+    Column("high", "95 % high", digits=3),
+    Column("half", "median half-width", digits=2),
+    Column("error", "median error", digits=2),
+    Column("needed", f"factor for {AIM:.0%}", digits=2),
+)
+LONGEST = 160  # letters of a reason
+
+
+def report_of(scenes: Sequence[DrawnScene], results: Results) -> StudyReport:
+    """Return the study of scenes and their results."""
+    errors, taken = told_errors(scenes, results), times(scenes, results)
+    ended = ends(scenes, results, DEFAULT)
+    by_quantity, by_family = coverage(errors, ["told", "quantity"]), coverage(errors, ["told", "family"])
+    sentences = [*_held(by_quantity), *_times(taken), _ended(ended), *_reduced(ends(scenes, results, MODAL))]
+    pictures = [_shares(by_quantity, by_family), _ratios(errors)] if len(errors) else []
+    cpu = sum(result.cpu_s for result in results.values())
+    return StudyReport(
+        "coverage",
+        "How often a told error holds",
+        sentences,
+        pictures,
+        [
+            _sheet("coverage", "By told error and quantity", by_quantity, ("told", "quantity")),
+            _sheet("families", "By told error and family, all quantities", by_family, ("told", "family")),
+            _sheet(
+                "families-by-quantity",
+                "By told error, family and quantity",
+                coverage(errors, ["told", "family", "quantity"]),
+                ("told", "family", "quantity"),
+                shown=False,
+            ),
+            _ends(ended),
+            _reasons(ended),
+            _all("errors", "Every told error beside the truth", errors),
+            _all("times", "Every told time beside the time taken, s", taken),
+            _all("ended", "Every default run: how it ended", ended),
+        ],
+        [
+            f"Scenes drawn with seed {SEED}; each family of projectiles as often as every other.",
+            "The truth is a finer run of the same program: it knows no error that all meshes share.",
+            f"A default run was broken off after {MOST[DEFAULT]:g} s of processor time, one with one level "
+            f"more after {MOST[FINER]:g} s, with two after {MOST[FINEST]:g} s. Of a scene that was too dear "
+            "there is no pair.",
+            f"A number that is zero by physics on both sides, such as mu without friction, is left out. All "
+            f"runs together took {cpu / 60:.0f} minutes of processor time.",
+        ],
+        conclusions=[("coverage", sentence) for sentence in sentences],
+    )
+
+
+def _held(table: pandas.DataFrame) -> list[str]:
+    """Return a sentence on each told error."""
+    sentences = []
+    for told, group in table.groupby("told", sort=False) if len(table) else ():
+        parts = ", ".join(f"{row.quantity} {row.inside} of {row.n}" for row in group.itertuples())
+        below = [row.quantity for row in group.itertuples() if row.high < AIM]
+        judged = f"; surely below {AIM:.0%}: {', '.join(below)}" if below else ""
+        sentences.append(f"{told} ({MEANT[told]}): {parts}{judged}.")
+    return sentences
+
+
+def _times(table: pandas.DataFrame) -> list[str]:
+    """Return how often told times held."""
+    within = {"time left after the pilot": f" within a factor of {FACTOR:g}"}
+    return [
+        f"{told}: met{within.get(told, '')} in {int(group['inside'].sum())} of {len(group)} runs, "
+        f"taken over told {plain(float((group['taken'] / group['said']).median()), 2)} in the median."
+        for told, group in table.groupby("told", sort=False)
+    ]
+
+
+def _ended(table: pandas.DataFrame) -> str:
+    counts = table["end"].value_counts()
+    parts = ", ".join(f"{count} {end}" for end, count in counts.items())
+    return f"Of {len(table)} default runs: {parts}."
+
+
+def _reduced(table: pandas.DataFrame) -> list[str]:
+    """Return how the runs of the reduced model ended."""
+    counts = ", ".join(f"{count} {end}" for end, count in table["end"].value_counts().items())
+    return [f"Of {len(table)} runs of the reduced model: {counts}."] if len(table) else []
+
+
+def _sheet(
+    name: str, caption: str, table: pandas.DataFrame, by: tuple[str, ...], *, shown: bool = True
+) -> Sheet:
+    """Return a table of `coverage`."""
+    head = (*(Column(one, left=True) for one in by), *HEAD)
+    rows = tuple(tuple(row) for row in table.reindex(columns=[*by, *SHOWN]).astype(object).to_numpy())
+    return Sheet(name, caption, Table(head, rows), shown)
+
+
+def _ends(table: pandas.DataFrame) -> Sheet:
+    """Return how many default runs of each family ended how."""
+    found = [*table["end"].value_counts().index]
+    rows = [
+        (family, len(group), *(int((group["end"] == end).sum()) for end in found), group["cpu_s"].median())
+        for family, group in table.groupby("family", sort=False)
+    ]
+    head = ("family", "scenes", *found, "median CPU, s")
+    return Sheet("ends", "How default runs ended", Table.of(head, rows))
+
+
+def _reasons(table: pandas.DataFrame) -> Sheet:
+    """Return the reason of each default run that gave no numbers."""
+    without = table[~table["end"].isin(["finished", "strikes again"])]
+    rows = [(row.scene, row.end, row.reason[:LONGEST]) for row in without.itertuples()]
+    table = Table.of(("scene", "end", "reason"), rows, left=(0, 1, 2))
+    return Sheet("reasons", "Default runs without numbers", table)
+
+
+def _all(name: str, caption: str, table: pandas.DataFrame) -> Sheet:
+    """Return a table that is written and not shown."""
+    rows = [tuple(row) for row in table.astype(object).to_numpy()]
+    return Sheet(name, caption, Table.of(tuple(map(str, table.columns)), rows), shown=False)
+
+
+def _shares(by_quantity: pandas.DataFrame, by_family: pandas.DataFrame) -> Picture:
+    """Return shares inside with their Wilson intervals, by quantity and by family, a panel a told error."""
+    panels = [
+        _share_panel(f"{told}, by {column}", group, column)
+        for column, table in (("quantity", by_quantity), ("family", by_family))
+        for told, group in table.groupby("told", sort=False)
+    ]
+    caption = "Share of truths inside what was told, with 95 % Wilson intervals; the line is at 95 %."
+    return Picture("coverage", caption, tuple(panels), columns=2)
+
+
+def _share_panel(title: str, table: pandas.DataFrame, column: str) -> Panel:
+    rows = np.arange(len(table), dtype=float)
+    low, high = table["low"].to_numpy(float), table["high"].to_numpy(float)
+    series = (
+        Series("95 % Wilson", (low + high) / 2, rows, "interval", 0, (high - low) / 2),
+        Series("share inside", table["share"].to_numpy(float), rows, "points", 1),
+    )
+    names = tuple(f"{name} ({n})" for name, n in zip(table[column], table["n"], strict=True))
+    return Panel(title, "share inside", "", series, (Mark(AIM),), rows=names, x_range=(0.0, 1.05))
+
+
+def _ratios(errors: pandas.DataFrame) -> Picture:
+    """Return the distribution of error over told half-width, a panel a told error, a curve a quantity."""
+    panels = []
+    for told, group in errors.groupby("told", sort=False):
+        curves = []
+        for at, name in enumerate(KEYS):
+            ratio = group.loc[(group["quantity"] == name) & (group["half"] > 0)].eval("error / half")
+            values = np.sort(ratio.to_numpy(float))
+            shares = np.arange(1, len(values) + 1) / max(len(values), 1)
+            curves.append(Series(name, values, shares, "line", at))
+        label = "error over told half-width"
+        panels.append(Panel(str(told), label, "share below", tuple(curves), (Mark(1.0),), x_range=(0.0, 3.0)))
+    return Picture("ratios", "Errors beside what was told; left of the line it held.", tuple(panels))

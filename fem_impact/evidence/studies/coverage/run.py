@@ -1,0 +1,232 @@
+"""One scene of the study computed by one model as a user would, and what became of it."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import tempfile
+import time
+import traceback
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, replace
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+import fem_impact
+from fem_impact.errors import FemImpactError, ResultError, SceneError
+from fem_impact.evidence.studies.coverage.scenes import DrawnScene
+from fem_impact.outcome.keys import Unknown
+from fem_impact.outcome.record import Outcome
+from fem_impact.progress import Notice, Progress
+from fem_impact.run.program import source_digest
+
+if TYPE_CHECKING:
+    from fem_impact.jobs.job import JobKind
+    from fem_impact.scene.types import Scene
+
+
+Trouble = Literal["", "refused", "stopped", "too dear", "fault"]
+"""Why a run has no outcome: refused before any work, stopped by an error, broken off by the study, a fault of
+the program."""
+DEFAULT, FINER, FINEST, MODAL = "default", "finer", "finest", "modal"
+LEVELS: Mapping[str, int] = {FINER: 1, FINEST: 2}
+"""Levels more than a scene's own by model."""
+PLANNED: Mapping[str, float] = {DEFAULT: 20.0, FINER: 50.0, FINEST: 100.0, MODAL: 0.5}
+"""Processor time, s, that a run of each model is expected to take."""
+MOST: Mapping[str, float] = {DEFAULT: 60.0, FINER: 120.0, FINEST: 240.0, MODAL: 60.0}
+"""Processor time, s, after which a run of each model is broken off: it is too dear for the study."""
+ENGINE = ("answers/refine", "answers/wanted_error.py")
+"""Sources that run the levels; `source_digest` holds those of each level."""
+
+
+@dataclass(frozen=True, slots=True)
+class CoverageResult:
+    """What became of a run.
+
+    Attributes
+    ----------
+    outcome : None where there is none
+    trouble, reason : why there is none, in a word and in the program's words; empty where there is one
+    cpu_s, wall_s : processor and wall time of all of it, s
+    planned_s : processor time, s, that its last level was expected to take before the run; None: not known
+    forecast_s, left_s : wall time, s, that was told after the pilot to be left, and what it then took; None
+        where nothing was told
+    notices : sentences told during the run
+    """
+
+    outcome: Outcome | None
+    trouble: Trouble = ""
+    reason: str = ""
+    cpu_s: float = 0.0
+    wall_s: float = 0.0
+    planned_s: float | None = None
+    forecast_s: float | None = None
+    left_s: float | None = None
+    notices: tuple[str, ...] = ()
+
+    @property
+    def end(self) -> str:
+        """How it ended, in words.
+
+        Of a run with numbers: finished, or strikes again (another end of the projectile comes down later, and
+        the numbers are those before). Without: not resolved, cut off, or its trouble.
+        """
+        if self.outcome is None:
+            return self.trouble
+        finished = self.outcome.validity.finished
+        if self.has_numbers:
+            return "finished" if finished else "strikes again"
+        return "not resolved" if finished else "cut off"
+
+    @property
+    def has_numbers(self) -> bool:
+        """Whether it gave the numbers of an impact."""
+        return self.outcome is not None and not isinstance(self.outcome.restitution.mu, Unknown)
+
+    @property
+    def why(self) -> str:
+        """Why it gave no numbers, or those before a later strike alone; empty where it finished with them."""
+        if self.outcome is None:
+            return self.reason
+        mu, told = self.outcome.restitution.mu, self.outcome.validity
+        if isinstance(mu, Unknown):
+            return mu.reason
+        return "" if told.finished else told.stopped_because
+
+
+class TooDearError(Exception):
+    """A run takes longer than the study affords."""
+
+
+@dataclass
+class _Listener:
+    """Keeps what a run tells: notices, and the first forecast of the time left with when it was told.
+
+    Raises `TooDearError` once ``most_s`` of processor time, s, are used up.
+    """
+
+    most_s: float
+    notices: list[str] = field(default_factory=list)
+    forecast: tuple[float, float] | None = None
+    begun: float = field(default_factory=time.process_time)
+
+    def __call__(self, progress: Progress | Notice) -> None:
+        if isinstance(progress, Notice):
+            self.notices.append(progress.text)
+            return
+        if self.forecast is None and progress.eta_s is not None and ", level 2" in progress.note:
+            self.forecast = progress.eta_s, time.perf_counter()
+        if time.process_time() - self.begun > self.most_s:
+            raise TooDearError(f"took more than {self.most_s:g} s of processor time at {progress.note}")
+
+
+@dataclass(frozen=True, slots=True)
+class CoverageRun:
+    """A drawn scene by one model: levels as by default, one or two finer, or the reduced model."""
+
+    drawn: DrawnScene
+    model: str
+
+    @property
+    def name(self) -> str:
+        """Name of scene and model."""
+        return f"{self.drawn.name}: {self.model}"
+
+    @property
+    def key(self) -> str:
+        """Digest of scene, model, time and program."""
+        stated = json.dumps([asdict(self.drawn), self.model, MOST[self.model]], sort_keys=True)
+        return hashlib.sha256(f"{stated} {source_digest()} {_engine_digest()}".encode()).hexdigest()
+
+    @property
+    def fidelity(self) -> str:
+        """The model, by which times compare."""
+        return self.model
+
+    @property
+    def kind(self) -> JobKind:
+        """The model; the mesh is the run's own affair."""
+        return self.model, 0.0
+
+    @property
+    def planned_s(self) -> float:
+        """Expected processor time, s."""
+        return PLANNED[self.model]
+
+    def run(self) -> str:
+        """Return the `CoverageResult` as JSON; an error of whatever kind is a result."""
+        listener, wall = _Listener(MOST[self.model]), time.perf_counter()
+        with tempfile.TemporaryDirectory() as folder:
+            result = self._result(Path(folder), listener)
+        ended = time.perf_counter()
+        forecast_s, told = listener.forecast or (None, None)
+        result = replace(
+            result,
+            cpu_s=time.process_time() - listener.begun,
+            wall_s=ended - wall,
+            forecast_s=forecast_s,
+            left_s=None if told is None else ended - told,
+            notices=tuple(listener.notices),
+        )
+        kept = {**{name: getattr(result, name) for name in _PLAIN}, "notices": list(result.notices)}
+        return json.dumps({**kept, "outcome": result.outcome and result.outcome.to_json()})
+
+    def read(self, text: str) -> CoverageResult:
+        """Return the result from its JSON text; raises ResultError where that is damaged."""
+        try:
+            kept: dict[str, Any] = json.loads(text)
+            outcome = kept.pop("outcome")
+            kept["notices"] = tuple(kept["notices"])
+            return CoverageResult(outcome and Outcome.from_json(outcome, self.name), **kept)
+        except (ValueError, TypeError, KeyError) as error:
+            raise ResultError(f"{self.name}: its stored result is damaged ({error}).") from error
+
+    def cpu_s(self, result: CoverageResult) -> float:
+        """Return the processor time of a result, s."""
+        return result.cpu_s
+
+    def _result(self, folder: Path, listener: _Listener) -> CoverageResult:
+        """Compute the scene in an empty folder."""
+        try:
+            scene = self.drawn.scene(folder)
+            if self.model == MODAL:
+                return CoverageResult(fem_impact.simulate(scene, "modal"))
+            levels = scene.accuracy.levels + LEVELS.get(self.model, 0)
+            scene = replace(scene, accuracy=replace(scene.accuracy, levels=levels))
+            options = fem_impact.RunOptions(progress=listener)
+            outcome = fem_impact.simulate(scene, "solid", options)
+            return CoverageResult(outcome, planned_s=_expected_s(scene))
+        except TooDearError as dear:
+            return CoverageResult(None, "too dear", str(dear))
+        except SceneError as refusal:
+            return CoverageResult(None, "refused", str(refusal).replace(str(folder), "."))
+        except FemImpactError as error:
+            return CoverageResult(None, "stopped", str(error).replace(str(folder), "."))
+        except Exception:  # a fault is what the study looks for: it is counted, with its traceback
+            return CoverageResult(None, "fault", traceback.format_exc())
+
+
+_PLAIN = ("trouble", "reason", "cpu_s", "wall_s", "planned_s", "forecast_s", "left_s")
+
+
+def _expected_s(scene: Scene) -> float | None:
+    """Return the processor time, s, that the last level was expected to take; None where none can be told."""
+    try:
+        return fem_impact.Case.of(scene).size.time
+    except SceneError:  # of a scene that the levels alone can compute
+        return None
+
+
+@cache
+def _engine_digest() -> str:
+    """Return the SHA-256 of the sources of `ENGINE`."""
+    root, digest = files("fem_impact"), hashlib.sha256()
+    for place in ENGINE:
+        entry = root.joinpath(*place.split("/"))
+        sources = [entry] if entry.is_file() else sorted(entry.iterdir(), key=lambda file: file.name)
+        for source in sources:
+            if source.name.endswith(".py"):
+                digest.update(source.name.encode() + source.read_bytes())
+    return digest.hexdigest()

@@ -1,0 +1,201 @@
+"""Scenes drawn at random over all that the program is meant for, by a seed: the same ones everywhere.
+
+Each family of projectiles has as many scenes as every other. Within a family the numbers lie evenly over
+their ranges (a Halton sequence), and kinds of barrier and metals take turns. The twelve bodies stand beside
+them, each at five angles.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from math import cos, log, pi, radians, sin
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import tomli_w
+from scipy.stats import qmc
+
+from fem_impact import load
+from fem_impact.evidence.studies.coverage import bodies
+from fem_impact.evidence.studies.coverage.families import (
+    FAMILIES,
+    Projectile,
+    Tables,
+    Values,
+    between,
+    metres,
+)
+from fem_impact.evidence.studies.coverage.twelve import TWELVE
+from fem_impact.scene.library import materials
+
+if TYPE_CHECKING:
+    from fem_impact.scene.types import Scene
+
+
+SEED = 20261126
+OWN = "twelve bodies"
+"""Name of the family of `TWELVE`."""
+RANGES: Mapping[str, tuple[float, float]] = {
+    "diameter": (5e-3, 40e-3),  # m, even in its logarithm
+    "speed": (0.1, 20.0),  # m/s, even in its logarithm
+    "slenderness": (0.0, 1.0),  # share of the family's own range
+    "first": (0.0, 1.0),  # shares of the ranges of what else the shape needs
+    "second": (0.0, 1.0),
+    "angle": (-90.0, 90.0),  # deg
+    "fall": (-60.0, 60.0),  # deg, from the barrier's normal to the velocity, above 0 down the slope
+    "spin": (-1.0, 1.0),  # over the spin with which the ends move at half the normal velocity; see SPINNING
+    "friction": (-0.1, 1.0),  # below 0: none
+    "barrier": (0.0, 1.0),  # share of the range of what its kind needs
+}
+EVEN_LOGARITHM = ("diameter", "speed")
+SPINNING = 0.5  # half of the scenes: those with a number ``spin`` beyond this, of either sign
+STEELS = ("rod-steel", "steel-4340", "stainless-304", "c45", "100cr6")
+LIGHT = ("aluminium-6061-t6", "aluminium-7075-t6", "titanium-6al-4v", "magnesium-az31b", "aluminium-2024-t3")
+SOFT = ("plate-steel", "copper", "aluminium-1350-h14", "s235", "magnesium-az31b")
+HARD = ("100cr6", "42crmo4", "alumina", "tungsten-heavy-alloy", "titanium-6al-4v")
+KINDS = ("massive", "plate", "free", "layers")
+"""Kinds of barrier: a half-space, a plate that bends, a body free to move, a layer on another metal."""
+BENCH: Mapping[str, tuple[float, float]] = {**RANGES, "speed": (0.5, 5.0)}
+"""Ranges of the twelve bodies, which strike massive barriers; m/s."""
+
+
+@dataclass(frozen=True, slots=True)
+class DrawnScene:
+    """A scene of the study.
+
+    Attributes
+    ----------
+    name : unique, and the scene's id
+    family : of its projectile
+    tables : of the scene as in its file; a mesh file is named there and made by `scene`
+    body, sizes : of that mesh, see `fem_impact.evidence.studies.coverage.bodies`; empty where there is none
+    """
+
+    name: str
+    family: str
+    tables: Tables
+    body: str
+    sizes: Mapping[str, float]
+
+    @property
+    def group(self) -> str:
+        """Its kind of barrier."""
+        barrier = self.tables["barrier"]
+        names = {"layers": "layers", "mass": "free", "support": "plate"}
+        return next((kind for key, kind in names.items() if key in barrier), KINDS[0])
+
+    def scene(self, folder: Path) -> Scene:
+        """Write scene and mesh into a folder, and return the scene as read from there.
+
+        Raises
+        ------
+        SceneError
+            The program refuses what is stated.
+        """
+        if self.body:
+            bodies.write(self.body, self.sizes, folder / self.tables["projectile"]["mesh"])
+        path = folder / f"{self.name}.toml"
+        path.write_text(tomli_w.dumps(self.tables), encoding="utf-8")
+        return load(path)
+
+
+def drawn(count: int, angles: int) -> list[DrawnScene]:
+    """Return so many scenes of each family, and the twelve bodies at so many of their angles.
+
+    More of them hold the fewer, so that stored runs are kept.
+    """
+    random = [one for family in FAMILIES for one in _of_family(family, count)]
+    return [*random, *_of_twelve(angles)]
+
+
+def _of_family(family: str, count: int) -> Iterator[DrawnScene]:
+    """Yield the scenes of a family."""
+    seed = SEED, [*FAMILIES].index(family)
+    rows, turns = _rows(RANGES, count, seed), _metals(count, seed)
+    kinds = _turns(KINDS, count, np.random.default_rng([*seed, 1]))
+    for at, (values, kind, (rod, metal)) in enumerate(zip(rows, kinds, turns, strict=True)):
+        projectile = FAMILIES[family](values)
+        barrier = _barrier(kind, metal, projectile, rod, values["barrier"])
+        name = f"{family.replace(', ', '-').replace(' ', '-')}-{at}"
+        yield _stated(name, family, projectile, rod, barrier, values)
+
+
+def _of_twelve(angles: int) -> Iterator[DrawnScene]:
+    """Yield the twelve bodies at their first angle, all of them at their second, and so on."""
+    seed, count = (SEED, len(FAMILIES)), angles * len(TWELVE)
+    numbers = zip(_rows(BENCH, count, seed), _metals(count, seed), strict=True)
+    for at in range(angles):
+        for body, (projectile, every) in TWELVE.items():
+            values, (rod, metal) = next(numbers)
+            name = f"{body} at {every[at]:g} deg".replace(" -", " minus ").replace(" ", "-")
+            yield _stated(name, OWN, projectile, rod, {"material": metal}, {**values, "angle": every[at]})
+
+
+def _rows(ranges: Mapping[str, tuple[float, float]], count: int, seed: Sequence[int]) -> list[Values]:
+    """Return so many rows of numbers, each column evenly over its range."""
+    if not count:
+        return []
+    ends = [[log(end) for end in r] if name in EVEN_LOGARITHM else r for name, r in ranges.items()]
+    points = qmc.Halton(len(ranges), rng=np.random.default_rng(seed)).random(count)
+    rows = qmc.scale(points, *np.transpose(ends))
+    even = np.array([name in EVEN_LOGARITHM for name in ranges])
+    rows[:, even] = np.exp(rows[:, even])
+    return [dict(zip(ranges, map(float, row), strict=True)) for row in rows]
+
+
+def _metals(count: int, seed: Sequence[int]) -> list[tuple[str, str]]:
+    """Return materials of projectile and barrier."""
+    rods, struck = np.random.default_rng([*seed, 2]), np.random.default_rng([*seed, 3])
+    return [*zip(_turns((*STEELS, *LIGHT), count, rods), _turns((*SOFT, *HARD), count, struck), strict=True)]
+
+
+def _turns(names: Sequence[str], count: int, rng: np.random.Generator) -> list[str]:
+    """Return so many names: rounds of all of them, each round in another order."""
+    rounds = -(-count // len(names))
+    return [names[at] for _ in range(rounds) for at in rng.permutation(len(names))][:count]
+
+
+def _barrier(kind: str, metal: str, projectile: Projectile, rod: str, share: float) -> Tables:
+    """Return the table of a barrier whose size follows that of the projectile."""
+    table: Tables = {"material": metal}
+    if kind == "plate":
+        thickness = between(share, 0.3, 1.2) * projectile.diameter
+        return table | {"thickness": metres(thickness), "support": "infinite"}
+    if kind == "free":
+        cylinder = pi / 4 * projectile.diameter**2 * projectile.length
+        mass = materials()[rod].rho * cylinder * projectile.filled
+        return table | {"mass": f"{mass * 30.0**share:.4g} kg"}
+    if kind == "layers":
+        base = SOFT[0] if metal != SOFT[0] else LIGHT[0]
+        layer = {"thickness": metres(between(share, 0.1, 0.6) * projectile.diameter), "material": metal}
+        return {"material": base, "layers": [layer]}
+    return table
+
+
+def _stated(
+    name: str, family: str, projectile: Projectile, rod: str, barrier: Tables, values: Values
+) -> DrawnScene:
+    """Return a scene with the material, barrier, motion and friction that were drawn."""
+    shape = projectile.tables or {"mesh": f"{name}.vtu", "mesh_unit": "m", "mesh_symmetry": "half"}
+    if projectile.body and projectile.length < projectile.diameter:
+        shape = shape | {"mesh_tip": "-z"}
+    f = round(max(0.0, values["friction"]), 3)
+    fall, speed = radians(values["fall"]), values["speed"]
+    v_n, spin = -speed * cos(fall), values["spin"]
+    omega = spin * abs(v_n) / max(projectile.length, projectile.diameter) if abs(spin) > SPINNING else 0.0
+    tables: Tables = {
+        "id": name,
+        "projectile": {**shape, "material": rod},
+        "barrier": barrier,
+        "surface": {"state": "custom", "friction": f, "source": "drawn at random"},
+        "impact": {
+            "angle": f"{values['angle']:.4g} deg",
+            "v_n": f"{v_n:.4g} m/s",
+            "v_t": f"{-speed * sin(fall):.4g} m/s",
+            "omega": f"{omega:.4g} rad/s",
+        },
+        "save": {"frames": 0},
+    }
+    return DrawnScene(name, family, tables, projectile.body, projectile.sizes)

@@ -1,0 +1,283 @@
+"""The study of coverage: its scenes, how a run is kept, which truths lie inside what was told."""
+
+import json
+import tempfile
+from pathlib import Path
+
+import numpy as np
+import outcome_maker
+import pandas
+import pytest
+from study_fakes import published
+
+import fem_impact
+import meshes
+from fem_impact.answers.report import Request
+from fem_impact.errors import ResultError, SceneError
+from fem_impact.evidence.studies import coverage as study
+from fem_impact.evidence.studies.coverage.bodies import BODIES, write
+from fem_impact.evidence.studies.coverage.families import FAMILIES
+from fem_impact.evidence.studies.coverage.judge import (
+    KEYS,
+    LEVELS,
+    REDUCED,
+    coverage,
+    ends,
+    times,
+    told_errors,
+    told_of_reduced,
+)
+from fem_impact.evidence.studies.coverage.run import (
+    DEFAULT,
+    FINER,
+    FINEST,
+    MODAL,
+    MOST,
+    CoverageResult,
+    CoverageRun,
+)
+from fem_impact.evidence.studies.coverage.scenes import BENCH, KINDS, OWN, RANGES, DrawnScene, drawn
+from fem_impact.evidence.studies.coverage.twelve import TWELVE
+from fem_impact.jobs.job import Failure
+from fem_impact.progress import Notice, Progress
+
+SCENE = DrawnScene("tube-0", "tube", {"barrier": {"material": "copper"}}, "", {})
+
+
+def banded(values=(), halves=(), **changed):
+    """An outcome with limits and half-widths of some keys."""
+    return outcome_maker.outcome(
+        **{
+            "mu": 0.3,
+            "finished": True,
+            "tip_size_m": 4e-4,
+            "mesh_limit": dict(values),
+            "mesh_band": dict(halves),
+            **changed,
+        }
+    )
+
+
+def finer(**changed):
+    """An outcome of a finer mesh."""
+    return banded(**{"tip_size_m": 2e-4, **changed})
+
+
+def judged(default, truth, model=FINER):
+    """The told errors of one scene."""
+    results = {(SCENE.name, DEFAULT): CoverageResult(default), (SCENE.name, model): CoverageResult(truth)}
+    return told_errors([SCENE], results)
+
+
+def test_every_family_has_as_many_scenes_and_more_of_them_hold_the_fewer():
+    few, many = drawn(2, 1), drawn(9, 5)
+    families = [scene.family for scene in many]
+    assert all(families.count(name) == 9 for name in FAMILIES)
+    assert families.count(OWN) == 5 * len(TWELVE) == 60
+    assert all(scene in many for scene in few)
+    assert len({scene.name for scene in many}) == len(many)
+    assert {scene.group for scene in many} == set(KINDS)
+
+
+def test_motion_and_friction_cover_both_signs_and_their_ranges():
+    scenes = [scene.tables for scene in drawn(16, 0)]
+    numbers = {
+        name: np.array([float(tables["impact"][name].split()[0]) for tables in scenes])
+        for name in ("angle", "v_n", "v_t", "omega")
+    }
+    speed = np.hypot(numbers["v_n"], numbers["v_t"])
+    assert RANGES["speed"][0] * 0.999 < speed.min() < 0.2 and 10 < speed.max() < RANGES["speed"][1] * 1.001
+    assert numbers["v_n"].max() < 0
+    for name in ("angle", "v_t", "omega"):
+        assert (numbers[name] > 0).mean() > 0.2 and (numbers[name] < 0).mean() > 0.2
+    friction = np.array([tables["surface"]["friction"] for tables in scenes])
+    assert friction.min() == 0 and friction.max() > 0.9 and 0.03 < (friction == 0).mean() < 0.2
+    assert BENCH["speed"] == (0.5, 5.0)
+
+
+def test_the_scenes_can_be_read_and_their_bodies_made(tmp_path):
+    for drawn_scene in drawn(2, 1):
+        scene = drawn_scene.scene(tmp_path)
+        assert scene.id == drawn_scene.name and scene.projectile.body().mass > 0
+
+
+# area of half a section over width squared: square, hexagon over its corners, square over its diagonal
+AREAS = {"square bar": 1 / 2, "hexagonal bar": 3 * 3**0.5 / 16, "corner bar": 1 / 4, "bent bar": 1 / 2}
+
+
+@pytest.mark.parametrize("body", BODIES)
+def test_bodies_are_whole_and_have_the_volume_of_their_section(body):
+    sizes = {"width": 0.012, "length": 0.04, "thickness": 0.003, "bend": 0.004, "share": 0.5}
+    points, cells = BODIES[body](sizes)
+    volume = {
+        "plate": 0.5 * 0.012 * 0.003 * 0.04,
+        # of a frustum with a square base
+        "tapered bar": 0.5 * 0.04 * 0.012**2 * (1 + 0.5 + 0.25) / 3,
+    }.get(body, AREAS.get(body, 0.0) * 0.012**2 * 0.04)
+    edges = points[cells]
+    corner = np.linalg.det(np.stack([edges[:, k] - edges[:, 0] for k in (1, 3, 4)], axis=1))
+    assert (corner > 0).all() and points[:, 1].min() == 0 and points[:, 2].min() == 0
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "body.vtu"
+        write(body, sizes, path)
+        half = meshes.read_own(path, 1.0, meshes.Stated("half", None, ())).half
+    assert meshes.volume(half) == pytest.approx(volume, rel=2e-3)
+
+
+def test_a_run_keeps_its_outcome_and_what_was_told(monkeypatch):
+    outcome = banded({"mu": 0.31}, {"mu": 0.02})
+
+    def simulate(scene, fidelity, options=None, **_):
+        if options is not None:
+            assert scene.accuracy.levels == 4
+            options.progress(Notice("a sentence"))
+            options.progress(Progress(0.0, 1.0, 0, 0.0, "", 7.0, "tube-0, level 2 of 3"))
+            options.progress(Progress(0.0, 1.0, 0, 0.0, "", 3.0, "tube-0, level 3 of 3"))
+        return outcome
+
+    monkeypatch.setattr(fem_impact, "simulate", simulate)
+    job = CoverageRun(drawn(1, 0)[0], FINER)
+    kept = job.read(job.run())
+    assert kept.outcome == outcome and kept.end == "finished" and kept.why == ""
+    assert kept.notices == ("a sentence",) and kept.forecast_s == 7.0 and 0 <= kept.left_s < 10
+    assert kept.planned_s is None or kept.planned_s > 0
+    with pytest.raises(ResultError, match="damaged"):
+        job.read(json.dumps({"outcome": None}))
+
+
+@pytest.mark.parametrize(
+    ("error", "trouble"), [(SceneError("is too thin.", key="a"), "refused"), (KeyError("a"), "fault")]
+)
+def test_refusals_and_faults_are_results(monkeypatch, error, trouble):
+    def simulate(*_, **__):
+        raise error
+
+    monkeypatch.setattr(fem_impact, "simulate", simulate)
+    job = CoverageRun(drawn(1, 0)[0], DEFAULT)
+    kept = job.read(job.run())
+    assert kept.end == kept.trouble == trouble and not kept.has_numbers
+    assert ("Traceback" in kept.reason) == (trouble == "fault")
+
+
+def test_ends_tell_numbers_from_none():
+    later = CoverageResult(banded(finished=False, stopped_because="the tail strikes"))
+    assert later.end == "strikes again" and later.has_numbers and later.why == "the tail strikes"
+    reasons = {"mu": "too few nodes"}
+    assert CoverageResult(banded(mu=None, reasons=reasons)).end == "not resolved"
+    cut = CoverageResult(banded(mu=None, reasons=reasons, finished=False))
+    assert cut.end == "cut off" and cut.why == "too few nodes"
+    table = ends([SCENE], {(SCENE.name, DEFAULT): later}, DEFAULT)
+    assert table[["family", "end", "reason"]].to_numpy().tolist() == [
+        ["tube", "strikes again", "the tail strikes"]
+    ]
+
+
+def test_a_band_holds_the_limit_of_the_finer_run_or_not():
+    default = banded({"mu": 0.30, "e_edge": 0.5}, {"mu": 0.02, "e_edge": 0.01})
+    truth = finer(mu=0.33, e_edge=0.505, mesh_limit={"mu": 0.315}, mesh_band={"mu": 0.1})
+    table = judged(default, truth).set_index("quantity")
+    assert list(table.index) == ["e", "mu"] and set(table["told"]) == {LEVELS}
+    assert table.loc["mu", "error"] == pytest.approx(0.015)
+    assert table.loc["mu", "inside"] and not table.loc["mu", "inside_finest"]
+    assert table.loc["e", "truth"] == 0.505 and table.loc["e", "inside"] and table.loc["e", "inside_finest"]
+    assert not judged(default, finer(mu=0.5, e_edge=0.5)).set_index("quantity").loc["mu", "inside"]
+
+
+def test_zeros_of_physics_runs_without_numbers_and_meshes_no_finer_are_left_out():
+    default = banded({"mu": 0.0}, {"mu": 0.0})
+    assert judged(default, finer(mu=1e-12)).empty and len(judged(default, finer(mu=1e-3))) == 1
+    assert judged(default, banded(mu=0.1)).empty
+    assert judged(default, finer(mu=None)).empty
+
+
+def test_shares_have_wilson_intervals_and_the_factor_that_is_needed():
+    default, errors = banded({"mu": 0.3}, {"mu": 0.01}), (0.002, 0.005, 0.02, 0.008)
+    rows = [judged(default, finer(mu=0.3 + error)) for error in errors]
+    (row,) = coverage(pandas.concat(rows), ["told", "quantity"]).to_dict("records")
+    assert (row["n"], row["inside"], row["share"]) == (4, 3, 0.75)
+    n, p, z = 4, 0.75, 1.959964
+    centre, half = p + z**2 / (2 * n), z * (p * (1 - p) / n + z**2 / (4 * n**2)) ** 0.5
+    assert row["low"] == pytest.approx((centre - half) / (1 + z**2 / n), rel=1e-5)
+    assert row["high"] == pytest.approx((centre + half) / (1 + z**2 / n), rel=1e-5)
+    assert row["half"] == pytest.approx(0.01) and row["error"] == pytest.approx(0.0065)
+    assert row["needed"] == pytest.approx(2.0)
+
+
+def test_the_error_of_the_reduced_model_is_read_from_what_it_tells():
+    text = "nine tenths stay below: e 0.027 and 0.072, mu 1e-2 and 3e-2, E_vib 0.002 and 0.016 of E_0."
+    modal = outcome_maker.outcome(
+        mesh_limit=None, mesh_band=None, limitations=[{"kind": "model", "text": text}], mu=0.3, e_edge=0.5
+    )
+    assert [told_of_reduced(modal, name) for name in ("e", "mu", "E_vib", "Omega")] == [
+        0.072,
+        0.03,
+        0.016,
+        None,
+    ]
+    results = {
+        (SCENE.name, MODAL): CoverageResult(modal),
+        (SCENE.name, DEFAULT): CoverageResult(banded(mu=0.34, e_edge=0.55)),
+    }
+    table = told_errors([SCENE], results).set_index("quantity")
+    assert set(table["told"]) == {REDUCED} and table["inside"].to_dict() == {
+        "e": True,
+        "mu": False,
+        "E_vib": True,
+    }
+
+
+def test_every_quantity_of_the_reduced_model_is_told_by_a_real_outcome():
+    outcome = fem_impact.simulate(fem_impact.load("t5b"), "modal")
+    told = {name: told_of_reduced(outcome, name) for name in KEYS}
+    assert all(told[name] > 0 for name in ("e", "mu", "Omega", "E_vib"))
+    assert told["e"] != told["mu"]
+
+
+def test_told_times_are_judged_by_class_and_factor():
+    outcome = banded(cpu_s=4.0, setup_cpu_s=1.0)
+    results = {(SCENE.name, DEFAULT): CoverageResult(outcome, planned_s=50.0, forecast_s=10.0, left_s=19.0)}
+    assert times([SCENE], results)["inside"].tolist() == [False, True]
+    results = {(SCENE.name, DEFAULT): CoverageResult(outcome, planned_s=15.0, forecast_s=10.0, left_s=21.0)}
+    assert times([SCENE], results)["inside"].tolist() == [True, False]
+
+
+def test_finer_runs_follow_where_there_are_numbers(tmp_path):
+    request = Request(tmp_path)
+    first = study.plan(request, {})
+    names = {job.name: job for job in first}
+    assert {job.model for job in first} == {DEFAULT, MODAL}
+    assert not any(job.drawn.body for job in first if job.model == MODAL)
+    results = {
+        name: CoverageResult(banded() if job.model == DEFAULT else None) for name, job in names.items()
+    }
+    second = [job for job in study.plan(request, results) if job.name not in names]
+    assert {job.model for job in second} == {FINER} and len(second) == len(study.scenes(request))
+    for at, job in enumerate(second):
+        results[job.name] = CoverageResult(finer(), cpu_s=(5.0, 500.0)[at % 2])
+    third = [job for job in study.plan(request, results) if job.name not in results]
+    assert {job.model for job in third} == {FINEST} and len(third) == -(-len(second) // 2)
+
+
+def test_the_report_counts_and_shows(tmp_path):
+    request, results = Request(tmp_path, quick=True), {}
+    for job in study.plan(request, {}):
+        results[job.name] = CoverageResult(banded({"mu": 0.3}, {"mu": 0.02}), planned_s=1.0)
+    for job in study.plan(request, results):
+        results.setdefault(job.name, CoverageResult(finer(mu=0.31), cpu_s=60.0))
+    lost = next(job.name for job in study.plan(request, {}) if job.model == DEFAULT)
+    results[lost] = Failure(lost, "killed")
+    found = published(study.conclude, request, results)
+    assert "mu 9 of 9" in found.text and "1 fault" in found.text
+    assert (tmp_path / "errors.csv").is_file() and (tmp_path / "figures" / "coverage.svg").is_file()
+
+
+def test_a_run_that_takes_too_long_is_broken_off(monkeypatch):
+    def simulate(scene, fidelity, options):
+        while True:
+            options.progress(Progress(0.0, 1.0, 0, 0.0, "", None, "tube-0, level 2 of 3"))
+
+    monkeypatch.setattr(fem_impact, "simulate", simulate)
+    monkeypatch.setitem(MOST, DEFAULT, 0.05)
+    job = CoverageRun(drawn(1, 0)[0], DEFAULT)
+    kept = job.read(job.run())
+    assert kept.end == "too dear" and "level 2 of 3" in kept.why and 0.05 < kept.cpu_s < 5
