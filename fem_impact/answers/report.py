@@ -43,6 +43,8 @@ class Request:
     cases : str
         What is computed, where that is not told by ``ids``, such as the digest of a sweep's cases: by it the
         report of something else in ``out`` is known.
+    first : int
+        So many scenes of each family alone, where the study draws them; 0: all.
     """
 
     out: Path
@@ -50,16 +52,22 @@ class Request:
     quick: bool = False
     line: str = ""
     cases: str = ""
+    first: int = 0
 
     @property
     def about(self) -> str:
         """What is computed; a report of something else in the directory is set aside."""
-        return self.cases or " ".join([*self.ids, *(["--quick"] if self.quick else [])])
+        return self.cases or " ".join(self._asked)
 
     def command(self, study: str) -> str:
         """Return the command line of this request."""
-        options = [*self.ids, *(["--quick"] if self.quick else [])]
-        return self.line or " ".join(["fem-impact study", study, *options])
+        return self.line or " ".join(["fem-impact study", study, *self._asked])
+
+    @property
+    def _asked(self) -> list[str]:
+        """Return what a command line asks for beside the study's name."""
+        first = [f"--first {self.first}"] if self.first else []
+        return [*self.ids, *first, *(["--quick"] if self.quick else [])]
 
 
 @dataclass(frozen=True, slots=True)

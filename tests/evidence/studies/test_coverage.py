@@ -258,6 +258,13 @@ def test_finer_runs_follow_where_there_are_numbers(tmp_path):
     assert {job.model for job in third} == {FINEST} and len(third) == -(-len(second) // 2)
 
 
+def test_a_first_part_may_be_asked_for(tmp_path):
+    part, whole = Request(tmp_path, first=2), Request(tmp_path)
+    few, every = study.scenes(part), study.scenes(whole)
+    assert len(few) == 2 * (len(FAMILIES) + len(TWELVE)) and all(scene in every for scene in few)
+    assert part.command("coverage") == "fem-impact study coverage --first 2" and part.about != whole.about
+
+
 def test_the_report_counts_and_shows(tmp_path):
     request, results = Request(tmp_path, quick=True), {}
     for job in study.plan(request, {}):

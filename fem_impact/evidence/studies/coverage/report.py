@@ -21,7 +21,7 @@ from fem_impact.evidence.studies.coverage.judge import (
     times,
     told_errors,
 )
-from fem_impact.evidence.studies.coverage.run import DEFAULT, FINER, FINEST, MODAL, MOST
+from fem_impact.evidence.studies.coverage.run import DEFAULT, FINER, FINEST, MODAL, MOST, NEXT
 from fem_impact.evidence.studies.coverage.scenes import SEED, DrawnScene
 from fem_impact.figures.panels import Mark, Panel, Picture, Series
 from fem_impact.tables.table import Column, Table
@@ -84,8 +84,9 @@ def report_of(scenes: Sequence[DrawnScene], results: Results) -> StudyReport:
             f"Scenes drawn with seed {SEED}; each family of projectiles as often as every other.",
             "The truth is a finer run of the same program: it knows no error that all meshes share.",
             f"A default run was broken off after {MOST[DEFAULT]:g} s of processor time, one with one level "
-            f"more after {MOST[FINER]:g} s, with two after {MOST[FINEST]:g} s. Of a scene that was too dear "
-            "there is no pair.",
+            f"more after {MOST[FINER]:g} s, with two after {MOST[FINEST]:g} s. A run with one level more "
+            f"followed where the default one took at most {NEXT[FINER][1]:g} s, one with two where that took "
+            f"at most {NEXT[FINEST][1]:g} s: dear scenes are counted and lack a pair.",
             f"A number that is zero by physics on both sides, such as mu without friction, is left out. All "
             f"runs together took {cpu / 60:.0f} minutes of processor time.",
         ],
