@@ -15,8 +15,11 @@ from .arrays import Floats, floats
 from .chord import both_sides, mirrored_chord
 from .errors import ShapeError
 from .nose import SHAPES, Nose
+from .rounds import Round, around
+from .shapes import of_nose
 from .slenderness import slenderness
 from .touch import LEVEL, Touch, level_part, on_side, require_inclination
+from .turned import Turned
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,23 +155,18 @@ class Projectile:
         side = np.vstack([self.meridian(), [self.diameter / 2, self.length]])
         return mirrored_chord(both_sides(side), alpha, height)
 
-    def other_edges(self, alpha: float) -> list[tuple[str, float, float, float]]:
-        """Round edges that do not touch first but may touch later: name, (x, z) of the centre and radius, m.
-
-        In the plane of motion the rod is the hull of the arcs of its tip, the shoulders of its cone and its
-        tail.
-        """
+    def rounds(self) -> list[Round]:
+        """Arcs and corners of the convex outline in the plane of motion, in order around it."""
         nose, R = self.nose, self.diameter / 2
-        side, alpha = (-1.0 if alpha < 0 else 1.0), abs(alpha)
-        on_shoulder = nose.has_cone and alpha > nose.sweep
-        on_arc = not on_shoulder and (alpha > 0 or nose.face == 0)
-        shoulders = [x for x in (-R, R) if nose.has_cone and not (on_shoulder and x > 0)]
-        arcs = {-nose.face, nose.face} - ({nose.face} if on_arc else set())
-        return [
-            *(("tail", side * x, self.length, 0.0) for x in (-R, R)),
-            *(("shoulder", side * x, nose.z_side, 0.0) for x in shoulders),
-            *(("nose" if on_shoulder else "other edge", side * x, nose.r, nose.r) for x in sorted(arcs)),
-        ]
+        side = [Round(nose.face, nose.r, nose.r, 0.0 if nose.face else -nose.sweep, nose.sweep, 0)]
+        if nose.has_cone:
+            side.append(Round(R, nose.z_side, 0.0, nose.sweep, 0.5 * math.pi, 1))
+        return around([*side, Round(R, self.length, 0.0, 0.5 * math.pi, math.pi, len(side))])
+
+    def reversed(self) -> Turned:
+        """Return the body with its tail as its tip."""
+        outline = of_nose(self.nose, self.length)
+        return Turned(outline, ((self.length, self.density),)).reversed()
 
     def radius(self, z: Floats) -> Floats:
         """Outer radius, m, at heights `z`, m."""

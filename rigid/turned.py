@@ -13,18 +13,12 @@ from .arms import Arms, point_arms
 from .arrays import Floats, floats
 from .chord import both_sides, mirrored_chord
 from .errors import ShapeError, TooLongError
+from .rounds import LONG, Round, around, rounds_of
 from .slenderness import slenderness
 from .touch import LEVEL, Touch, level_part, on_side, require_inclination
 
 CORNER = math.radians(12.0)
 """A turn of the profile above this, rad, is an edge of the body, not a step of a smooth curve."""
-SPACING = math.radians(15.0)
-"""Turn, rad, between two places of a smooth curve that are looked at as edges that may touch."""
-
-
-LONG = 2.0
-"""Steps of a smooth curve beside it that a straight part is longer than."""
-
 _WITHIN = np.array([1e-6, 1 - 1e-6])  # of a straight piece: beside its ends, where a radius may jump
 
 
@@ -240,34 +234,21 @@ class Turned:
                 found.append((length, float(height[other] - height[first])))
         return min(found, key=lambda side: side[1] / side[0] if side[0] else math.inf)
 
-    def other_edges(self, alpha: float) -> list[tuple[str, float, float, float]]:
-        """Places that do not touch first but may touch later: name, (x, z) of the centre and radius, m.
+    def rounds(self) -> list[Round]:
+        """Arcs and corners of the convex outline in the plane of motion, in order around it."""
+        return around(rounds_of(self.outline, CORNER))
 
-        Edges of the convex outline in the plane of motion, and places `SPACING` apart on its smooth curves.
-        """
-        first, near = int(self._touching(np.array(alpha))), 1.2 * self.tip_curvature(alpha)
-        side = -1.0 if alpha < 0 else 1.0
-        bends, (low, high) = self._bends(), self._normals()
-        turned = np.floor(0.5 * (low + high) / SPACING)
-        picked = np.flatnonzero((bends == 0.0) & (high > low) | (np.diff(turned, prepend=-1.0) > 0))
-        picked = picked[(self.outline[picked, 0] > 0) & self._on_hull()[picked]]
-        found = []
-        for vertex in picked:
-            rho, z = (float(part) for part in self.outline[vertex])
-            name = "tail" if z >= self.length else "other edge"
-            for x in (-rho, rho):
-                away = math.dist((x, z), tuple(self.outline[first]))
-                if not (vertex == first and x > 0) and away > near:
-                    found.append((name, side * x, z, 0.0))
-        return found
-
-    def _on_hull(self) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-        """(k,) whether a vertex touches at some inclination up to a right angle, or stands at the tail."""
-        touched = self._touching(np.linspace(0.0, 0.5 * np.pi, 721)[:-1])
-        on_hull = np.zeros(len(self.outline), dtype=bool)
-        on_hull[touched] = True
-        on_hull |= self.outline[:, 1] >= self.length
-        return on_hull
+    def reversed(self) -> Turned:
+        """Return the body with its tail as its tip."""
+        behind, ends = self.outline[::-1] * (1, -1) + (0, self.length), [end for end, _ in self.density]
+        if behind[0, 0] > 0.0:
+            behind = np.vstack([[0.0, 0.0], behind])
+        if behind[-2, 1] == behind[-1, 1]:
+            behind = behind[:-1]  # a flat face that is now the tail ends at its edge
+        starts = [0.0, *ends[:-1]]
+        density = [(self.length - z, rho) for z, (_, rho) in zip(starts, self.density, strict=True)][::-1]
+        bore = None if self.bore is None else self.bore[::-1] * (1, -1) + (0, self.length)
+        return Turned(behind, tuple(density), bore)
 
     def _touching(self, alpha: Floats) -> np.ndarray[tuple[int, ...], np.dtype[np.int64]]:
         """Return the vertex that is lowest; of those equally low, the one furthest from the tip."""

@@ -5,34 +5,45 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import cos, sin, sqrt
+from math import hypot
+from typing import Self
 
 import numpy as np
 
 from fem_impact.arrays import Array
 from fem_impact.case.case import Case
 from fem_impact.fem.kernels import compiled_before
-from fem_impact.modal.march import integrate_impact
+from fem_impact.modal.groove import WORK
+from fem_impact.modal.laws import give_law, set_law, start_of
+from fem_impact.modal.march import march
 from fem_impact.modal.motion import (
     AT,
+    CLOCK,
     MOST_CONTACTS,
     MOST_ROWS,
-    NOTHING,
+    OVER,
+    ROW,
     SUM,
     Bounds,
-    ModalEnd,
+    ModalState,
     Modes,
+    Sites,
     Start,
+    Touched,
 )
+from fem_impact.modal.pressed import PressedSite, pressed_sites
 from fem_impact.modal.rod import ModalRod, modal_rod
+from fem_impact.modal.sites import lowest_place
+from fem_impact.modal.touch import spent
 from fem_impact.physics.beam import horizon
 from fem_impact.physics.contact import fall
-from fem_impact.physics.contact_law import ContactLaw, contact_law
-from fem_impact.physics.flow_law import FlowLaw, flow_law
+from fem_impact.physics.contact_law import ContactLaw
+from fem_impact.physics.flow_law import FlowLaw
 from fem_impact.progress import Progress, compiling, setting_up
 
 STEPS = 1000  # over the estimated contact
 COMPILE = 6  # s, about, once
+LATER = 20  # of the latest time of finite elements, over which a contact of the reduced model may last
 FASTEST = 0.1  # of a step, rad of the highest mode and of the struck point on its contact
 
 
@@ -53,8 +64,9 @@ class ModalResult:
     energies : (k,) vibration of each mode, J
     contacts : (m, 4) start, end, s, impulses along n and t, N s
     force : largest normal force, N
+    sites : what touched, in the order of its first touch
     finished, reason : whether the impact is over, and why the march ended
-    separated : whether the tip had left the barrier for good, or until another point struck
+    last, time : motion and modes at the end, gravity in them, and its time, s
     record : (m, 16) what moved over time, see `fem_impact.modal.motion`; no rows where none was wanted
     step, steps, wall, cpu : s, -, s, s
     """
@@ -80,10 +92,12 @@ class ModalResult:
     residual: float
     fallen: float
     contacts: Array
+    sites: tuple[PressedSite, ...]
     force: float
     finished: bool
-    separated: bool
     reason: str
+    last: ModalState
+    time: float
     record: Array
     step: float
     steps: int
@@ -96,70 +110,162 @@ class ModalResult:
         return float(self.energies.sum())
 
 
+@dataclass(frozen=True, slots=True)
+class Course:
+    """An impact that is being followed: what moves, what has touched, and what was booked.
+
+    Attributes
+    ----------
+    now : motion and modes; held : the contact of each site
+    clock, tally : (9,), (5,) see `fem_impact.modal.motion`
+    contacts : (MOST_CONTACTS, 4) start, end, s, impulses along n and t, N s, of each interval of contact
+    record : (m, 16) what moved over time
+    """
+
+    now: ModalState
+    held: Touched
+    clock: Array
+    tally: Array
+    contacts: Array
+    record: Array
+
+    @classmethod
+    def of(cls, sites: int, now: ModalState, rows: int = 0) -> Self:
+        """Return the course of a rod that has not touched, with a record of so many rows."""
+        clock = np.zeros(len(CLOCK))
+        clock[CLOCK.every] = 1.0
+        tally, contacts = np.zeros(len(SUM)), np.zeros((MOST_CONTACTS, 4))
+        return cls(now, Touched.nothing(sites), clock, tally, contacts, np.zeros((rows, len(ROW))))
+
+    def follow(self, start: Start, modes: Modes, sites: Sites, bounds: Bounds) -> int:
+        """Go on until a site without a law touches, which is returned, or to an end; see `march`."""
+        course = self.now, self.held, self.clock, self.tally, self.contacts, self.record
+        return int(march(start, modes, sites, bounds, *course))
+
+
+def drop_round(
+    start: Start,
+    law: ContactLaw,
+    flow: FlowLaw,
+    velocity: tuple[float, float, float],
+    bounds: Bounds,
+    radius: float,
+) -> Course:
+    """Return the course of a stiff body that touches with a round place, m, under its mass centre.
+
+    ``velocity`` is its normal, m/s, tangential, m/s, and spin, rad/s, before.
+    """
+    sites, rigid = Sites.point(0.0, 0.0, radius), np.zeros(len(AT))
+    rigid[:3], rigid[AT.height] = velocity, radius
+    course = Course.of(1, ModalState(rigid, np.zeros(0), np.zeros(0)))
+    v_n, v_t, omega = velocity
+    set_law(course.held, 0, law, flow, 0.5 * start.mass * (v_n**2 + v_t**2 + start.k2 * omega**2))
+    course.follow(start, Modes(np.zeros(0)), sites, bounds)
+    return course
+
+
+@dataclass(frozen=True, slots=True)
+class Arrival:
+    """How a rod comes to a strike.
+
+    Attributes
+    ----------
+    v_n, v_t, omega : m/s, rad/s, as seen from the barrier
+    turn : since the scene's attitude, rad
+    q, rate : (k,) amplitudes and rates of the modes, sqrt(kg) m and sqrt(kg) m/s
+    """
+
+    v_n: float
+    v_t: float
+    omega: float
+    turn: float
+    q: Array
+    rate: Array
+
+
 def solve(
     case: Case,
     progress: Callable[[Progress], None] | None = None,
     recorded: bool = False,
     step: float = 1.0,
+    arrival: Arrival | None = None,
 ) -> ModalResult:
     """Compute an impact; the modes of a new rod are computed first, and a first run says that it compiles.
 
     Where it is ``recorded``, the result holds what moved over time. ``step`` is the time step over the usual.
+    The rod comes as its scene says, or as its ``arrival`` does, on a surface that nothing has touched.
     """
     if progress is not None:
         progress(setting_up(case.max_time, case.scene.id))
-        if not compiled_before("march.integrate_impact"):
+        if not compiled_before("march.march"):
             progress(compiling(case.max_time, COMPILE))
-    rod, law = (
-        modal_rod(case.bodies, case.slots.vibrating),
-        contact_law(case.contact, case.slots.contact_loss),
-    )
-    flow = flow_law(case.contact, case.slots.rod_law, case.slots.barrier_law)
-    contacts = np.zeros((MOST_CONTACTS, 4))
-    start, modes = _start(case, rod), Modes(rod.omega, rod.along_t, rod.along_n)
-    E_0 = _kinetic(rod, start.v_n, start.v_t, start.omega)
-    widest = reach(law, flow, E_0)
-    fastest = max([*rod.omega, contact_rate(law, flow, start, modes, widest)])
-    dt = step * min(case.estimate.duration / STEPS, FASTEST / fastest)
-    bounds = Bounds(dt, horizon(case.scene.projectile), case.max_time, widest)
+    rod = modal_rod(case.bodies, case.slots.vibrating)
+    start, modes = start_of(case, rod), Modes(rod.omega)
+    course = Course.of(len(rod.sites.along_t), _arriving(case, rod, arrival), MOST_ROWS if recorded else 0)
+    E_0 = _kinetic(rod, *course.now.rigid[:3]) + float(_energies(rod, course.now).sum())
+    slowest, rate = _approach(rod, course.now), 0.0
+    if rod.first >= 0 and arrival is None:
+        rate = give_law(case, rod, course.now, course.held, rod.first, E_0, slowest)
+    dt = step * min(case.estimate.duration / STEPS, FASTEST / max([*rod.omega, rate]))
+    latest = case.max_time if case.scene.accuracy.max_time else LATER * case.max_time
+    bounds = Bounds(dt, horizon(case.scene.projectile), latest)
     # compiles, or fetches what was compiled before, so that times are times of the impact
-    record = np.zeros((MOST_ROWS if recorded else 0, 16))
-    integrate_impact(start, law, flow, modes, rod.others, bounds._replace(horizon=0.0), contacts, record[:0])
+    course.follow(start, modes, rod.sites, bounds._replace(horizon=0.0))
     wall, cpu = time.perf_counter(), time.process_time()
-    end = integrate_impact(start, law, flow, modes, rod.others, bounds, contacts, record)
+    while (touched := course.follow(start, modes, rod.sites, bounds)) >= 0:
+        rate = hypot(rate, give_law(case, rod, course.now, course.held, touched, E_0, slowest))
+        bounds = bounds._replace(step=min(bounds.step, step * FASTEST / rate))
     wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
-    return _result(case, rod, end, E_0, contacts, bounds, record, (wall, cpu))
+    return _result(case, rod, course, touched == OVER, E_0, bounds, (wall, cpu))
+
+
+def _arriving(case: Case, rod: ModalRod, arrival: Arrival | None) -> ModalState:
+    """Return the motion at the first touch."""
+    rigid, k, impact, struck = np.zeros(len(AT)), len(rod.omega), case.scene.relative, case.scene.barrier
+    rigid[:3] = impact.v_n, impact.v_t, impact.omega
+    q, rate = np.zeros(k), np.zeros(k)
+    if arrival is not None:
+        rigid[:3] = arrival.v_n, arrival.v_t, arrival.omega
+        rigid[AT.turn], q, rate = arrival.turn, arrival.q.copy(), arrival.rate.copy()
+    low_t, low_n = lowest_place(rod.sites, rigid[AT.turn], q)
+    rigid[AT.height] = -low_n
+    rigid[AT.away_n], rigid[AT.away_t] = (struck.centre_depth or 0.0) - low_n, -low_t - struck.centre_offset
+    return ModalState(rigid, q, rate)
+
+
+def _approach(rod: ModalRod, now: ModalState) -> float:
+    """Return the speed, m/s, at which what is lowest of the rigid rod comes towards the barrier."""
+    low_t, _ = lowest_place(rod.sites, now.rigid[AT.turn], now.q)
+    return float(now.rigid[AT.Omega] * low_t - now.rigid[AT.V_n])
+
+
+def _energies(rod: ModalRod, now: ModalState) -> Array:
+    """Return the energy of each mode (k,), J."""
+    return np.asarray(0.5 * (now.rate**2 + (rod.omega * now.q) ** 2))
 
 
 def _result(
     case: Case,
     rod: ModalRod,
-    end: ModalEnd,
+    course: Course,
+    over: bool,
     E_0: float,
-    contacts: Array,
     bounds: Bounds,
-    record: Array,
     took: tuple[float, float],
 ) -> ModalResult:
-    """Return the result of a march that ``took`` wall and processor time, s."""
-    scene, motion, tally = case.scene, end.motion.rigid[:3], end.tally
-    energies = 0.5 * (end.motion.rate**2 + (rod.omega * end.motion.q) ** 2)
-    skin, friction = tally[SUM.shear] + tally[SUM.friction], tally[SUM.friction]
-    plastic = tally[SUM.flow] + tally[SUM.shear]
-    base_n, base_t, base_spin = end.motion.rigid[[AT.V_bn, AT.V_bt, AT.Omega_b]]
+    """Return the result of a march, ``over`` or cut off, that ``took`` wall and processor time, s."""
+    scene, now, tally, clock = case.scene, course.now, course.tally, course.clock
+    motion, energies = now.rigid[:3], _energies(rod, now)
+    plastic, friction, held_n, held_t = spent(course.held, course.held.work_t)
+    viscous = tally[SUM.viscous]
+    if over:  # a viscous dent that is left swells without a push, and what springs held has slipped
+        viscous, held_n = viscous + held_n, 0.0
+    base_n, base_t, base_spin = now.rigid[[AT.V_bn, AT.V_bt, AT.Omega_b]]
     barrier = 0.5 * (scene.barrier.mass or 0.0) * float(base_n**2 + base_t**2)
     barrier += 0.5 * (scene.barrier.inertia or 0.0) * float(base_spin**2)
-    given = barrier + tally[SUM.plate]
-    spent = (
-        _kinetic(rod, *motion)
-        + energies.sum()
-        + friction
-        + plastic
-        + tally[SUM.viscous]
-        + sum(end.held)
-        + given
-    )
-    fell = fall(case.slots.gravity, scene.impact.angle, end.time, contacts[: end.touches, :2])
+    parts = energies.sum(), friction, plastic, viscous, held_n, held_t, barrier, tally[SUM.plate]
+    contacts = course.contacts[: int(clock[CLOCK.touches])]
+    fell = fall(case.slots.gravity, scene.impact.angle, clock[CLOCK.time], contacts[:, :2])
     V_n, V_t = motion[0] + fell[0], motion[1] + fell[1]
     kinetic = _kinetic(rod, V_n, V_t, motion[2])
     return ModalResult(
@@ -172,88 +278,37 @@ def _result(
         energies=energies,
         friction=friction,
         plastic=plastic,
-        skin=skin,
-        viscous=tally[SUM.viscous],
-        stored=sum(end.held),
+        skin=friction + float(course.held.works[:, WORK.shear].sum()),
+        viscous=viscous,
+        stored=held_n + held_t,
         plate=tally[SUM.plate],
         barrier=barrier,
         V_bn=base_n,
         V_bt=base_t,
         Omega_b=base_spin,
-        away=(float(end.motion.rigid[AT.away_n]), float(end.motion.rigid[AT.away_t])),
-        residual=E_0 + tally[SUM.gravity] - spent,
+        away=(float(now.rigid[AT.away_n]), float(now.rigid[AT.away_t])),
+        residual=E_0 + tally[SUM.gravity] - _kinetic(rod, *motion) - sum(parts),
         fallen=tally[SUM.gravity] + kinetic - _kinetic(rod, *motion),
-        contacts=contacts[: end.touches],
+        contacts=contacts,
+        sites=pressed_sites(case, rod, course.held),
         force=tally[SUM.force],
-        finished=end.over,
-        separated=end.over or (end.struck != NOTHING and not any(end.held)),
-        reason=_reason(rod, end, bounds),
-        record=record[: end.rows],
+        finished=over,
+        reason=_reason(over, bounds),
+        last=now,
+        time=float(clock[CLOCK.time]),
+        record=course.record[: int(clock[CLOCK.rows])],
         step=bounds.step,
-        steps=end.steps,
+        steps=int(clock[CLOCK.steps]),
         wall=took[0],
         cpu=took[1],
     )
 
 
-def _reason(rod: ModalRod, end: ModalEnd, bounds: Bounds) -> str:
+def _reason(over: bool, bounds: Bounds) -> str:
     """Return why the march ended, as a sentence."""
-    if end.over:
+    if over:
         return f"The rod does not touch again within the next {bounds.horizon * 1e3:.3g} ms of free flight."
-    if end.struck == NOTHING:
-        return f"Reached max_time = {bounds.latest * 1e3:g} ms before the last separation."
-    when = f"{end.wait * 1e6:.3g} us later" if end.wait else f"at {end.time * 1e6:.4g} us"
-    return (
-        f"The rod's {rod.names[end.struck]} strikes {when}, and the reduced model follows one point of its "
-        "tip: this is the motion before."
-    )
-
-
-def reach(law: ContactLaw, flow: FlowLaw, energy: float) -> float:
-    """Return the half length, m, of a contact that has taken up an energy, J, along t."""
-    if not flow.yields:
-        return float(np.sqrt(law.R) * (2.5 * energy / law.stiffness) ** 0.2)
-    depth = np.sqrt(energy / (np.pi * law.limit * law.R))
-    return float(np.sqrt(2 * flow.R1 * depth))
-
-
-def contact_rate(law: ContactLaw, flow: FlowLaw, start: Start, modes: Modes, widest: float) -> float:
-    """Return a bound, rad/s, of how fast the struck point swings on a contact of half length ``widest``, m.
-
-    The tip of a thin rod gives way to its many modes as if it were light; on a contact that grows wide under
-    the weight of the whole rod it swings faster than any of them.
-    """
-    inverse_mass = 2 * (1 / start.mass + start.inverse_barrier_mass)
-    inverse_mass += start.inverse_barrier_inertia * (start.centre_depth**2 + start.centre_offset**2)
-    inverse_mass += (start.centre_t**2 + (start.centre_n - start.radius) ** 2) / (start.mass * start.k2)
-    inverse_mass += float(np.sum(modes.along_t**2 + modes.along_n**2))
-    if flow.yields:
-        stiffness = 2 * widest * max(flow.normal, flow.shear)
-    else:
-        stiffness = widest * max(1.5 * law.stiffness / sqrt(law.R), law.shear)
-    return sqrt(stiffness * inverse_mass)
-
-
-def _start(case: Case, rod: ModalRod) -> Start:
-    g, impact = case.slots.gravity or 0.0, case.scene.relative
-    struck = case.scene.barrier
-    return Start(
-        rod.mass,
-        rod.k2,
-        rod.centre_t,
-        rod.centre_n,
-        rod.radius,
-        impact.v_t,
-        impact.v_n,
-        impact.omega,
-        -g * sin(impact.angle),
-        -g * cos(impact.angle),
-        1 / struck.mass if struck.mass else 0.0,
-        1 / case.slots.plate if case.slots.plate else 0.0,
-        1 / struck.inertia if struck.inertia else 0.0,
-        struck.centre_depth or 0.0,
-        struck.centre_offset,
-    )
+    return f"Reached max_time = {bounds.latest * 1e3:g} ms before the last separation."
 
 
 def _kinetic(rod: ModalRod, V_n: float, V_t: float, Omega: float) -> float:

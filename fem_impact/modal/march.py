@@ -1,8 +1,9 @@
-"""The compiled march: impulses of the contact between exact flights of the rod and its modes.
+"""The compiled march: impulses of the contacts between exact flights of the rod and its modes.
 
-Each step kicks with the force at the present place and then flies exactly, gravity included, so a flight
+Each step kicks with the forces at the present places and then flies exactly, gravity included, so a flight
 without contact is exact for any step, and the work of a force is the trapezoidal sum of it over its path.
-A contact that does not yield is Hertz' with friction; one that yields is a `fem_impact.modal.groove`.
+Any number of sites of the rod may touch at once, each with a contact of its own (`fem_impact.modal.touch`):
+Hertz' with friction where nothing yields, else a `fem_impact.modal.groove`.
 """
 
 from __future__ import annotations
@@ -11,75 +12,24 @@ import numpy as np
 
 from fem_impact.arrays import Array
 from fem_impact.fem.kernels import allocating_kernel, inlined
-from fem_impact.modal.groove import Groove, meets, move_apart, slide, smooth, stored_energy
 from fem_impact.modal.motion import (
     AT,
-    LOOK,
+    CLOCK,
+    CUT,
     MOST_CONTACTS,
-    NOTHING,
+    OVER,
     ROW,
-    SPRINGS,
+    SITE,
     SUM,
-    TIP,
     Bounds,
-    ModalEnd,
     ModalState,
     Modes,
-    Others,
-    Springs,
+    Sites,
     Start,
+    Touched,
 )
-from fem_impact.physics.contact_law import FAINT, MERGE_GAP, ContactLaw
-from fem_impact.physics.flow_law import FlowLaw
-
-
-@inlined
-def press(depth: float, rate: float, law: ContactLaw) -> tuple[float, float, float]:
-    """Return the normal force, N, contact radius, m, and the part of the force that is viscous, N.
-
-    The whole is Hertz' and the viscous one at a ``rate`` of the depth, m/s, or 0 where that would pull.
-    """
-    if depth <= 0.0:
-        return 0.0, 0.0, 0.0
-    elastic = law.stiffness * depth**1.5
-    viscous = max(1.5 * law.stiffness * law.lag * np.sqrt(depth) * rate, -elastic) if law.lag > 0.0 else 0.0
-    return elastic + viscous, np.sqrt(law.R * depth), viscous
-
-
-@allocating_kernel
-def springs_over(radius: float) -> Springs:
-    """Return springs over a contact radius, m, in even steps of area: close at the rim, where slip begins."""
-    edge = radius * np.sqrt(np.linspace(0.0, 1.0, SPRINGS + 1))
-    return Springs(0.5 * (edge[1:] + edge[:-1]), 2 * np.diff(edge), np.zeros(SPRINGS))
-
-
-@inlined
-def grip(springs: Springs, moved: float, F: float, a: float, law: ContactLaw) -> float:
-    """Move the contact's tangential springs by ``moved``, m, and return their force, N.
-
-    A row of springs, each bound to its share f q(x) of Coulomb's limit, maps the Cattaneo-Mindlin contact of
-    round bodies with its history exactly (Popov & Hess 2015, doi:10.1007/978-3-642-53876-6); springs beyond
-    the contact radius ``a`` are free of force.
-    """
-    place, width, shift = springs
-    stiffness, total = 0.5 * law.shear, 0.0
-    load = law.friction * 0.75 * F / (a * stiffness)
-    for i in range(len(place)):
-        limit = load * max(0.0, 1.0 - (place[i] / a) ** 2)
-        shift[i] = min(max(shift[i] + moved, -limit), limit)
-        total += width[i] * shift[i]
-    # the rim cuts through a spring: the sum must not exceed Coulomb's limit by its share
-    most = law.friction * F
-    return min(max(stiffness * total, -most), most)
-
-
-@inlined
-def stored(depth: float, springs: Springs, law: ContactLaw) -> tuple[float, float]:
-    """Return the energies, J, that the contact holds: Hertz', and that of its springs."""
-    total, F = 0.0, law.stiffness * max(depth, 0.0) ** 1.5
-    for i in range(len(springs.shift)):
-        total += springs.width[i] * springs.shift[i] ** 2
-    return 0.4 * F * depth, 0.25 * law.shear * total
+from fem_impact.modal.touch import look, meet, spent, strikes, turn_surface, unknown_site
+from fem_impact.physics.contact_law import FAINT, MERGE_GAP
 
 
 @inlined
@@ -97,36 +47,27 @@ def book(contacts: Array, count: int, time: float, p_n: float, p_t: float, large
 
 
 @inlined
-def reach_to(
-    now: ModalState, t: float, n: float, along_t: Array, along_n: Array
-) -> tuple[float, float, float, float]:
-    """Return cosine and sine of the rod's turn, and the arm (t, n), m, from its mass centre to a point."""
-    c, s = np.cos(now.rigid[AT.turn]), np.sin(now.rigid[AT.turn])
-    for i in range(len(now.q)):
-        t += along_t[i] * now.q[i]
-        n += along_n[i] * now.q[i]
-    return c, s, c * t + s * n, c * n - s * t
-
-
-@inlined
-def strikes(now: ModalState, others: Others) -> int:
-    """Return the place of a point that strikes beside the followed one, or `NOTHING`."""
-    for i in range(len(others.t)):
-        arm_n = reach_to(now, others.t[i], others.n[i], others.along_t[i], others.along_n[i])[3]
-        if now.rigid[AT.height] + arm_n - others.radius[i] < 0.0:
-            return i
-    return NOTHING
+def book_sites(site: Array, time: float, span: float) -> None:
+    """Enter the impulses of a time, s, into the sites."""
+    for s in range(len(site)):
+        of = site[s]
+        if of[SITE.touches] > 0.0:
+            if of[SITE.impulse_n] == 0.0:
+                of[SITE.start] = time
+            of[SITE.end] = time
+            of[SITE.impulse_n] += span * of[SITE.force_n]
+            of[SITE.impulse_t] += span * of[SITE.force_t]
 
 
 @inlined
 def fly(
-    now: ModalState, omega: Array, turns: tuple[Array, Array], dt: float, g_t: float, g_n: float
+    now: ModalState, modes: Modes, turns: tuple[Array, Array], dt: float, g_t: float, g_n: float
 ) -> float:
     """Move on by a step of free flight; return the work of gravity, J/kg."""
-    (rigid, q, rate), (cosine, sine) = now, turns
+    (rigid, q, rate), (cosine, sine), omega = now, turns, modes.omega
     lift = g_n * (rigid[AT.V_n] + 0.5 * dt * g_n) + g_t * (rigid[AT.V_t] + 0.5 * dt * g_t)
-    rigid[AT.height] += dt * (rigid[AT.V_n] + 0.5 * dt * g_n - rigid[AT.surface_n])
-    rigid[AT.along] += dt * (rigid[AT.V_t] + 0.5 * dt * g_t - rigid[AT.surface_t])
+    rigid[AT.height] += dt * (rigid[AT.V_n] + 0.5 * dt * g_n - rigid[AT.V_bn])
+    rigid[AT.along] += dt * (rigid[AT.V_t] + 0.5 * dt * g_t - rigid[AT.V_bt])
     rigid[AT.away_n] += dt * (rigid[AT.V_n] + 0.5 * dt * g_n - rigid[AT.V_bn])
     rigid[AT.away_t] += dt * (rigid[AT.V_t] + 0.5 * dt * g_t - rigid[AT.V_bt])
     rigid[AT.turn] += dt * rigid[AT.Omega]
@@ -140,109 +81,88 @@ def fly(
 
 
 @inlined
+def approach(now: ModalState, sites: Sites, s: int, of: Array, c: float, sn: float) -> tuple[float, float]:
+    """Return velocities n, t, m/s, of a site as seen from the barrier under it."""
+    rigid, rate = now.rigid, now.rate
+    arm_t, arm_n = of[SITE.arm_t], of[SITE.arm_n]
+    w_n = rigid[AT.V_n] - rigid[AT.Omega] * arm_t
+    w_t = rigid[AT.V_t] + rigid[AT.Omega] * arm_n
+    w_n -= rigid[AT.V_bn] - rigid[AT.Omega_b] * (rigid[AT.away_t] + arm_t)
+    w_t -= rigid[AT.V_bt] + rigid[AT.Omega_b] * (rigid[AT.away_n] + arm_n)
+    for i in range(len(rate)):
+        w_n += (c * sites.along_n[s, i] - sn * sites.along_t[s, i]) * rate[i]
+        w_t += (c * sites.along_t[s, i] + sn * sites.along_n[s, i]) * rate[i]
+    return w_n, w_t
+
+
+@inlined
 def push(
-    now: ModalState,
-    start: Start,
-    modes: Modes,
-    arm: tuple[float, float, float, float],
-    p_n: float,
-    p_t: float,
-    tally: Array,
+    now: ModalState, start: Start, sites: Sites, s: int, of: Array, c: float, sn: float, span: float
 ) -> None:
-    """Change the motion by an impulse at the followed point, N s, and book its work on both bodies."""
-    (c, s, arm_t, arm_n), (rigid, _, rate) = arm, now
-    inverse_mass, inverse_inertia = start.inverse_barrier_mass, start.inverse_barrier_inertia
-    w_n, w_t = rigid[AT.V_n] - rigid[AT.Omega] * arm_t, rigid[AT.V_t] + rigid[AT.Omega] * arm_n
-    # arm from the barrier's mass centre to the same point
-    lever_t, lever_n = rigid[AT.away_t] + arm_t, rigid[AT.away_n] + arm_n
-    turned = inverse_inertia * (lever_t * p_n - lever_n * p_t)
-    w_n -= 2 * (rigid[AT.V_bn] - rigid[AT.Omega_b] * lever_t) - p_n * inverse_mass - turned * lever_t
-    w_t -= 2 * (rigid[AT.V_bt] + rigid[AT.Omega_b] * lever_n) - p_t * inverse_mass + turned * lever_n
-    rigid[AT.V_bn] -= p_n * inverse_mass
-    rigid[AT.V_bt] -= p_t * inverse_mass
-    rigid[AT.Omega_b] += turned
-    rigid[AT.surface_n] = rigid[AT.V_bn] - rigid[AT.Omega_b] * lever_t
-    rigid[AT.surface_t] = rigid[AT.V_bt] + rigid[AT.Omega_b] * lever_n
+    """Change the motion by the impulse of a site's force over a ``span``, s.
+
+    ``c`` and ``sn`` are cosine and sine of the rod's turn.
+    """
+    rigid, rate = now.rigid, now.rate
+    p_n, p_t, arm_t, arm_n = span * of[SITE.force_n], span * of[SITE.force_t], of[SITE.arm_t], of[SITE.arm_n]
+    lever_t, lever_n = rigid[AT.away_t] + arm_t, rigid[AT.away_n] + arm_n  # from the barrier's mass centre
+    rigid[AT.V_bn] -= p_n * start.inverse_barrier_mass
+    rigid[AT.V_bt] -= p_t * start.inverse_barrier_mass
+    rigid[AT.Omega_b] += start.inverse_barrier_inertia * (lever_t * p_n - lever_n * p_t)
     rigid[AT.V_n] += p_n / start.mass
     rigid[AT.V_t] += p_t / start.mass
     rigid[AT.Omega] += (arm_n * p_t - arm_t * p_n) / (start.mass * start.k2)
-    w_n += rigid[AT.V_n] - rigid[AT.Omega] * arm_t
-    w_t += rigid[AT.V_t] + rigid[AT.Omega] * arm_n
     for i in range(len(rate)):
-        on_n = c * modes.along_n[i] - s * modes.along_t[i]
-        on_t = c * modes.along_t[i] + s * modes.along_n[i]
-        gained = on_n * p_n + on_t * p_t
-        w_n += on_n * (2 * rate[i] + gained)
-        w_t += on_t * (2 * rate[i] + gained)
-        rate[i] += gained
-    tally[SUM.work_n] += 0.5 * p_n * w_n
-    tally[SUM.work_t] += 0.5 * p_t * w_t
+        rate[i] += (c * sites.along_n[s, i] - sn * sites.along_t[s, i]) * p_n
+        rate[i] += (c * sites.along_t[s, i] + sn * sites.along_n[s, i]) * p_t
 
 
 @inlined
-def followed(
-    now: ModalState, start: Start, modes: Modes
-) -> tuple[tuple[float, float, float, float], float, float]:
-    """Return the arm of the followed point as `push` takes it, its depth and its place along t, m."""
-    c, s, arm_t, arm_n = reach_to(now, start.centre_t, start.centre_n, modes.along_t, modes.along_n)
-    place = now.rigid[AT.along] + arm_t - start.centre_t - start.radius * now.rigid[AT.turn]
-    return (c, s, arm_t, arm_n - start.radius), start.radius - now.rigid[AT.height] - arm_n, place
+def exert(now: ModalState, start: Start, sites: Sites, site: Array, span: float, work_t: Array) -> float:
+    """Change the motion by all forces over a ``span``, s; return their work along n, J.
+
+    That along t is added to ``work_t`` (s,), J. Both are those of the mean velocity of all impulses.
+    """
+    c, sn, work_n = np.cos(now.rigid[AT.turn]), np.sin(now.rigid[AT.turn]), 0.0
+    for after in range(2):
+        for s in range(len(site)):
+            of = site[s]
+            if of[SITE.touches] > 0.0:
+                w_n, w_t = approach(now, sites, s, of, c, sn)
+                work_n += 0.5 * span * of[SITE.force_n] * w_n
+                work_t[s] += 0.5 * span * of[SITE.force_t] * w_t
+        if after == 0:
+            for s in range(len(site)):
+                if site[s, SITE.touches] > 0.0:
+                    push(now, start, sites, s, site[s], c, sn, span)
+    return float(work_n)
 
 
-@inlined
+@allocating_kernel
 def ahead(
-    now: ModalState,
-    start: Start,
-    modes: Modes,
-    others: Others,
-    turns: tuple[Array, Array],
-    bounds: Bounds,
-    law: ContactLaw,
-    flow: FlowLaw,
-    groove: Groove,
-    depth: float,
-) -> tuple[int, int]:
-    """Fly on from a depth, m, until something strikes or to the horizon; return the steps and what strikes.
+    now: ModalState, modes: Modes, sites: Sites, held: Touched, clock: Array, start: Start, bounds: Bounds
+) -> float:
+    """Return the steps of free flight until a site strikes, or -1 if none does within the horizon.
 
-    A viscous contact that has parted is no strike as its dent swells behind it. Gravity has no part in that:
-    a rod that falls back strikes anew.
+    Gravity has no part in that: a rod that falls back strikes anew.
     """
-    steps = 0
-    while steps * bounds.step < bounds.horizon:
-        fly(now, modes.omega, turns, bounds.step, 0.0, 0.0)
-        steps += 1
-        before = depth
-        _, depth, place = followed(now, start, modes)
-        swelling = press(depth, (depth - before) / bounds.step, law)[0] <= 0.0
-        if meets(groove, depth, place, flow) if flow.yields else not swelling:
-            return steps, TIP
-        if steps % LOOK == 0:
-            struck = strikes(now, others)
-            if struck != NOTHING:
-                return steps, struck
-    return steps, NOTHING
-
-
-@inlined
-def meet(
-    law: ContactLaw,
-    flow: FlowLaw,
-    springs: Springs,
-    groove: Groove,
-    depth: float,
-    rate: float,
-    place: float,
-    moved: float,
-) -> tuple[float, float]:
-    """Return normal and tangential force, N, at a depth and place, m, of a tip that has ``moved``, m.
-
-    ``rate``, m/s, is that of the depth. The first is 0 where nothing touches, and below 0 where friction on
-    a steep flank holds a leaving tip.
-    """
-    if flow.yields:
-        return slide(groove, depth, place, flow)
-    F, a, _ = press(depth, rate, law)
-    return (F, -grip(springs, moved, F, a, law)) if F > 0.0 else (0.0, 0.0)
+    flight, site = ModalState(now.rigid.copy(), now.q.copy(), now.rate.copy()), held.site.copy()
+    site[:, SITE.wake] = 0.0
+    still = clock.copy()
+    dt, steps = bounds.step, 0.0
+    turns = np.cos(modes.omega * dt), np.sin(modes.omega * dt)
+    while steps * dt < bounds.horizon:
+        rests = np.floor(max(1.0, site[:, SITE.wake].min() - steps))
+        far = rests * dt
+        if rests == 1.0:
+            fly(flight, modes, turns, dt, 0.0, 0.0)
+        else:
+            fly(flight, modes, (np.cos(modes.omega * far), np.sin(modes.omega * far)), far, 0.0, 0.0)
+        turn_surface(start, flight, site, still, far)
+        steps += rests
+        if strikes(flight, modes, sites, held, site, steps, dt):
+            return float(steps)
+    return -1.0
 
 
 @allocating_kernel
@@ -251,16 +171,17 @@ def enter(
     now: ModalState,
     start: Start,
     modes: Modes,
-    arm: tuple[float, float, float, float],
-    p: tuple[float, float],
+    sites: Sites,
+    held: Touched,
+    dt: float,
     tally: Array,
-) -> tuple[float, float]:
-    """Fill a row of the record with the motion half an impulse (n, t), N s, further; return works n, t, J.
+) -> None:
+    """Fill a row of the record with the motion half an impulse further.
 
     The velocities are then those of the time of the places, and the energies add up.
     """
-    mid, works = ModalState(now.rigid.copy(), now.q, now.rate.copy()), tally.copy()
-    push(mid, start, modes, arm, 0.5 * p[0], 0.5 * p[1], works)
+    mid, work_t = ModalState(now.rigid.copy(), now.q, now.rate.copy()), held.work_t.copy()
+    exert(mid, start, sites, held.site, 0.5 * dt, work_t)
     V_n, V_t, spin = mid.rigid[AT.V_n], mid.rigid[AT.V_t], mid.rigid[AT.Omega]
     row[ROW.V_n], row[ROW.V_t], row[ROW.Omega] = V_n, V_t, spin
     row[ROW.rigid] = 0.5 * start.mass * (V_n**2 + V_t**2 + start.k2 * spin**2)
@@ -270,25 +191,13 @@ def enter(
         row[ROW.barrier] /= start.inverse_barrier_mass
     if start.inverse_barrier_inertia > 0.0:
         row[ROW.barrier] += 0.5 * mid.rigid[AT.Omega_b] ** 2 / start.inverse_barrier_inertia
-    row[ROW.plate], row[ROW.gravity] = tally[SUM.plate], tally[SUM.gravity]
-    return works[SUM.work_n], works[SUM.work_t]
-
-
-@inlined
-def enter_contact(
-    row: Array,
-    time: float,
-    force: tuple[float, float],
-    held: tuple[float, float],
-    works: Array,
-    work_t: float,
-    yields: bool,
-) -> None:
-    """Fill a row of the record with time, s, forces n, t, N, and energies of the contact, J."""
-    row[ROW.time], row[ROW.force_n], row[ROW.force_t] = time, force[0], force[1]
-    row[ROW.contact] = held[0] + held[1]
-    row[ROW.plastic] = works[0] + works[1] if yields else 0.0
-    row[ROW.friction] = works[2] if yields else -work_t - held[1]
+    row[ROW.plate], row[ROW.gravity], row[ROW.viscous] = (
+        tally[SUM.plate],
+        tally[SUM.gravity],
+        tally[SUM.viscous],
+    )
+    row[ROW.plastic], row[ROW.friction], held_n, held_t = spent(held, work_t)
+    row[ROW.contact] = held_n + held_t
 
 
 @inlined
@@ -303,82 +212,66 @@ def thinned(record: Array, rows: int, every: int) -> tuple[int, int]:
 
 
 @allocating_kernel
-def integrate_impact(
+def march(
     start: Start,
-    law: ContactLaw,
-    flow: FlowLaw,
     modes: Modes,
-    others: Others,
+    sites: Sites,
     bounds: Bounds,
+    now: ModalState,
+    held: Touched,
+    clock: Array,
+    tally: Array,
     contacts: Array,
     record: Array,
-) -> ModalEnd:
-    """Follow a rod from first contact until nothing strikes in the free flight ahead, or another point does.
+) -> int:
+    """Follow a rod until nothing strikes in the free flight ahead, or a site without a law touches.
 
-    ``contacts`` (MOST_CONTACTS, 4), zeros, are filled with start, end, s, and impulses along n and t, N s;
-    ``record`` (m, 16), zeros, with what moved over time; it may have no rows.
+    Returns `OVER` or `CUT`, or the site: given its law, the march goes on where it stopped. ``now``,
+    ``held``, ``clock`` (9,) and ``tally`` (5,) move. ``contacts`` (MOST_CONTACTS, 4) are filled with start,
+    end, s, and impulses along n and t, N s; ``record`` (m, 16) with what moved over time; it may have none.
     """
-    rows, every = 0, 1
-    dt, k, tally = bounds.step, len(modes.omega), np.zeros(10)
+    dt, rigid = bounds.step, now.rigid
     turns = np.cos(modes.omega * dt), np.sin(modes.omega * dt)
-    rigid = np.zeros(13)
-    rigid[:4] = start.v_n, start.v_t, start.omega, start.radius - start.centre_n
-    rigid[AT.away_n :] = rigid[AT.height] + start.centre_depth, -start.centre_t - start.centre_offset
-    now = ModalState(rigid, np.zeros(k), np.zeros(k))
-    springs, groove = springs_over(bounds.reach), smooth(bounds.reach)
-    gap, before, pressed, wait = max(MERGE_GAP, 1.5 * dt), 0.0, False, 0.0
-    time, last, steps, count, struck, late = 0.0, 0.0, 0, 0, NOTHING, False
-    depth, drag, force = 0.0, 0.0, (0.0, 0.0)
-    while time - last < bounds.horizon:
-        was, dragged = depth, drag
-        arm, depth, place = followed(now, start, modes)
-        rate = (depth - was) / dt if steps else 0.0
-        force = meet(law, flow, springs, groove, depth, rate, place, place - before)
-        drag = press(depth, rate, law)[2]
-        tally[SUM.viscous] += 0.5 * (drag + dragged) * (depth - was)
-        struck = strikes(now, others) if steps % LOOK == LOOK - 1 else NOTHING
-        touches = force[0] != 0.0
+    gap = max(MERGE_GAP, 1.5 * dt)
+    while clock[CLOCK.time] - clock[CLOCK.last] < bounds.horizon:
+        time, pressed = clock[CLOCK.time], clock[CLOCK.pressed] > 0.0
+        new = unknown_site(now, modes, sites, held, clock[CLOCK.steps], dt, pressed)
+        if new >= 0:
+            return new
+        look(now, modes, sites, held, clock[CLOCK.steps], dt, pressed)
+        F_n, F_t, lost = meet(held, rigid[AT.turn], dt)
+        tally[SUM.viscous] += lost
+        touches = False
+        for s in range(len(held.site)):
+            touches = touches or held.site[s, SITE.touches] > 0.0
         late = touches and time > bounds.latest
-        if len(record) and steps % every == 0:
-            row = record[rows]
-            work = enter(row, now, start, modes, arm, (dt * force[0], dt * force[1]), tally)
-            held = stored_energy(groove, flow) if flow.yields else stored(depth, springs, law)
-            enter_contact(row, time, force, held, groove.works, work[1], flow.yields)
-            row[ROW.viscous] = tally[SUM.viscous]
-            rows, every = thinned(record, rows + 1, every)
+        if len(record) and clock[CLOCK.steps] % clock[CLOCK.every] == 0:
+            row = record[int(clock[CLOCK.rows])]
+            row[ROW.time], row[ROW.force_n], row[ROW.force_t] = time, F_n, F_t
+            enter(row, now, start, modes, sites, held, dt, tally)
+            rows, every = thinned(record, int(clock[CLOCK.rows]) + 1, int(clock[CLOCK.every]))
+            clock[CLOCK.rows], clock[CLOCK.every] = rows, every
         if touches:
-            span = 0.5 * dt if late or struck != NOTHING else dt  # a half brings v to the time of the places
-            p_n, p_t = span * force[0], span * force[1]
-            push(now, start, modes, arm, p_n, p_t, tally)
-            rigid[AT.height] += p_n * start.plate_mobility  # a plate sinks away under the force
-            tally[SUM.plate] += p_n * force[0] * start.plate_mobility
-            tally[SUM.force] = max(tally[SUM.force], force[0])
-            count = book(contacts, count, time, p_n, p_t, dt * tally[SUM.force], gap)
-            tally[SUM.depth], last = max(tally[SUM.depth], depth), time
-        else:
-            springs.shift[:] = 0.0
-            move_apart(groove, depth, place)
-        if late or struck != NOTHING:
-            break
+            span = 0.5 * dt if late else dt  # a half brings v to the time of the places
+            tally[SUM.work_n] += exert(now, start, sites, held.site, span, held.work_t)
+            rigid[AT.height] += span * F_n * start.plate_mobility  # a plate sinks away under the force
+            tally[SUM.plate] += span * F_n**2 * start.plate_mobility
+            tally[SUM.force] = max(tally[SUM.force], F_n)
+            count = int(clock[CLOCK.touches])
+            count = book(contacts, count, time, span * F_n, span * F_t, dt * tally[SUM.force], gap)
+            book_sites(held.site, time, span)
+            clock[CLOCK.touches], clock[CLOCK.last] = count, time
+        if late:
+            return CUT
+        if touches and not pressed:
+            held.site[:, SITE.wake] = 0.0  # what rested in flight is pushed about from now on
+        clock[CLOCK.pressed] = 1.0 if touches else 0.0
         if pressed and not touches:
-            flight = ModalState(rigid.copy(), now.q.copy(), now.rate.copy())
-            flown, struck = ahead(flight, start, modes, others, turns, bounds, law, flow, groove, depth)
-            steps += flown
-            if struck != TIP:
-                wait = flown * dt
-                break
-        pressed, before = touches, place
-        tally[SUM.gravity] += start.mass * fly(now, modes.omega, turns, dt, start.g_t, start.g_n)
-        time += dt
-        steps += 1
-    held = stored_energy(groove, flow) if flow.yields else stored(depth, springs, law)
-    if flow.yields:
-        tally[SUM.flow : SUM.friction + 1] = groove.works
-    else:
-        # the normal spring gives back what it stores by itself, the tangential ones out of friction
-        tally[SUM.friction] = -tally[SUM.work_t] - held[1]
-    over = struck in (NOTHING, TIP) and not late
-    if over and law.lag > 0.0:  # the dent that is left swells without a push
-        tally[SUM.viscous] += held[0]
-        held = (0.0, held[1])
-    return ModalEnd(now, tally, held, time, steps, count, struck, wait, over, rows)
+            flown = ahead(now, modes, sites, held, clock, start, bounds)
+            if flown < 0.0:
+                return OVER
+        tally[SUM.gravity] += start.mass * fly(now, modes, turns, dt, start.g_t, start.g_n)
+        turn_surface(start, now, held.site, clock, dt)
+        clock[CLOCK.time] += dt
+        clock[CLOCK.steps] += 1.0
+    return OVER

@@ -2,25 +2,31 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fem_impact.arrays import Array
+from fem_impact.modal.groove import CELLS
+from fem_impact.physics.contact_law import ContactLaw
+from fem_impact.physics.flow_law import FlowLaw
 
 MOST_CONTACTS = 200
 SPRINGS = 100
-LOOK = 8  # steps between looks at the rod's other points
+MOST_ROWS = 2048
+"""Rows of a record; where a run has more, every second one is dropped."""
 
-NOTHING, TIP = -1, -2  # of what strikes
+OVER, CUT = -1, -2
+"""Why a march ends, where not a site touches first: nothing strikes any more; it took too long."""
 
 
 class MotionIndex(NamedTuple):
-    """Where each number of the rigid motion stands in its array (13,); n is the barrier's normal.
+    """Where each number of the rigid motion stands in its array (11,); n is the barrier's normal.
 
     Velocities, m/s and rad/s, of the rod's mass centre and of the barrier's (``b``); the height of the rod's
-    mass centre over the barrier's surface under the contact and its way along it, m; the rod's turn, rad; the
-    velocity of that surface, m/s; the rod's mass centre from the barrier's, m.
+    mass centre over the barrier's surface and its way along it, m; the rod's turn, rad; the rod's mass centre
+    from the barrier's, m.
     """
 
     V_n: int = 0
@@ -32,29 +38,74 @@ class MotionIndex(NamedTuple):
     V_bn: int = 6
     V_bt: int = 7
     Omega_b: int = 8
-    surface_n: int = 9
-    surface_t: int = 10
-    away_n: int = 11
-    away_t: int = 12
+    away_n: int = 9
+    away_t: int = 10
 
 
 class TallyIndex(NamedTuple):
-    """Where each sum of a march stands in its array (10,).
+    """Where each sum of a march stands in its array (5,).
 
-    The largest depth, m, and force, N; works, J, of the normal and the tangential force, of gravity, on a
-    plate, of normal flow, of shear flow under the contact, of friction, and of a viscous contact.
+    The largest force, N; works, J, of the normal force, of gravity, on a plate, and of a viscous contact.
+    """
+
+    force: int = 0
+    work_n: int = 1
+    gravity: int = 2
+    plate: int = 3
+    viscous: int = 4
+
+
+class ClockIndex(NamedTuple):
+    """Where each number of a march's course stands in its array (9,).
+
+    Time and that of the last touch, s; steps; intervals of contact; whether the rod touched in the last step;
+    rows of the record that are filled, and steps from one to the next; the place (t, n) of the last touch
+    from the barrier's mass centre, m.
+    """
+
+    time: int = 0
+    last: int = 1
+    steps: int = 2
+    touches: int = 3
+    pressed: int = 4
+    rows: int = 5
+    every: int = 6
+    lever_t: int = 7
+    lever_n: int = 8
+
+
+class SiteIndex(NamedTuple):
+    """Where each number of a site stands in its row (22,) of `Touched.site`.
+
+    Depth and place along t, m, and the viscous part of its force, N, when it was looked at last; how far it
+    moved since, m, and the rate of its depth, m/s; its forces, N; arm (t, n) from the rod's mass centre, m;
+    how far the barrier's turn has moved the surface under it, m; the step at which it is looked at next;
+    whether it was looked at in this step, has a law, and touches; its first and last touch, s; its impulses,
+    N s; its largest force, N, and depth, m, and the rod's turn then, rad.
     """
 
     depth: int = 0
-    force: int = 1
-    work_n: int = 2
-    work_t: int = 3
-    gravity: int = 4
-    plate: int = 5
-    flow: int = 6
-    shear: int = 7
-    friction: int = 8
-    viscous: int = 9
+    place: int = 1
+    drag: int = 2
+    moved: int = 3
+    rate: int = 4
+    force_n: int = 5
+    force_t: int = 6
+    arm_t: int = 7
+    arm_n: int = 8
+    sunk_n: int = 9
+    sunk_t: int = 10
+    wake: int = 11
+    awake: int = 12
+    known: int = 13
+    touches: int = 14
+    start: int = 15
+    end: int = 16
+    impulse_n: int = 17
+    impulse_t: int = 18
+    force: int = 19
+    deepest: int = 20
+    turned: int = 21
 
 
 class RowIndex(NamedTuple):
@@ -83,75 +134,116 @@ class RowIndex(NamedTuple):
     viscous: int = 15
 
 
-AT, SUM, ROW = MotionIndex(), TallyIndex(), RowIndex()
-MOST_ROWS = 2048
-"""Rows of a record; where a run has more, every second one is dropped."""
+AT, SUM, CLOCK, SITE, ROW = MotionIndex(), TallyIndex(), ClockIndex(), SiteIndex(), RowIndex()
 
 
 class Start(NamedTuple):
-    """Rigid rod at first contact: kg, m2, m, m/s, rad/s, m/s2 along t and n.
+    """What of both bodies does not move: kg, m2, m/s2 along t and n.
 
     ``inverse_barrier_mass``, 1/kg, and ``plate_mobility``, m/(N s), 1 / the impedance of a plate that bends,
     are 0 for a massive barrier. ``inverse_barrier_inertia``, 1/(kg m2), is that of a free barrier about its
-    mass centre, ``centre_depth``, m, under the struck point and ``centre_offset``, m, up the slope of it.
+    mass centre.
     """
 
     mass: float
     k2: float
-    centre_t: float
-    centre_n: float
-    radius: float
-    v_t: float
-    v_n: float
-    omega: float
-    g_t: float
-    g_n: float
+    g_t: float = 0.0
+    g_n: float = 0.0
     inverse_barrier_mass: float = 0.0
     plate_mobility: float = 0.0
     inverse_barrier_inertia: float = 0.0
-    centre_depth: float = 0.0
-    centre_offset: float = 0.0
 
 
-class Modes(NamedTuple):
-    """Modes of the rod: (k,) rad/s and the displacement of the followed point, kg^-1/2."""
+class Sites(NamedTuple):
+    """Where the rod may touch: smooth curves and corners of its convex outline.
 
-    omega: Array
-    along_t: Array
-    along_n: Array
-
-
-class Others(NamedTuple):
-    """Other round edges that may touch: centres from the mass centre at first contact and radii, (m,) m.
-
-    ``along_t``, ``along_n`` (m, k) are their displacements by each mode, kg^-1/2. They strike where they are
-    lower than the barrier.
+    Attributes
+    ----------
+    t, n, radius : (a,) centres of the arcs from the mass centre at first contact, and their radii, m
+    low, high : (a,) turns of the rod, rad, between which an arc is what is lowest of its site
+    offset : (a,) m, which makes the place of a site that rolls from arc to arc continuous
+    begin : (s + 1,) first arc of each site, and behind the last one
+    along_t, along_n : (s, k) displacement of each site by each mode, kg^-1/2
+    base : the turn, rad, from which a whole one is counted
     """
 
     t: Array
     n: Array
     radius: Array
+    low: Array
+    high: Array
+    offset: Array
+    begin: NDArray[np.int64]
     along_t: Array
     along_n: Array
+    base: float
+
+    @classmethod
+    def point(cls, t: float, n: float, radius: float) -> Self:
+        """Return the one site of a round body that does not vibrate: its centre and radius, m."""
+        t_, n_, r, low, high = (np.array([value]) for value in (t, n, radius, -np.pi, np.pi))
+        none = np.zeros((1, 0))
+        return cls(t_, n_, r, low, high, t_.copy(), np.array([0, 1]), none, none, -np.pi)
 
 
-NONE = np.zeros(0)
-RIGID = Modes(NONE, NONE, NONE)
-ALONE = Others(NONE, NONE, NONE, np.zeros((0, 0)), np.zeros((0, 0)))
-"""No modes, and no other points."""
+class Touched(NamedTuple):
+    """The contact of each site: its laws, and the state of its springs or its groove.
+
+    Attributes
+    ----------
+    site : (s, 22) see `SiteIndex`
+    law, flow : (s, 10), (s, 14) numbers of a `ContactLaw` and a `FlowLaw`
+    place, width, shift : (s, SPRINGS) tangential springs: distances from the centre, widths and shifts, m
+    depth, normal, sheared : (s, CELLS) cells, and ``state`` (s, 9), ``works`` (s, 3), J, ``size`` (s,), m, of
+        a `fem_impact.modal.groove.Groove`
+    work_t : (s,) work of the tangential force, J
+    """
+
+    site: Array
+    law: Array
+    flow: Array
+    place: Array
+    width: Array
+    shift: Array
+    depth: Array
+    normal: Array
+    sheared: Array
+    state: Array
+    works: Array
+    size: Array
+    work_t: Array
+
+    @classmethod
+    def nothing(cls, sites: int) -> Self:
+        """Return the contacts of sites that have not touched."""
+
+        def rows(width: int) -> Array:
+            return np.zeros((sites, width))
+
+        laws = rows(len(ContactLaw._fields)), rows(len(FlowLaw._fields))
+        springs = rows(SPRINGS), rows(SPRINGS), rows(SPRINGS)
+        cells = rows(CELLS), rows(CELLS), rows(CELLS)
+        return cls(
+            rows(len(SITE)), *laws, *springs, *cells, rows(9), rows(3), np.zeros(sites), np.zeros(sites)
+        )
 
 
 class Bounds(NamedTuple):
-    """Step, free flight that ends an impact, latest time of touch, s; largest contact radius, m."""
+    """Step, free flight that ends an impact, latest time of touch, s."""
 
     step: float
     horizon: float
     latest: float
-    reach: float
+
+
+class Modes(NamedTuple):
+    """Modes of the rod: (k,) rad/s."""
+
+    omega: Array
 
 
 class ModalState(NamedTuple):
-    """What moves: (13,) rigid motion; (k,) modal amplitudes and their rates, sqrt(kg) m, sqrt(kg) m/s."""
+    """What moves: (11,) rigid motion; (k,) modal amplitudes and their rates, sqrt(kg) m, sqrt(kg) m/s."""
 
     rigid: Array
     q: Array
@@ -164,29 +256,3 @@ class Springs(NamedTuple):
     place: Array
     width: Array
     shift: Array
-
-
-class ModalEnd(NamedTuple):
-    """The end of a march.
-
-    Attributes
-    ----------
-    motion : then
-    tally : (10,) largest depth and force, works, see `TallyIndex`
-    held : energy in the contact and in its springs, J, 0 but for a run that was cut off
-    time, steps, touches : s, number of steps, of contacts
-    struck : place in `Others` of the point that strikes first, or `NOTHING`; after ``wait``, s
-    over : nothing strikes within the horizon
-    rows : of the record that are filled
-    """
-
-    motion: ModalState
-    tally: Array
-    held: tuple[float, float]
-    time: float
-    steps: int
-    touches: int
-    struck: int
-    wait: float
-    over: bool
-    rows: int

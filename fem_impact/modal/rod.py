@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from math import cos, sin, sqrt
+from math import sqrt
 
 import numpy as np
 
@@ -12,7 +12,8 @@ from fem_impact.arrays import Array
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.case import Case
 from fem_impact.fem.body import MeshedBodies
-from fem_impact.modal.motion import Others
+from fem_impact.modal.motion import Sites
+from fem_impact.modal.sites import nearest_skin, rotated, settle, sites_of, skin
 from fem_impact.physics.contact import section_frequency
 from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.fields import ACCURACY
@@ -29,28 +30,31 @@ AROUND = 0.4  # diameters around the contact point over which a mode is taken as
 
 @dataclass(frozen=True, slots=True)
 class ModalRod:
-    """A rod that touches at one point of its tip, at first contact.
+    """A rod at first contact, and where it may touch.
 
     Attributes
     ----------
     mass, k2 : kg, m2, of the whole rod
-    centre_t, centre_n : the tip's centre of curvature from the mass centre, m
-    radius : of the tip's meridian, m
     omega : (k,) rad/s
-    along_t, along_n : (k,) kg^-1/2, displacement of the contact point by each mode of the whole rod
-    others : what else of the rod may touch, and ``names`` for it
+    sites : curves and corners of its outline, with the displacement by each mode of the whole rod
+    first : the site that touches first, of which a single place does, or -1
     """
 
     mass: float
     k2: float
-    centre_t: float
-    centre_n: float
-    radius: float
     omega: Array
-    along_t: Array
-    along_n: Array
-    others: Others
-    names: tuple[str, ...]
+    sites: Sites
+    first: int
+
+    @property
+    def arm(self) -> tuple[float, float]:
+        """(t, n), m, from the mass centre to what touches first."""
+        return skin(self.sites, self.first, 0.0)
+
+    @property
+    def flexibility(self) -> float:
+        """Of the modes under a force along n at what touches first, m/N."""
+        return float((self.sites.along_n[self.first] ** 2 / self.omega**2).sum())
 
 
 def modal_rod(bodies: Bodies, vibrating: bool = True) -> ModalRod:
@@ -61,25 +65,17 @@ def modal_rod(bodies: Bodies, vibrating: bool = True) -> ModalRod:
     """
     pair, body = bodies.contact, bodies.body
     assert not isinstance(body, Faceted), "the case refuses the modal fidelity of a mesh of its own"
-    side, alpha = pair.side, abs(pair.angle)
-    d_c, d_d = pair.arms
-    radius = pair.principal_radii[0]
-    edges, (x, z) = body.other_edges(alpha), pair.touch_point
-    places = np.array([(side * x, z), *((x, z) for _, x, z, _ in edges)])
+    alpha, rounds = abs(pair.angle), body.rounds()
+    places = nearest_skin(rounds, alpha)
     omega, moved = _moved(bodies, places) if vibrating else (np.zeros(0), np.zeros((len(places), 2, 0)))
-    along_t, along_n = _turned(alpha, moved[:, 0], moved[:, 1])
-    t, n = _turned(alpha, places[1:, 0], places[1:, 1] - body.z_c)
-    along_t, t = side * along_t, side * t
-    others = Others(t, n, np.array([edge[3] for edge in edges]), along_t[1:], along_n[1:])
-    names = tuple(edge[0] for edge in edges)
-    return ModalRod(
-        body.mass, body.k2, -d_c, radius - d_d, radius, omega, along_t[0], along_n[0], others, names
-    )
-
-
-def _turned(alpha: float, x: Array, z: Array) -> tuple[Array, Array]:
-    """Return (t, n) of vectors (x, z) in the rod frame."""
-    return cos(alpha) * x + sin(alpha) * z, cos(alpha) * z - sin(alpha) * x
+    sites = sites_of(rounds, (body.x_c, body.z_c), pair.angle, *rotated(alpha, moved[:, 0], moved[:, 1]))
+    first = -1
+    if not pair.lands_flat:
+        (d_c, d_d), radius = pair.arms, pair.principal_radii[0]
+        heights = [skin(sites, s, 0.0)[1] for s in range(len(places))]
+        first = int(np.argmin(heights))
+        settle(sites, first, 0.0, radius, (-d_c, radius - d_d))
+    return ModalRod(body.mass, body.k2, omega, sites, first)
 
 
 def _moved(bodies: Bodies, places: Array) -> tuple[Array, Array]:

@@ -11,7 +11,8 @@ import numpy as np
 from fem_impact.case.case import Case
 from fem_impact.case.measured import reduced_table
 from fem_impact.modal.impact import ModalResult, solve
-from fem_impact.outcome.groups import Energy, Heat, Markers, RunCost
+from fem_impact.modal.pressed import PressedSite
+from fem_impact.outcome.groups import ContactSite, Energy, Heat, Markers, RunCost
 from fem_impact.outcome.keys import Num, Unknown, unknown
 from fem_impact.outcome.limitation import limitations
 from fem_impact.outcome.record import Outcome
@@ -61,7 +62,7 @@ def reduce(case: Case, result: ModalResult) -> Outcome:
         contacts=result.contacts,
         missing=result.residual / result.E_0,
         finished=result.finished,
-        separated=result.separated,
+        separated=result.finished,
         reason=result.reason,
         turn=(result.Omega_b, apart(case), result.away) if turns else None,
     )
@@ -74,6 +75,7 @@ def reduce(case: Case, result: ModalResult) -> Outcome:
         _cost(result),
         peak_force=result.force,
         choices=CHOICES,
+        sites=tuple(map(_site, result.sites)),
         unmeshed="the reduced model has no second mesh",
         omitted=OMITTED,
         limited=limitations(
@@ -84,6 +86,19 @@ def reduce(case: Case, result: ModalResult) -> Outcome:
             *beside_solid(case),
             tilted if turned > TILT_TOLD else "",
         ),
+    )
+
+
+def _site(site: PressedSite) -> ContactSite:
+    return ContactSite(
+        start=site.start,
+        end=site.end,
+        impulse_n=site.impulse_n,
+        impulse_t=site.impulse_t,
+        low_t=site.low,
+        high_t=site.high,
+        width=site.width,
+        depth=site.depth,
     )
 
 

@@ -1,7 +1,7 @@
 """Where the reduced model ends or refuses a run: its ledger, gravity, other points of the rod."""
 
 from dataclasses import replace
-from math import cos, radians, sin
+from math import cos, radians
 
 import numpy as np
 import pytest
@@ -10,8 +10,6 @@ from fem_impact.case.case import Case
 from fem_impact.errors import SceneError
 from fem_impact.modal.impact import solve
 from fem_impact.modal.motion import ROW
-from fem_impact.modal.rod import modal_rod
-from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.limitation import texts
 from fem_impact.run.modal import reduce
 from fem_impact.run.simulate import simulate
@@ -113,29 +111,6 @@ def test_an_open_ledger_fails_a_run_of_the_reduced_model():
 
 
 UPRIGHT = {"impact.angle": "0 deg", "impact.v_t": "0 m/s"}
-SPUN = {
-    "impact.angle": "0.05 deg",
-    "impact.v_t": "0 m/s",
-    "impact.v_n": "-10 m/s",
-    "impact.omega": "974 rad/s",
-}
-FLAT = {"impact.angle": "86 deg", "impact.v_n": "-1 m/s", "impact.v_t": "-1 m/s"}
-
-
-@pytest.mark.parametrize(
-    ("changes", "name", "left"),
-    [(SPUN, "other edge", False), (FLAT, "tail", True)],
-    ids=["upright and spun", "nearly flat"],
-)
-def test_another_point_that_strikes_ends_the_run(changes, name, left):
-    """What the first strike left is known only where the tip had left the barrier before."""
-    scene = replace(replace_all(load("t5b"), changes), effects=("vibration", "friction", "barrier-elastic"))
-    outcome = outcome_of(scene)
-    told, mu = outcome.validity, outcome.restitution.mu
-    assert not told.finished
-    assert isinstance(mu, Unknown) != left
-    assert f"The rod's {name} strikes" in told.stopped_because
-    assert "follows one point" in told.stopped_because
 
 
 @pytest.mark.parametrize("shape", [{}, {"projectile.tip": "plain", "projectile.tip_radius": "0 mm"}])
@@ -165,24 +140,6 @@ def test_a_negative_restitution_is_explained():
     assert outcome.validity.finished
     assert outcome.restitution.edge.e < 0
     assert "the tip lifts off by friction or turning" in texts(outcome.validity.limitations, "result")[0]
-
-
-@pytest.mark.parametrize(
-    "tip", [("A", "7 mm"), ("A", "2 mm"), ("B", "3 mm"), ("B", "9.5 mm"), ("plain", "0 mm")]
-)
-@pytest.mark.parametrize("angle", [0.0, 5.0, 45.0, 75.0])
-def test_the_lowest_of_a_turned_rod_is_the_point_that_is_followed_or_another_one(tip, angle):
-    changes = {"projectile.tip": tip[0], "projectile.tip_radius": tip[1], "impact.angle": f"{angle} deg"}
-    scene = replace(replace_all(load("t5b"), changes), effects=("friction", "barrier-rigid"))
-    rod, body, alpha = modal_rod(Case(scene).bodies), scene.projectile.rigid_body, radians(angle)
-    rho, z = np.append(body.meridian(400), [[body.diameter / 2, body.length]], axis=0).T
-    x, z = np.append(rho, -rho), np.tile(z - body.z_c, 2)
-    for turn in np.radians([-80.0, -20.0, -1.0, 0.0, 1.0, 20.0, 80.0, 170.0]):
-        lowest = (cos(alpha + turn) * z - sin(alpha + turn) * x).min()
-        heights = cos(turn) * rod.others.n - sin(turn) * rod.others.t - rod.others.radius
-        followed = cos(turn) * rod.centre_n - sin(turn) * rod.centre_t - rod.radius
-        sharp = 2 * rod.radius if tip[0] == "plain" or tip[1] == "2 mm" or angle == 75.0 else 0.0
-        assert min(heights.min(), followed) == pytest.approx(lowest, abs=1e-6 + sharp)
 
 
 def test_a_long_step_does_not_cut_a_contact_to_pieces():

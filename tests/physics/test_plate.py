@@ -10,9 +10,8 @@ from fem_impact.case.case import Case
 from fem_impact.case.effects.barrier import compliance_share
 from fem_impact.errors import SceneError
 from fem_impact.evidence.references.zener import zener_impact
-from fem_impact.modal.impact import reach
-from fem_impact.modal.march import integrate_impact
-from fem_impact.modal.motion import ALONE, MOST_CONTACTS, RIGID, SUM, Bounds, Start
+from fem_impact.modal.impact import drop_round
+from fem_impact.modal.motion import SUM, Bounds, Start
 from fem_impact.outcome.limitation import texts
 from fem_impact.physics.contact_law import contact_law
 from fem_impact.physics.flow_law import flow_law
@@ -48,13 +47,11 @@ def test_the_reduced_model_obeys_zeners_equation(number):
     law, flow = contact_law(bodies.contact), flow_law(bodies.contact, None, None)
     m, v, exact = 0.1, 1.0, zener_impact(number)
     T = (m / (law.stiffness * sqrt(v))) ** 0.4
-    start = Start(m, 1.0, 0.0, 0.0, 0.0, 0.0, -v, 0.0, 0.0, 0.0, plate_mobility=number * T / m)
-    contacts = np.zeros((MOST_CONTACTS, 4))
-    bounds = Bounds(T / 300, T, 1.0, reach(law, flow, 0.5 * m * v**2))
-    end = integrate_impact(start, law, flow, RIGID, ALONE, bounds, contacts, np.zeros((0, 15)))
-    assert end.motion.rigid[0] == pytest.approx(exact.restitution * v, abs=1e-3)
+    start = Start(m, 1.0, plate_mobility=number * T / m)
+    end = drop_round(start, law, flow, (-v, 0.0, 0.0), Bounds(T / 300, T, 1.0), 0.0)
+    assert end.now.rigid[0] == pytest.approx(exact.restitution * v, abs=1e-3)
     assert end.tally[SUM.force] == pytest.approx(exact.peak * law.stiffness * (v * T) ** 1.5, rel=2e-3)
-    kept = 0.5 * m * end.motion.rigid[0] ** 2 + end.tally[SUM.plate]
+    kept = 0.5 * m * end.now.rigid[0] ** 2 + end.tally[SUM.plate]
     assert kept == pytest.approx(0.5 * m * v**2, rel=1e-5)
 
 

@@ -47,13 +47,6 @@ def test_at_the_opposite_angle_a_body_touches_as_its_mirror_image(name, degrees)
     assert mirror.reaches(-alpha, 1e-4) == pytest.approx((up, down), abs=1e-15)
 
 
-@pytest.mark.parametrize("name", BODIES)
-def test_other_edges_are_mirrored_with_the_angle(name):
-    body = BODIES[name]
-    mirrored = {(which, -x, z, r) for which, x, z, r in body.other_edges(0.7)}
-    assert set(body.other_edges(-0.7)) == mirrored
-
-
 def test_the_lowest_point_of_a_negative_angle_is_the_lowest_of_the_outline():
     line = BODIES["B"].meridian(4001)
     both = np.vstack([line * [-1, 1], line])

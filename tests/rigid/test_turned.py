@@ -88,15 +88,14 @@ def test_smooth_curves_keep_between_their_points_and_are_round_on_the_axis():
     assert all(np.abs(line - place).sum(axis=1).min() < 1e-12 for place in points)
 
 
-def test_other_edges_are_those_of_the_hull():
-    names = {
-        name for name, *_ in solid(np.array([[0, 0], [R, 0], [0.5 * R, 0.5 * L], [R, L]])).other_edges(0.7)
-    }
-    assert names == {"tail", "other edge"}
-    waist = [
-        z for _, _, z, _ in solid(np.array([[0, 0], [R, 0], [0.5 * R, 0.5 * L], [R, L]])).other_edges(0.7)
-    ]
-    assert 0.5 * L not in waist
+def test_a_reversed_body_has_its_tail_as_its_tip_and_the_same_inertia():
+    line, bore = shapes.cone(L, 2 * R, 0.5, 0.1 * R, 0.0), [[0.2 * R, 0.5 * L], [0.4 * R, L]]
+    body = rigid.Turned(line, ((0.3 * L, RHO), (L, 2 * RHO)), bore)
+    turned = body.reversed()
+    assert turned.outline[:2].tolist() == [[0.0, 0.0], [R, 0.0]]
+    assert turned.z_c == pytest.approx(L - body.z_c)
+    assert (turned.mass, turned.k2) == pytest.approx((body.mass, body.k2))
+    np.testing.assert_allclose(turned.reversed().outline, body.outline, atol=1e-12)
 
 
 @pytest.mark.parametrize(

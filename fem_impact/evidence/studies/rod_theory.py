@@ -18,9 +18,9 @@ from fem_impact.evidence.references.hertz import SPAN
 from fem_impact.evidence.references.oblique import ObliqueRod, oblique_rod
 from fem_impact.evidence.studies.rods import DroppedRod, length_of
 from fem_impact.modal.groove import indent
-from fem_impact.modal.impact import reach
-from fem_impact.modal.march import integrate_impact
-from fem_impact.modal.motion import ALONE, MOST_CONTACTS, RIGID, Bounds, Start
+from fem_impact.modal.impact import drop_round
+from fem_impact.modal.laws import reach
+from fem_impact.modal.motion import Bounds, Start
 from fem_impact.modal.rod import modal_rod
 from fem_impact.physics.contact_law import ContactLaw, contact_law
 from fem_impact.physics.flow_law import FlowLaw, flow_law
@@ -35,10 +35,8 @@ MOST = 40  # contacts of a spring drop
 
 def contact_time(law: ContactLaw, flow: FlowLaw, mass: float, speed: float) -> float:
     """Return the contact time, s, of a rigid mass, kg, that falls along the normal with a speed, m/s."""
-    start = Start(mass, 1.0, 0.0, 0.0, 0.0, 0.0, -speed, 0.0, 0.0, 0.0)
-    bounds = Bounds(STEP, FREE, LATEST, reach(law, flow, 0.5 * mass * speed**2))
-    contacts = np.zeros((MOST_CONTACTS, 4))
-    integrate_impact(start, law, flow, RIGID, ALONE, bounds, contacts, np.zeros((0, 15)))
+    bounds = Bounds(STEP, FREE, LATEST)
+    contacts = drop_round(Start(mass, 1.0), law, flow, (-speed, 0.0, 0.0), bounds, 0.0).contacts
     return float(contacts[0, 1] - contacts[0, 0])
 
 
@@ -203,8 +201,7 @@ def static_restitution(rod: DroppedRod) -> float:
     case = Case.of(rod.scene(), "modal")
     modes = modal_rod(case.bodies)
     law = flow_law(case.contact, case.slots.rod_law, case.slots.barrier_law)
-    mass = modes.mass / (1 + modes.centre_t**2 / modes.k2)
+    mass = modes.mass / (1 + modes.arm[0] ** 2 / modes.k2)
     energy = 0.5 * mass * case.scene.impact.v_n**2
-    flexibility = float((modes.along_n**2 / modes.omega**2).sum())
     widest = reach(contact_law(case.contact), law, energy)
-    return sqrt(1 - indent(law, widest, flexibility, energy)[2] / energy)
+    return sqrt(1 - indent(law, widest, modes.flexibility, energy)[2] / energy)

@@ -143,7 +143,7 @@ def test_a_stiff_rod_gives_nothing_and_bounces_as_a_rigid_one(monkeypatch):
     stiff = replace(rod, omega=1e3 * rod.omega)
     monkeypatch.setattr(rod_theory, "modal_rod", lambda scene: stiff)
     rigid = solve(Case.of(replace(drop, vibrates=False).scene(), "modal"))
-    e = (rigid.V_n - rigid.Omega * rod.centre_t) / -drop.scene().impact.v_n
+    e = (rigid.V_n - rigid.Omega * rod.arm[0]) / -drop.scene().impact.v_n
     assert static_restitution(drop) == pytest.approx(e, abs=5e-3)
 
 

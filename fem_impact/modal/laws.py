@@ -1,0 +1,141 @@
+"""The contact laws of a site, made when it touches: from the attitude of the rod and its speed there."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import cos, pi, sin, sqrt
+
+import numpy as np
+
+from fem_impact.case.case import Case
+from fem_impact.modal.groove import ACROSS
+from fem_impact.modal.groove import AT as IN_GROOVE
+from fem_impact.modal.hertz import springs_over
+from fem_impact.modal.motion import AT, SITE, ModalState, Sites, Start, Touched
+from fem_impact.modal.rod import ModalRod
+from fem_impact.modal.sites import lowest, settle, skin
+from fem_impact.physics.contact import ContactPair
+from fem_impact.physics.contact_law import ContactLaw, contact_law
+from fem_impact.physics.flow_law import FlowLaw, flow_law
+from fem_impact.scene.material import Material
+from rigid import Faceted
+
+BESIDE = 1e-4  # rad, that a law is at least away from the ends of its site's range of normals
+SLOWEST = 0.25  # of the first approach, at which a site that touches later counts as coming at least
+
+
+def pair_at(case: Case, rod: ModalRod, now: ModalState, s: int, slowest: float) -> ContactPair:
+    """Return rod and barrier as a site touches: as the first contact of a rod that comes so.
+
+    Of a site behind the mass centre it is the rod with its tail as its tip. The site may touch with hardly
+    any speed and be pressed in by the turning rod later: it counts as coming at ``slowest``, m/s, at least.
+    """
+    first, rigid = case.contact, now.rigid
+    turn, _ = lowest(rod.sites, s, rigid[AT.turn])
+    begin, end = rod.sites.begin[s], rod.sites.begin[s + 1] - 1
+    low, high = rod.sites.low[begin] + BESIDE, rod.sites.high[end] - BESIDE
+    angle = first.angle + min(max(turn, low), high)
+    angle -= 2 * pi * np.floor((angle + pi) / (2 * pi))
+    body = case.bodies.body
+    assert not isinstance(body, Faceted), "the case refuses the modal fidelity of a mesh of its own"
+    if abs(angle) > 0.5 * pi:
+        body, angle = body.reversed(), angle - pi if angle > 0 else angle + pi
+    c, sn = cos(rigid[AT.turn]), sin(rigid[AT.turn])
+    along = c * rod.sites.along_n[s] - sn * rod.sites.along_t[s]
+    v_n = float(rigid[AT.V_n] - rigid[AT.V_bn] + along @ now.rate)
+    t, n = skin(rod.sites, s, rigid[AT.turn])
+    offset = -float(rigid[AT.away_t] + c * t + sn * n)
+    metal, yields = _metal(case, rod, s, float(rigid[AT.turn]))
+    pair = replace(
+        first,
+        body=body,
+        rod=metal,
+        rod_yields=yields,
+        angle=angle,
+        v_n=v_n,
+        v_t=float(rigid[AT.V_t] - rigid[AT.V_bt]),
+        omega=float(rigid[AT.Omega]),
+        centre_offset=offset,
+    )
+    slow = slowest - pair.approach
+    return replace(pair, v_n=v_n - slow) if slow > 0 else pair
+
+
+def give_law(
+    case: Case, rod: ModalRod, now: ModalState, held: Touched, s: int, energy: float, approach: float
+) -> float:
+    """Give a site its law as it touches, and return how fast it may swing, rad/s, see `contact_rate`.
+
+    ``energy``, J, is the most that its contact can take up; ``approach``, m/s, is that of the first touch.
+    """
+    begun = s == rod.first and now.rigid[AT.turn] == 0.0
+    pair = case.contact if begun else pair_at(case, rod, now, s, SLOWEST * approach)
+    if not begun:
+        settle(rod.sites, s, float(now.rigid[AT.turn]), pair.principal_radii[0])
+    law = contact_law(pair, case.slots.contact_loss)
+    flow = flow_law(pair, case.slots.rod_law, case.slots.barrier_law)
+    set_law(held, s, law, flow, energy)
+    return contact_rate(law, flow, start_of(case, rod), rod.sites, now, s, reach(law, flow, energy))
+
+
+def set_law(held: Touched, s: int, law: ContactLaw, flow: FlowLaw, energy: float) -> None:
+    """Enter the laws of a site that meets a smooth surface; its contact takes up an energy, J, at most."""
+    widest, row = reach(law, flow, energy), held.site[s]
+    row[SITE.known], row[SITE.awake], row[SITE.wake] = 1.0, 0.0, 0.0
+    held.law[s], held.flow[s] = law, flow
+    held.place[s], held.width[s], held.shift[s] = springs_over(widest)
+    held.state[s, IN_GROOVE.last], held.size[s] = -1.0, widest / ACROSS
+
+
+def reach(law: ContactLaw, flow: FlowLaw, energy: float) -> float:
+    """Return the half length, m, of a contact that has taken up an energy, J, along t."""
+    if not flow.yields:
+        return float(np.sqrt(law.R) * (2.5 * energy / law.stiffness) ** 0.2)
+    depth = np.sqrt(energy / (np.pi * law.limit * law.R))
+    return float(np.sqrt(2 * flow.R1 * depth))
+
+
+def contact_rate(
+    law: ContactLaw, flow: FlowLaw, start: Start, sites: Sites, now: ModalState, s: int, widest: float
+) -> float:
+    """Return a bound, rad/s, of how fast a site swings on a contact of half length ``widest``, m.
+
+    The tip of a thin rod gives way to its many modes as if it were light; on a contact that grows wide under
+    the weight of the whole rod it swings faster than any of them.
+    """
+    t, n = skin(sites, s, float(now.rigid[AT.turn]))
+    inverse_mass = 2 * (1 / start.mass + start.inverse_barrier_mass)
+    lever_t, lever_n = now.rigid[AT.away_t] + t, now.rigid[AT.away_n] + n
+    inverse_mass += start.inverse_barrier_inertia * (lever_t**2 + lever_n**2)
+    inverse_mass += (t**2 + n**2) / (start.mass * start.k2)
+    inverse_mass += float(np.sum(sites.along_t[s] ** 2 + sites.along_n[s] ** 2))
+    if flow.yields:
+        stiffness = 2 * widest * max(flow.normal, flow.shear)
+    else:
+        stiffness = widest * max(1.5 * law.stiffness / sqrt(law.R), law.shear)
+    return sqrt(stiffness * inverse_mass)
+
+
+def start_of(case: Case, rod: ModalRod) -> Start:
+    """Return the constants of rod and barrier."""
+    g, struck, angle = case.slots.gravity or 0.0, case.scene.barrier, case.scene.impact.angle
+    return Start(
+        rod.mass,
+        rod.k2,
+        -g * sin(angle),
+        -g * cos(angle),
+        1 / struck.mass if struck.mass else 0.0,
+        1 / case.slots.plate if case.slots.plate else 0.0,
+        1 / struck.inertia if struck.inertia else 0.0,
+    )
+
+
+def _metal(case: Case, rod: ModalRod, s: int, turn: float) -> tuple[Material, bool]:
+    """Return the material of the rod at a site, and whether it may yield: only that of the tip may."""
+    spec, angle = case.scene.projectile, case.contact.angle
+    t, n = skin(rod.sites, s, turn)
+    z = case.bodies.body.z_c + cos(angle) * n + sin(angle) * t
+    parts = [part for part in spec.segments if z <= part.to] or list(spec.segments[-1:])
+    if not parts or parts[0] == spec.segments[0]:
+        return case.contact.rod, case.contact.rod_yields
+    return parts[0].material, False
