@@ -59,7 +59,7 @@ class Faceted:
     def __post_init__(self) -> None:
         if not (self.parts[:, 2] > 0).all() or not np.isfinite(self.parts).all():
             raise ShapeError("each part of a body needs a mass above 0, and finite moments")
-        object.__setattr__(self, "_outline", _hull(self.points[:, [0, 2]], LEVEL * self.length))
+        object.__setattr__(self, "_outline", hull(self.points[:, [0, 2]], LEVEL * self.length))
         object.__setattr__(self, "_half_widths", self._widths())
 
     @property
@@ -243,7 +243,7 @@ class Faceted:
         return z, width
 
 
-def _hull(places: Floats, level: float) -> Floats:
+def hull(places: Floats, level: float) -> Floats:
     """Return the vertices (k, 2) of the convex hull of places (x, z), m, in order around it.
 
     Those that lie nearer than `level`, m, to the line between their neighbours are left out.

@@ -1,0 +1,27 @@
+"""Strikes of a rigid body from the first to rest: outline, flight, contacts that are held, and records."""
+
+from .course import LEAST, MOST, sequence
+from .flight import State, next_touch
+from .held import Ending, Held, Pull, hold
+from .outline import Corner, Outline, outline
+from .record import Approach, Finish, Phase, Sequence, Strike
+
+__all__ = [
+    "LEAST",
+    "MOST",
+    "Approach",
+    "Corner",
+    "Ending",
+    "Finish",
+    "Held",
+    "Outline",
+    "Phase",
+    "Pull",
+    "Sequence",
+    "State",
+    "Strike",
+    "hold",
+    "next_touch",
+    "outline",
+    "sequence",
+]
