@@ -18,6 +18,7 @@ from meshes.quality import Quality, edge_lengths, quality, thicknesses, volume
 from meshes.reading.includes import included
 from meshes.refine import refine
 from meshes.rod import RodMesh, rod
+from meshes.rows import with_thin_rows
 from meshes.sphere import pole_edge, sphere
 from meshes.symmetry import PARTS
 from meshes.turned import cells_across, contact_radius, turned
@@ -63,6 +64,7 @@ __all__ = [
     "volume",
     "with_free_bottom",
     "with_rows_at",
+    "with_thin_rows",
     "with_thin_skin",
     "without_slices",
     "write",

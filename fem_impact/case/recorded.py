@@ -19,6 +19,7 @@ from meshes import Cloud, HexMesh, thin_skin_rise
 # Plastic strain above which metal gets cells of the finest level, and half-widths of the contact around the
 # skin that is pressed in which all does: small cells pay where metal flows most, right under the contact
 FLOWING, UNDER = 0.02, 0.6
+ROD_ROWS = 2  # thin rows under the pressed skin of a rod that yields: three ask for a smaller step, or mass
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,6 +32,7 @@ class RecordedZones:
     levels, below : how often those of the rod and of the barrier are split
     record : where they touched and flowed
     conforming : the barrier flows under all of the contact; skin_rows : thin rows of cells at its top
+    rod_rows : the same under the skin of the rod
     edges : how far a plate that is meshed through its thickness goes beyond its fine zone; else 0
     """
 
@@ -41,6 +43,7 @@ class RecordedZones:
     record: ContactRecord
     conforming: bool
     skin_rows: int
+    rod_rows: int
     edges: float = 0.0
 
     @property
@@ -98,6 +101,14 @@ class RecordedZones:
         """Return the mask (m,) of the rod's cells that may touch: the finest, all of an unsplit mesh."""
         return mesh.finest
 
+    def pressed(self, mesh: HexMesh) -> Bools:
+        """Return the mask (m,) of the rod's finest cells at the skin that is pressed.
+
+        Only they get thin rows: more of them need more mass, which the rest of a light rod cannot give.
+        """
+        rod = self.record.rod
+        return np.asarray(mesh.finest & _near(Cloud(rod.touched, np.full(len(rod.touched), rod.reach)), mesh))
+
     def rod_flow(self, mesh: HexMesh, points: Array) -> Bools:
         """Return the mask (m,) of the rod's cells that may yield."""
         return _near(_flow(self.record.rod), mesh)
@@ -117,7 +128,8 @@ def recorded_zones(bodies: Bodies, record: ContactRecord) -> RecordedZones:
     conforming = bodies.contact.barrier_conforms
     rows = skin_rows(bodies, base / 2**below) if conforming and bodies.contact.f > 0 else 0
     edges = plate_waves(bodies.contact)[1] if is_thin(bodies) else 0.0
-    return RecordedZones(base, rod_cell(bodies), levels, below, record, conforming, rows, edges)
+    rod_rows = ROD_ROWS if levels and bodies.contact.rod_yields else 0
+    return RecordedZones(base, rod_cell(bodies), levels, below, record, conforming, rows, rod_rows, edges)
 
 
 def patch_radius(record: BodyRecord) -> float:

@@ -12,7 +12,7 @@ import meshes
 from fem_impact.arrays import Array, Bools
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.layers import block_of, moved_rows
-from fem_impact.case.recorded import AnyZones
+from fem_impact.case.recorded import AnyZones, RecordedZones
 from fem_impact.case.size import no_rest
 from fem_impact.case.zones import BUFFER, Zones
 from fem_impact.errors import SceneError
@@ -73,6 +73,9 @@ def build_geometry(
     """Mesh the rod (its nose alone if it cannot vibrate) and, if wanted, the barrier block under it."""
     turn, lowest = to_barrier_frame(bodies.mesh_inclination), bodies.lowest_point
     rod = _rod(bodies, lowest, zones.in_rod(lowest, turn))
+    if isinstance(zones, RecordedZones) and zones.rod_rows:
+        part = zones.pressed(rod.mesh) & _first_segment(bodies, rod.mesh)
+        rod = replace(rod, mesh=meshes.with_thin_rows(rod.mesh, part, zones.tip_size, zones.rod_rows))
     if not vibrating:
         if bodies.rod.own_mesh:
             place = (rod.mesh.points - lowest) @ turn.T

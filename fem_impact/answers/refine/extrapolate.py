@@ -23,6 +23,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fem_impact.answers.refine.quantities import QUANTITIES, sum_of
+from fem_impact.answers.refine.ringing import held_back
 from fem_impact.arrays import Array
 from fem_impact.errors import RunError
 from fem_impact.outcome.keys import Key, Unknown, or_none
@@ -154,7 +155,8 @@ def level_limits(meshes: Sequence[MeshRuns], resolved: bool = True) -> tuple[Mes
 
     They are those of the finest two, but no half-width is less than `HALVED` of the change between the two
     levels before: two levels may agree by chance. Where only the finest ``resolved`` its contact, nothing is
-    extrapolated: its own value stands, with what order `LOWEST` leaves of the change to it.
+    extrapolated: its own value stands, with what order `LOWEST` leaves of the change to it. Bands hold what
+    the cells of the finest held back, see `fem_impact.answers.refine.ringing`.
     """
     limits, bands = mesh_limits(meshes[-2:])
     if isinstance(bands, Unknown) or isinstance(limits, Unknown):
@@ -172,6 +174,9 @@ def level_limits(meshes: Sequence[MeshRuns], resolved: bool = True) -> tuple[Mes
         name: max(band, HALVED * abs(values[name][-2] - values[name][-3])) if len(meshes) > 2 else band
         for name, band in bands.items()
     }
+    for name, change in held_back(meshes[-1].runs[0]).items():
+        if name in wider:
+            wider[name] = max(wider[name], abs(values[name][-1] + change - limits[name]))
     return limits, wider
 
 

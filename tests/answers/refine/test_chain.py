@@ -12,6 +12,7 @@ from fem_impact.answers.wanted_error import compiled, simulate
 from fem_impact.case.case import Case
 from fem_impact.case.record import ContactRecord
 from fem_impact.errors import ResultError, SceneError
+from fem_impact.fem.geometry import build_geometry
 from fem_impact.files.digests import write_digests
 from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import Unknown, known
@@ -19,6 +20,7 @@ from fem_impact.outcome.record import Outcome
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.write import digest
+from meshes import SKIN, thicknesses
 
 BASE = {
     "barrier": {"material": "plate-steel"},
@@ -56,6 +58,26 @@ def test_a_stated_size_is_that_of_the_last_level_unless_more_are_asked_for(level
 
 def test_every_level_closes_its_ledger(quick):
     assert max(abs(level.outcome.energy.residual) for level in quick[0].done) < 1e-5
+
+
+def test_thin_rows_lie_under_the_skin_that_was_pressed(quick):
+    level = quick[0].done[-1]
+    bodies, zones = level.case.bodies, level.case.zones
+    assert zones.rod_rows == 2
+    pressed = level.record.rod.touched.mean(axis=0)
+    thick = {}
+    for rows in (0, 2):
+        mesh = build_geometry(bodies, replace(zones, rod_rows=rows), 0.0, True).rod.mesh
+        skin = mesh.finest & np.isin(mesh.cells, np.unique(mesh.faces_with(SKIN))).any(axis=1)
+        away = np.linalg.norm(mesh.points[mesh.cells].mean(axis=1) - pressed, axis=1)
+        thick[rows] = thicknesses(mesh)[skin][away[skin].argsort()]
+    assert (thick[2][:4] < 0.6 * thick[0][:4]).all()
+    assert thick[2][-10:] == pytest.approx(thick[0][-10:])
+
+
+def test_rods_that_do_not_yield_have_no_thin_rows():
+    elastic = replace_all(QUICK, {"effects": ["auto", "-rod-plasticity"]})
+    assert LevelChain(Case(elastic)).pilot().zones.rod_rows == 0
 
 
 def test_flow_and_contact_stay_in_the_zones_of_the_last_level(quick):
