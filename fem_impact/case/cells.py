@@ -33,6 +33,7 @@ import numpy as np
 import meshes
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.mesh import no_mesh
+from fem_impact.errors import SceneError
 from fem_impact.scene.fields import TIP_SIZE
 from fem_impact.scene.projectile import ProjectileSpec
 from rigid import Turned
@@ -62,11 +63,25 @@ def body_cell(bodies: Bodies) -> float:
     As many lie over the diameter of a rod as ``accuracy.across`` says; over that of the nose or section that
     touches if the projectile has a shape of its own. A meshed barrier has cells of the same size; under a
     projectile with a mesh of its own, as many over its largest width.
+
+    Raises
+    ------
+    SceneError
+        If the nose or section that touches is so small that its cells are finer than any that a scene may
+        state.
     """
     rod = bodies.rod
     plain = rod.is_rod or rod.own_mesh is not None
     width = rod.diameter if plain else 2 * _contact_radius(rod, bodies.mesh_inclination, bodies.scene.across)
-    return width / bodies.scene.across
+    edge = width / bodies.scene.across
+    if edge < FINEST:
+        raise SceneError(
+            f"touches with a nose so sharp that its cells are {edge * 1e6:.2g} um wide.",
+            key="projectile",
+            remedy=f"Give it a radius of at least {ceil(0.5e6 * FINEST * bodies.scene.across)} um there, or "
+            "use --fidelity rigid.",
+        )
+    return edge
 
 
 def rod_cell(bodies: Bodies) -> float:

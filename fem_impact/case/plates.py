@@ -114,7 +114,7 @@ def require_plate(bodies: Bodies, meshed_through: bool) -> None:
             f"{contact_time(bodies.contact) * 1e6:.2g} us.",
             key="barrier.span",
             value=f"{barrier.span * 1e3:.3g} mm",
-            remedy=f"Give at least {least * 1e3:.3g} mm.",
+            remedy=f"Give at least {math.ceil(least * 1e3)} mm.",
         )
 
 

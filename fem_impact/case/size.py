@@ -174,7 +174,7 @@ def require_rest(bodies: Bodies, zones: Zones) -> None:
 def no_rest() -> SceneError:
     """Return the refusal of a body whose cells are split up to its end, without vibration."""
     return SceneError(
-        "leaves nothing behind the fine zone of its contact that could move as one rigid body.",
+        "deforms as a whole: the fine zone of its contact leaves no part that could move as one rigid body.",
         key="projectile",
         remedy='Let it vibrate: effects = ["auto", "vibration"].',
     )

@@ -213,7 +213,7 @@ class ProjectileSpec:
         if self.shape is None:
             _check_tip_name(self.tip)
             _check_tip(self)
-        if self.bore:
+        if self.bore != ():
             object.__setattr__(self, "bore", checked_points(self.bore, "bore"))
         if self.segments:
             last = self.segments[-1]

@@ -169,8 +169,10 @@ def _check_approach(scene: Scene) -> None:
         seen_speed = getattr(seen, key) - getattr(scene.barrier, key)
         if moving and not parameter.allows(seen_speed):
             problem = f"is {seen_speed:.4g} m/s as seen from the barrier, which moves too."
-            value = f"{getattr(seen, key):.4g} m/s"
-            raise SceneError(problem, key=f"impact.{key}", value=value, remedy=parameter.remedy)
+            value, own = f"{getattr(seen, key):.4g} m/s", getattr(scene.barrier, key)
+            limits = f"above {own + parameter.low:.6g} m/s and below {own + parameter.high:.6g} m/s"
+            remedy = f"Give a velocity {limits}: the barrier moves at {own:.4g} m/s."
+            raise SceneError(problem, key=f"impact.{key}", value=value, remedy=remedy)
         try:
             parameter.checked(seen_speed)
         except SceneError as error:

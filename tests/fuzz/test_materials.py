@@ -4,13 +4,12 @@ As in `test_fuzz`, ``FUZZ_SEED`` gives the seed and ``pytest -m slow`` takes som
 """
 
 import os
-import re
 from collections import Counter
 
 import pytest
 from census import run
 from random_materials import random_tree
-from remedies import followed
+from remedies import followed, kind
 
 from fem_impact.case.case import Case
 from fem_impact.errors import SceneError
@@ -53,11 +52,7 @@ def test_a_remedy_mends_what_was_refused(numbers):
             refused = refusal(tree, fidelity)
             for did, new, with_fidelity in followed(tree, fidelity, refused) if refused else ():
                 after = refusal(new, with_fidelity)
-                assert after is None or _kind(after) != _kind(refused), (number, fidelity, did, str(refused))
+                assert after is None or kind(after) != kind(refused), (number, fidelity, did, str(refused))
                 TRIED["taken" if after is None else "another refusal"] += 1
     assert TRIED["taken"]
     print(dict(TRIED))
-
-
-def _kind(refused):
-    return refused.key, re.sub(r"\d[-+\d.e]*", "#", refused.problem)

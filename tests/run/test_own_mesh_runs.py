@@ -145,9 +145,21 @@ def test_the_rest_of_a_users_body_keeps_its_mass_centre_and_inertia(tmp_path):
 def test_a_body_that_is_all_nose_is_refused_without_vibration(tmp_path):
     points, cells = taper(width=12e-3, length=14e-3, end=1.0, cells=(4, 2, 1))
     own = {"mesh": str(write(tmp_path / "stub.vtu", points, cells)), "material": "rod-steel"}
-    with pytest.raises(SceneError, match="leaves nothing behind the fine zone"):
+    with pytest.raises(SceneError, match="deforms as a whole: the fine zone"):
         Case.of(scene(own, ["friction", "barrier-elastic"], tip_size="0.5 mm"))
     assert Case.of(scene(own, ["vibration", "barrier-elastic"], tip_size="0.5 mm")).slots.vibrating
+
+
+def test_a_meshed_plate_always_vibrates(tmp_path):
+    """Unless it is told not to: then it is refused with its reason."""
+    points, cells = box(8, 4, 3, (-20e-3, 0, 0), (20e-3, 20e-3, 4e-3))
+    path = write(tmp_path / "plate.vtu", points, cells)
+    own = {"mesh": str(path), "mesh_tip": "-z", "material": "rod-steel"}
+    case = Case.of(scene(own, ["auto", "barrier-elastic"]))
+    assert case.slots.vibrating
+    assert next(choice.number for choice in case.choices if choice.name == "vibration") is None
+    with pytest.raises(SceneError, match=r"deforms as a whole.* Let it vibrate: effects"):
+        Case.of(scene(own, ["auto", "-vibration", "barrier-elastic"]))
 
 
 def test_a_quarter_a_half_and_all_of_a_bar_give_one_outcome(tmp_path):

@@ -356,3 +356,17 @@ def test_a_misspelt_key_is_named_before_what_is_missing_for_it():
 def test_a_key_in_a_wrong_place_is_told_its_own(key, place):
     with pytest.raises(SceneError, match=rf"{key}: is not a known key\. It is a key of {place}\."):
         read_dict(to_dict(load("t5b")) | {key: 1})
+
+
+def test_a_bore_that_is_a_table_is_refused():
+    tube = {"profile": [["0 mm", "8 mm"], ["80 mm", "8 mm"]], "bore": {}, "material": "rod-steel"}
+    with pytest.raises(SceneError, match=r"projectile\.bore: must be a list"):
+        read_dict(to_dict(load("t5b")) | {"projectile": tube, "measured": None})
+
+
+def test_a_velocity_beside_a_barrier_that_runs_away_names_what_strikes():
+    table = to_dict(load("quick")) | {"measured": None}
+    table = {key: value for key, value in table.items() if value is not None}
+    table["barrier"]["v_n"] = "-3 m/s"
+    with pytest.raises(SceneError, match=r"Give a velocity above -503 m/s and below -3 m/s"):
+        read_dict(table)

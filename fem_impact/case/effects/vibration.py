@@ -2,7 +2,7 @@
 
 Without it the rod is rigid except for its nose: the nose, about the first half diameter with the whole
 contact in it, still deforms (and yields), and the slices behind it are one rigid body. A body shorter than
-wide is all nose: it always vibrates.
+wide, or a mesh of the user's own no longer than wide, is all nose: it always vibrates.
 """
 
 from __future__ import annotations
@@ -19,9 +19,10 @@ if TYPE_CHECKING:
 def number(bodies: Bodies) -> float:
     """Return the longest period that the impact can excite over the contact time.
 
-    A body shorter than wide has no part behind its nose that could be rigid.
+    A body no longer than wide has no part behind its nose that could be rigid.
     """
-    if bodies.rod.is_short:
+    rod = bodies.rod
+    if rod.is_short or (rod.own_mesh is not None and rod.length <= rod.diameter):
         return inf
     longest = bodies.stretching_period
     if bodies.scene.impact.angle != 0:
