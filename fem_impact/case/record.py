@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from hashlib import sha256
 from io import BytesIO
@@ -133,6 +133,31 @@ class ContactRecord:
         """Return a record after which the next mesh holds more room ready around what is known."""
         barrier = self.barrier and self.barrier.wider(factor)
         return replace(self, rod=self.rod.wider(factor), barrier=barrier)
+
+
+def together(records: Sequence[ContactRecord]) -> ContactRecord:
+    """Return what several runs on one mesh found as one record, with the sites of the first."""
+    first, *others = records
+    if not others:
+        return first
+    barriers = [record.barrier for record in records if record.barrier is not None]
+    return ContactRecord(
+        _joined([record.rod for record in records]),
+        _joined(barriers) if barriers else None,
+        first.sites,
+        any(record.left for record in records),
+        all(record.resolved for record in records),
+        any(record.crushed for record in records),
+    )
+
+
+def _joined(bodies: Sequence[BodyRecord]) -> BodyRecord:
+    """Return where a body touched and flowed in one run or another."""
+    touched, flowed, strain = (
+        np.concatenate([getattr(body, key) for body in bodies]) for key in ("touched", "flowed", "strain")
+    )
+    reach, spread = (max(getattr(body, key) for body in bodies) for key in ("reach", "spread"))
+    return BodyRecord(touched, flowed, strain, bodies[0].edge, reach, spread)
 
 
 BODY = ("touched", "flowed", "strain", "edge", "reach", "spread")

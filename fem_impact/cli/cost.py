@@ -150,7 +150,7 @@ def _left_out(scene: Scene, meshes: list[MeshLevel], study: CostStudy, budget: f
 
 def _paper(options: Options, names: tuple[str, ...]) -> int:
     """Measure all sets of the paper, one store and page each; write summary.json and a page over all."""
-    from fem_impact.answers.cost.stored import summarise
+    from fem_impact.answers.cost.document import summarise
     from fem_impact.answers.report import Request, publish
     from fem_impact.evidence.studies.cost_report import paper_report, scene_report
     from fem_impact.files.atomic import write_text

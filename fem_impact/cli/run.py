@@ -19,7 +19,7 @@ from fem_impact.errors import RunError, SceneError, UsageError
 from fem_impact.files.run_directory import is_resumable
 from fem_impact.jobs.executors import cores
 from fem_impact.options import CHECKPOINT_INTERVAL, FIDELITIES, RunOptions
-from fem_impact.outcome.keys import Num, Unknown, known, or_none
+from fem_impact.outcome.keys import Num, Unknown, or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.outcome.shares import ABOVE, ADDED, EnergyShare, above_modes, shares
 from fem_impact.progress import clock_text
@@ -29,8 +29,6 @@ from fem_impact.tables.table import Table
 from fem_impact.tables.text import wrapped
 
 if TYPE_CHECKING:
-    from fem_impact.answers.cost.stored import ChosenSetting
-    from fem_impact.answers.wanted_error import RefinementPlan
     from fem_impact.case.case import Case
     from fem_impact.case.size import RunSize
     from fem_impact.outcome.groups import Energy
@@ -52,10 +50,7 @@ def add_options(parser: CommandParser) -> None:
         help="rigid: impulses (at once); modal: vibration modes and a contact law (a second); "
         "solid: finite elements (default)",
     )
-    budget = (
-        "wall time: no level of meshes begins that would exceed it (default: 10 min; 2 min for a scene that "
-        "states its error, if no similar scene was measured)"
-    )
+    budget = "wall time: no level of meshes begins that would exceed it (default: 10 min)"
     add_text(parser, "--budget", "TIME", budget)
     add_out(parser, "results/SCENE")
     parser.add_argument("--resume", action="store_true", help="go on from the checkpoint of a stopped run")
@@ -85,24 +80,24 @@ def run(options: Options) -> int:
     if options.resume and options.fidelity in ("rigid", "modal"):
         problem = f"is for finite elements only: a {options.fidelity} run takes seconds."
         raise UsageError(problem, key="--resume", remedy="Leave it out.")
-    from fem_impact.answers.wanted_error import compiled, simulate
-    from fem_impact.case.case import Case
+    from fem_impact.answers.wanted_error import compiled, on_levels, simulate
 
     say_kept(scene, options)
-    chosen = _setting(scene, options)
-    case = Case(scene) if chosen else compiled(scene, options.fidelity or "solid")
-    _say_plan(case, chosen.sentence if chosen else "", options)
+    if options.budget and not on_levels(scene, options.fidelity or "solid"):
+        problem = "is for several meshes, and this run has one or none."
+        raise UsageError(problem, key="--budget", remedy="Leave it out, or accuracy.levels.")
+    case = compiled(scene, options.fidelity or "solid")
+    if case.fidelity == "solid" and not options.quiet:
+        sys.stderr.write(_long_run(case.size))
     out = checked_out(options.out or Path("results") / _usual_name(scene, options))
-    if options.resume and scene.accuracy.target is None and not is_resumable(out):
+    if options.resume and not is_resumable(out):
         sys.stderr.write(f"fem-impact: {out} holds no checkpoint: the run starts at the beginning\n")
     try:
         with told_kept(out, options), closing(chosen_meter(options)) as meter:
             run_options = RunOptions(out, meter, options.resume, options.checkpoint)
             fidelity = options.fidelity or None
             budget = stated_budget(options)
-            outcome = simulate(
-                scene, fidelity, run_options, cores(), budget_s=budget, chosen=chosen, case=case
-            )
+            outcome = simulate(scene, fidelity, run_options, cores(), budget, case)
     except KeyboardInterrupt:
         way = (
             "--resume goes on from the last checkpoint."
@@ -173,29 +168,12 @@ def _say_screening(case: Case, options: Options) -> None:
     sys.stdout.write("\n".join(lines) + "\n")
 
 
-def _setting(scene: Scene, options: Options) -> ChosenSetting | RefinementPlan | None:
-    """Return what is run for the target error of a scene; None where the scene gives a mesh."""
-    if scene.accuracy.target is None:
-        if options.budget and scene.accuracy.levels == 1:
-            problem = "is for several meshes, and the scene asks for one."
-            raise UsageError(problem, key="--budget", remedy="Leave it out, or accuracy.levels.")
-        return None
-    from fem_impact.answers.wanted_error import settle
-
-    return settle(scene, options.fidelity or None, cores(), stated_budget(options))
-
-
-def _say_plan(case: Case, chosen: str, options: Options) -> None:
-    """Print the setting chosen for the scene's target error, or without one the time of a long run."""
-    sentence = chosen or (_long_run(case.size) if case.fidelity == "solid" else "")
-    if sentence and not options.quiet:
-        sys.stderr.write(f"{sentence}\n")
-
-
 def _long_run(size: RunSize) -> str:
     if size.time <= LONG:
         return ""
-    return f"This run takes about {clock_text(size.time)} ({size_text(size)}); a larger tip_size is quicker."
+    return (
+        f"This run takes about {clock_text(size.time)} ({size_text(size)}); a larger tip_size is quicker.\n"
+    )
 
 
 def _usual_name(scene: Scene, options: Options) -> str:
@@ -281,20 +259,21 @@ def _label(share: EnergyShare, energy: Energy) -> str:
 
 
 def _accuracy_lines(outcome: Outcome) -> list[str]:
-    """Return expected and achieved error and time of a run whose setting a target error chose."""
+    """Return what a run says of the error that was asked for, or why its errors are not known."""
     v = outcome.validity
     if isinstance(v.accuracy_target, Unknown):
         unbanded = outcome.provenance.fidelity == "solid" and isinstance(v.mesh_band, Unknown)
         return ["", *wrapped(f"error of these numbers not known: {_reason(v.mesh_band)}")] if unbanded else []
-    both = (("expected", v.expected_error, v.expected_wall), ("achieved", v.achieved_error, v.achieved_wall))
-    lines = ["", f"asked for {_percent(v.accuracy_target)}: {known(v.accuracy_setting)}"]
     judged = "e" if isinstance(outcome.energy.vibration, Unknown) else "e and E_vib"  # a rigid rod has none
-    for label, error, wall in both:
-        lines += [f"  {label} error of {judged} {_percent(error)}, time {_value(wall)} s"]
+    lines = [
+        "",
+        f"asked for {_percent(v.accuracy_target)}; reached in {judged} {_percent(v.achieved_error)}, "
+        f"in {_value(v.achieved_wall)} s",
+    ]
     limits = or_none(v.mesh_limit) or {}
     names = (("e_edge", "e (tip's arms)"), ("E_vib_over_E_0", "E_vib/E_0"))
     together = ", ".join(f"{label} {_number(limits[name])}" for name, label in names if name in limits)
-    return [*lines, f"  all runs together: {together}"] if together else lines
+    return [*lines, f"  limits of all levels: {together}"] if together else lines
 
 
 def _reason(value: object) -> str:

@@ -59,17 +59,10 @@ class Validity:
         "limitations", "", "What limits trust in the record: sentences, each with its kind."
     )
     accuracy_target: Num = key("accuracy_target", "-", "Relative error that the scene asked for.")
-    accuracy_setting: str | Unknown = key(
-        "accuracy_setting", "", "Setting that the measured costs chose for it."
-    )
-    expected_error: Num = key(
-        "expected_error", "-", "Largest relative error of e and E_vib where the costs were measured."
-    )
-    expected_wall: Num = key("expected_wall_s", "s", "Wall time to be expected, scaled to this machine.")
     achieved_error: Num = key(
-        "achieved_error", "-", "Largest relative error of e and E_vib that two meshes leave open."
+        "achieved_error", "-", "Largest relative half-width of the bands of e and E_vib."
     )
-    achieved_wall: Num = key("achieved_wall_s", "s", "Wall time of all runs of the setting.")
+    achieved_wall: Num = key("achieved_wall_s", "s", "Wall time of all levels.")
     mesh_limit: Mapping[str, float] | Unknown = key(
         "mesh_limit",
         "as the key",

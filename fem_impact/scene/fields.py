@@ -269,6 +269,17 @@ ACCURACY = (
         default=LEVELS,
         source="chosen for this package: three meshes find the contact and give each number a band",
     ),
+    Parameter(
+        "offsets",
+        "places of a meshed barrier's grid, half a cell apart, at which each level but the first runs",
+        "",
+        1,
+        2,
+        whole=True,
+        derived="1; 2 where an error is wanted",
+        source="chosen for this package: two places cost twice as much, on two cores as much as one, and "
+        "make bands about a third as wide",
+    ),
 )
 Element = Literal["incompatible", "full", "bbar"]  # linear operator of cells that cannot yield
 YieldingElement = Literal["bbar", "full"]  # element of cells that may yield

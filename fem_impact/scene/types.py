@@ -43,7 +43,8 @@ class Accuracy:
     ``across`` that is not stated follows from the projectile, see `Scene.across`; ``max_time`` from the rod's
     bending and the contact time, see `Plan.max_time`.
     ``levels`` is the number of meshes of a finite-element run, of which the last counts.
-    ``target`` is the wanted relative error; measured costs then choose fidelity and mesh instead.
+    ``offsets`` is the number of places of a meshed barrier's grid at which each level but the first runs.
+    ``target`` is the wanted relative error; levels then go on until it is reached.
     """
 
     tip_size: float | None = None
@@ -60,6 +61,7 @@ class Accuracy:
     unresolved: fields.Unresolved = "withhold"
     target: float | None = None
     levels: int = fields.LEVELS
+    offsets: int | None = None
 
     def __post_init__(self) -> None:
         check_numbers(self, fields.ACCURACY)

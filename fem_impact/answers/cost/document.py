@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from fem_impact.answers.cost.judge import Judged
 from fem_impact.answers.cost.measure import CostStudy
@@ -19,6 +20,21 @@ SCALARS = ("name", "kind", "fidelity", "tip_size_m", "places")
 COSTS = ("wall_s", "cpu_s", "two_cores_s", "element_steps", "peak_memory_MB")
 NUMBERS = tuple(f"{kind}_{name}" for kind in ("value", "error", "scatter", "band") for name in NAMES)
 COLUMNS = (*SCALARS, *COSTS, *NUMBERS, "front")
+
+
+SUMMARY = "fem-impact/cost-summary/5"
+"""Schema of the stored form of several scenes' costs."""
+
+
+def summarise(costs: Mapping[str, CostStudy]) -> dict[str, Any]:
+    """Return the stored form of several scenes' costs, with one date and one machine for all."""
+    shared = ("created_utc", "versions", "machine")
+    whole = {name: cost.to_dict() for name, cost in costs.items()}
+    first = next(iter(whole.values()))
+    scenes = {
+        name: {k: v for k, v in cost.items() if k not in (*shared, "schema")} for name, cost in whole.items()
+    }
+    return {"schema": SUMMARY, **{key: first[key] for key in shared}, "scenes": scenes}
 
 
 def write_cost(cost: CostStudy, out: Path) -> None:

@@ -4,39 +4,51 @@ The pilot takes what may touch from the shapes alone and holds room ready around
 ready where its coarser one touched and flowed, and a cell more. How fine the last one is follows from the
 width of the contact that was found. A level whose contact or flow left its zones is repeated with twice the
 room where it is the last, or where it could not end.
+
+On each level but the pilot several runs may share a mesh: those at other places of the barrier's grid, or a
+twin of the scene. What they found together makes the mesh of the next level.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass, field, replace
-from functools import cached_property
-from math import log2
+from functools import cached_property, partial
+from math import ceil, log2
 from pathlib import Path
+from time import perf_counter
 
-from fem_impact.answers.refine.budget import about_s
-from fem_impact.answers.refine.extrapolate import MeshRuns, level_limits
+from fem_impact.answers.refine.budget import LONGER, about_s, in_turns, longest_s
+from fem_impact.answers.refine.level import (
+    GRID_OFFSETS,
+    STAMP,
+    LevelRun,
+    limits_of,
+    relative_errors,
+    simulate_level,
+)
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.case import Case
 from fem_impact.case.cells import body_cell, contact_edge, level_size, levels_of, rod_cell
-from fem_impact.case.record import ContactRecord, expected_record
+from fem_impact.case.record import ContactRecord, expected_record, together
 from fem_impact.case.recorded import patch_radius
 from fem_impact.errors import ResultError, RunError, SceneError
-from fem_impact.files.atomic import read_text, write_text
+from fem_impact.files.atomic import read_text
 from fem_impact.files.digests import write_digests
 from fem_impact.files.lock import directory_lock
-from fem_impact.files.run_directory import BESIDE, RECORD, is_resumable
+from fem_impact.files.run_directory import BESIDE, is_resumable
 from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.limitation import limitations
 from fem_impact.outcome.record import Outcome
 from fem_impact.progress import Notice, Progress
-from fem_impact.run.program import stamp
 from fem_impact.run.resolution import NOT_RESOLVED, without
-from fem_impact.run.simulate import begin, simulate_recorded
+from fem_impact.run.simulate import begin
 from fem_impact.scene.fields import LEVELS
 from fem_impact.scene.types import Scene
 from fem_impact.scene.write import digest, to_toml
+from fem_impact.tables.text import plain
 
 MOST_REPEATS = 2  # of a level, each with twice the room
 # levels beyond those asked for, where the last has not resolved the contact: it would have no numbers
@@ -46,29 +58,14 @@ JUMP = 2  # splits between two levels at most: a record holds the places of cell
 # pairs of levels of the 13 measured sets, whose median was 1.9
 SLOWER = 2.8
 BUDGET = 600.0  # s of wall time for all levels, unless stated
+LATE = 1.3  # of the budget, beyond which a level that has begun is given up
+MOST_FINER = 3  # splits beyond those that resolve the contact, where a band decides
 SLICES = 1 / 3  # of the diameter: height over the tip at which the slices of a body may begin
-STAMP = "level.stamp"
-"""File of a level's directory that says what was computed there."""
 UNRESOLVED = Unknown("the last level did not resolve the contact; accuracy.levels = 4 adds a finer one")
 
 
-@dataclass(frozen=True, slots=True)
-class LevelRun:
-    """A level that has run.
-
-    Attributes
-    ----------
-    splits : how often the cells at the contact are split there
-    size : edge of the cells that resolve the contact, m
-    case, outcome, record : of its last run; repeats : how often it ran again with more room
-    """
-
-    splits: int
-    size: float
-    case: Case
-    outcome: Outcome
-    record: ContactRecord
-    repeats: int = 0
+Decides = Callable[[Sequence[LevelRun]], bool]
+"""Says whether levels from coarse to fine are enough for an answer."""
 
 
 @dataclass
@@ -80,6 +77,11 @@ class LevelChain:
     case : of the scene as stated
     options : of all its runs: the files of each level lie in a directory of its own until the last has run
     budget_s : wall time, s, that all levels may take
+    workers : runs at a time, 1 or 2
+    decides : levels go on until it is content; without it, until the contact is resolved or, where the scene
+        states a wanted error, until that is reached
+    twin : a scene that runs on the meshes of this one; it states no place of the grid
+    least : levels that run whatever the budget
     done : levels so far
     failed : why the level after them has no outcome, empty where none failed
     """
@@ -87,6 +89,10 @@ class LevelChain:
     case: Case
     options: RunOptions = field(default_factory=RunOptions)
     budget_s: float = BUDGET
+    workers: int = 1
+    decides: Decides | None = None
+    twin: Scene | None = None
+    least: int = 1
     done: list[LevelRun] = field(default_factory=list)
     failed: str = ""
 
@@ -108,9 +114,7 @@ class LevelChain:
         with nullcontext() if out is None else directory_lock(out):
             if out is not None:
                 self._begin(out)
-            splits: int | None = self.first
-            while splits is not None and self._ran(splits):
-                splits = self._next
+            self.refine()
             outcome = self._stated()
             if out is not None:
                 for file in self._place(self.counted, self.done[self.counted - 1].repeats).iterdir():
@@ -119,6 +123,18 @@ class LevelChain:
                 outcome.write(out / "outcome.json")
                 write_digests(out, BESIDE)
         return outcome
+
+    def refine(self) -> None:
+        """Run levels from coarse to fine until one is enough or the budget is used up.
+
+        Raises
+        ------
+        SceneError, RunError, ResultError, OutputPathError
+            As `run`.
+        """
+        splits: int | None = self.first
+        while splits is not None and self._ran(splits):
+            splits = self._next
 
     def _begin(self, out: Path) -> None:
         """Make the directory ready for a new run, or go on with what an interrupted one left there."""
@@ -168,22 +184,49 @@ class LevelChain:
         return min(max(wanted + more, least), self.first + JUMP * max(levels - 2, 0) + 1)
 
     @property
-    def _next(self) -> int | None:
-        """Splits of the next level; None after the last, or where the budget does not hold another."""
+    def following(self) -> int | None:
+        """Splits of the level after those that have run, whatever the budget; None where none is wanted."""
         ran, finest, record = self.done[-1].splits, self.finest, self.done[-1].record
+        if record.crushed:  # smaller cells are crushed sooner
+            return None
+        if self.decides or self._target:
+            if self._decided or ran >= finest + MOST_FINER:
+                return None
+            finest = max(finest, ran + 1)
         if not (record.resolved or self._is_sized) and len(self.done) < self.scene.accuracy.levels + MORE:
             finest = max(finest, ran + 1)
-        if ran >= finest or record.crushed:  # smaller cells are crushed sooner
-            return None
-        then = finest if finest - ran == 1 else min(ran + JUMP, finest - 1)
-        forecast_s, spent_s = self._forecast_s(then), self._spent_s
-        if spent_s + forecast_s <= self.budget_s:
+        return next(iter(_steps(ran, finest)), None)
+
+    @property
+    def _target(self) -> float | None:
+        return self.scene.accuracy.target
+
+    @property
+    def _decided(self) -> bool:
+        """Whether the levels so far are enough for an answer, of which two at least are needed."""
+        if len(self.done) < 2:
+            return False
+        if self.decides is not None:
+            return self.decides(self.done)
+        errors = relative_errors(self.done)
+        return bool(errors) and max(errors.values()) <= (self._target or 0.0)
+
+    @property
+    def _next(self) -> int | None:
+        """Splits of the next level; None after the last, or where the budget does not hold another."""
+        then = self.following
+        if then is None or len(self.done) < self.least or self.holds(then):
             return then
         self._tell(
-            f"Level {len(self.done) + 1} would take about {about_s(forecast_s)}; {about_s(spent_s)} of the "
-            f"budget of {about_s(self.budget_s)} are used up: the run ends with level {len(self.done)}."
+            f"Level {len(self.done) + 1} would take about {about_s(self.forecast_s(then))}; "
+            f"{about_s(self.spent_s)} of the budget of {about_s(self.budget_s)} are used up: the run ends "
+            f"with level {len(self.done)}."
         )
         return None
+
+    def holds(self, splits: int) -> bool:
+        """Say whether the budget holds a level of so many splits."""
+        return self.spent_s + self.forecast_s(splits) <= self.budget_s
 
     @property
     def counted(self) -> int:
@@ -191,7 +234,11 @@ class LevelChain:
 
         It is the last one where none did.
         """
-        parted = [n for n, one in enumerate(self.done, 1) if not isinstance(one.outcome.motion.V_n, Unknown)]
+        parted = [
+            n
+            for n, level in enumerate(self.done, 1)
+            if not any(isinstance(one.motion.V_n, Unknown) for one in level.outcomes)
+        ]
         return parted[-1] if parted else len(self.done)
 
     @property
@@ -222,15 +269,27 @@ class LevelChain:
         return self.scene.accuracy.tip_size is not None
 
     @property
-    def _spent_s(self) -> float:
-        return sum(level.outcome.cost.whole_wall * (1 + level.repeats) for level in self.done)
+    def spent_s(self) -> float:
+        """Wall time, s, of all levels so far."""
+        return sum(level.wall_s for level in self.done)
 
-    def _forecast_s(self, splits: int) -> float:
+    @property
+    def _offsets(self) -> tuple[float, ...]:
+        """Places of the barrier's grid at which the next level runs; a rigid barrier has none."""
+        pilot = not self.done or self.twin is not None or not self._bodies.contact.compliant
+        return GRID_OFFSETS[: 1 if pilot else self.scene.accuracy.offsets or 1 + bool(self._target)]
+
+    def _turns(self, runs: int) -> int:
+        """Return how many of so many runs the busier of the workers does."""
+        return ceil(runs / self.workers)
+
+    def forecast_s(self, splits: int) -> float:
         """Return about the wall time, s, of a level, from how much longer each took than that before."""
-        times = [level.outcome.cost.whole_wall for level in self.done]
+        times = [level.wall_s / (1 + level.repeats) / self._turns(len(level.outcomes)) for level in self.done]
         steps = [level.splits for level in self.done]
         slower = (times[-1] / times[-2]) ** (1 / (steps[-1] - steps[-2])) if len(times) > 1 else SLOWER
-        return float(times[-1] * max(slower, 1.0) ** (splits - steps[-1]))
+        of_one = times[-1] * max(slower, 1.0) ** (splits - steps[-1])
+        return float(of_one * self._turns(1 if self.twin is None else 2) * self._turns(len(self._offsets)))
 
     def _wanted(self, radius: float) -> int:
         """Return the splits with which so many cells as advised lie over a contact's radius, m."""
@@ -242,10 +301,21 @@ class LevelChain:
         sizes = zip(self._cells, self._splits, strict=True)
         rod, barrier = (cell / 2 ** (usual + splits - self._usual) for cell, usual in sizes)
         # a user's cells may be larger than a scene may state: they are left as they are
-        accuracy = replace(self.scene.accuracy, tip_size=min(rod, self.scene.projectile.diameter / 4))
+        rod = min(rod, self.scene.projectile.diameter / 4)
+        accuracy = replace(self.scene.accuracy, tip_size=rod, target=None)
         if self._bodies.contact.compliant:
             accuracy = replace(accuracy, barrier_size=barrier)
         return replace(self.scene, accuracy=accuracy)
+
+    def _sharing(self, scene: Scene) -> list[Scene]:
+        """Return the scenes that run on one mesh: a scene at places of the grid, or beside its twin."""
+        accuracy = scene.accuracy
+        if self.twin is not None:
+            return [scene, replace(self.twin, accuracy=accuracy)]
+        shifts = [(accuracy.grid_shift + offset) % 1.0 for offset in self._offsets]
+        first, *others = (replace(scene, accuracy=replace(accuracy, grid_shift=shift)) for shift in shifts)
+        # a film is made of the first alone: storing frames takes a tenth of a quick run
+        return [first, *(replace(one, save=replace(one.save, frames=0, strain_samples=0)) for one in others)]
 
     def _expected(self, splits: int) -> ContactRecord:
         """Return what may touch on cells that are split so often."""
@@ -266,58 +336,66 @@ class LevelChain:
 
     def _run_level(self, splits: int) -> None:
         """Run a level, again with more room where it needs that, and add it to what is done."""
+        begun = perf_counter()
         last = bool(self.done) and splits >= self.finest
         scene = self._at(splits)
         before = known = self.done[-1].record if self.done else self._expected(splits)
         if not last:  # a coarse level tells all it finds
             accuracy = replace(scene.accuracy, unresolved="report")
             scene = replace(scene, accuracy=accuracy, save=replace(scene.save, frames=0, strain_samples=0))
+        scenes = self._sharing(scene)
         for repeats in range(MOST_REPEATS + 1):
-            case = Case.of(scene, "solid", before)
-            outcome, record = self._simulated(case, before, self._options(splits, repeats))
-            ended = outcome.validity.finished
+            cases = [Case.of(one, "solid", before) for one in scenes]
+            runs = in_turns(
+                [
+                    partial(simulate_level, case, self._options(splits, repeats, number))
+                    for number, case in enumerate(cases)
+                ],
+                self.workers,
+            )
+            record = together([record for _, record in runs])
+            ended = all(outcome.validity.finished for outcome, _ in runs)
             if not record.left or record.crushed or (ended and not last) or repeats == MOST_REPEATS:
                 break
             known = record if ended else known
             before = known.wider(2.0 ** (repeats + 1))  # a record has the room of a first run
-        size = contact_edge(case.bodies)  # as it came out, which is not always as asked for
-        self.done.append(LevelRun(splits, size, case, outcome, record, repeats))
+        size = contact_edge(cases[0].bodies)  # as it came out, which is not always as asked for
+        outcomes = tuple(outcome for outcome, _ in runs)
+        took_s = perf_counter() - begun
+        if self.options.resume:  # what was computed before an interruption took its time, too
+            walls = [outcome.cost.whole_wall for outcome in outcomes]
+            took_s = max(took_s, (1 + repeats) * longest_s(walls, self.workers))
+        self.done.append(LevelRun(splits, size, tuple(cases), outcomes, record, took_s, repeats))
 
-    def _simulated(
-        self, case: Case, before: ContactRecord, options: RunOptions
-    ) -> tuple[Outcome, ContactRecord]:
-        """Return outcome and record of a level, from its files where it ran before it was resumed."""
-        computed = f"{stamp(case.scene)}record {before.digest()}\n"
-        out = options.out
-        if out is not None and options.resume and (out / STAMP).is_file():
-            if read_text(out / STAMP) == computed and (out / "outcome.json").is_file():
-                return Outcome.read(out / "outcome.json"), ContactRecord.read(out / RECORD)
-            options = replace(options, resume=read_text(out / STAMP) == computed)
-        if out is not None:
-            out.mkdir(parents=True, exist_ok=True)
-            write_text(out / STAMP, computed)
-        outcome, record = simulate_recorded(case.scene, "solid", options, case)
-        assert record is not None, "finite elements leave a record"
-        return outcome, record
-
-    def _place(self, number: int, repeats: int) -> Path:
-        """Return the directory of a level, counted from 1, run again so often with more room."""
+    def _place(self, number: int, repeats: int, run: int = 0) -> Path:
+        """Return the directory of a run of a level, both counted, run again so often with more room."""
         assert self.options.out is not None, "files are wanted"
-        return self.options.out / (f"level-{number}-wider-{repeats}" if repeats else f"level-{number}")
+        name = f"level-{number}" + f"-wider-{repeats}" * bool(repeats) + f"-run-{run + 1}" * bool(run)
+        return self.options.out / name
 
-    def _options(self, splits: int, repeats: int) -> RunOptions:
-        """Return the options of the next level, whose progress names it and knows about later ones."""
+    def _options(self, splits: int, repeats: int, run: int) -> RunOptions:
+        """Return the options of a run of the next level.
+
+        The progress of the first names the level, knows about later ones, and gives the level up where it
+        takes so long that the budget cannot be kept.
+        """
         number, show = len(self.done) + 1, self.options.progress
-        out = self.options.out and self._place(number, repeats)
-        if show is None:
-            return replace(self.options, out=out)
-        later = range(splits + 1, max(self.finest, splits) + 1)
+        out = self.options.out and self._place(number, repeats, run)
+        if run:  # it may be another process that does it
+            return replace(self.options, out=out, progress=None)
+        later = _steps(splits, max(self.finest, splits))
         name = f"{self.scene.id}, level {number}" + f" of {number + len(later)}" * bool(self.done)
+        limit_s = LATE * self.budget_s - self.spent_s
+        begun = perf_counter()
 
         def named(progress: Progress | Notice) -> None:
+            if len(self.done) >= self.least and perf_counter() - begun > limit_s:
+                raise RunError(f"The budget of {about_s(self.budget_s)} was used up in the middle of it.")
+            if show is None:
+                return
             if isinstance(progress, Notice):
                 return show(progress)
-            rest = sum(map(self._forecast_s, later)) if self.done else 0.0
+            rest = sum(map(self.forecast_s, later)) if self.done else 0.0
             eta = None if progress.eta_s is None or not self.done else progress.eta_s + rest
             show(replace(progress, note=name, eta_s=eta))
 
@@ -331,9 +409,8 @@ class LevelChain:
         """Return the outcome of the level that counts, of the scene as stated, with limits and bands."""
         upto = self.done[: self.counted]
         counted, beyond = upto[-1], self.done[self.counted :]
-        meshes = [MeshRuns(level.size, [level.outcome]) for level in upto]
-        banded = len(meshes) > 1 and counted.record.resolved
-        limits, bands = level_limits(meshes, upto[-2].record.resolved) if banded else (UNRESOLVED, UNRESOLVED)
+        banded = len(upto) > 1 and counted.record.resolved
+        limits, bands = limits_of(upto) if banded else (UNRESOLVED, UNRESOLVED)
         left = (
             f"Contact or flow left the zones held ready, after {counted.repeats} repeats with more room."
             if counted.record.left
@@ -347,16 +424,26 @@ class LevelChain:
             if wanted > 0 and (counted.splits < self.finest or not self._is_sized)
             else ""
         )
-        cut = beyond[0].outcome.validity.stopped_because if beyond else self.failed
+        cut = _stop_of(beyond[0]) if beyond else self.failed
         ended = f"The numbers are those of level {len(upto)}: level {len(upto) + 1} was cut off. {cut}"
         outcome = self._without_unresolved(counted)
+        said, missed = outcome.validity, ""
+        if self._target:
+            errors = relative_errors(upto)
+            missed = self._missed(errors)
+            said = replace(
+                said,
+                accuracy_target=self._target,
+                achieved_error=max(errors.values()) if errors else UNRESOLVED,
+                achieved_wall=self.spent_s,
+            )
         validity = replace(
-            outcome.validity,
+            said,
             mesh_limit=limits,
             mesh_band=bands,
             limitations=(
                 *outcome.validity.limitations,
-                *limitations("run", ended if cut else ""),
+                *limitations("run", ended if cut else "", missed),
                 *limitations("resolution", left, short),
             ),
         )
@@ -366,6 +453,28 @@ class LevelChain:
             provenance=replace(outcome.provenance, scene_digest=digest(self.scene)),
         )
 
+    def _missed(self, errors: Mapping[str, float]) -> str:
+        """Say why the wanted error is not reached, and what more would cost; empty where it is."""
+        if errors and max(errors.values()) <= (self._target or 0.0):
+            return ""
+        reached = [f"{name} is known to {plain(100 * error, 2)} %" for name, error in errors.items()]
+        told = " and ".join(reached) or UNRESOLVED.reason
+        return f"The wanted {100 * (self._target or 0.0):.3g} % is not reached: {told}. {self._advice}"
+
+    @property
+    def _advice(self) -> str:
+        """What another level would take, or why none is made."""
+        if self.failed:
+            return f"A finer level gave no result: {self.failed}"
+        then = self.following
+        if then is None:
+            return "No finer level is tried."
+        more_s = self.forecast_s(then)
+        return (
+            f"One level finer takes about {about_s(more_s)} more: for that give --budget "
+            f'"{about_s(self.spent_s + LONGER * more_s)}".'
+        )
+
     def _without_unresolved(self, counted: LevelRun) -> Outcome:
         """Return a level's outcome without the numbers that a scene withholds where they are not resolved."""
         outcome = counted.outcome
@@ -373,3 +482,18 @@ class LevelChain:
             return outcome
         reasons = [one.text for one in outcome.validity.limitations if one.text.startswith(NOT_RESOLVED)]
         return without(outcome, Unknown(reasons[0])) if reasons else outcome
+
+
+def _stop_of(level: LevelRun) -> str:
+    """Return why a level did not come to its end."""
+    cut = (one.validity.stopped_because for one in level.outcomes if isinstance(one.motion.V_n, Unknown))
+    return next(cut, "")
+
+
+def _steps(ran: int, finest: int) -> list[int]:
+    """Return the splits of the levels from one that ran to the finest, which is one split after another."""
+    steps = []
+    while ran < finest:
+        ran = finest if finest - ran == 1 else min(ran + JUMP, finest - 1)
+        steps.append(ran)
+    return steps

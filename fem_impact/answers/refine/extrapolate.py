@@ -151,33 +151,44 @@ def mesh_limits(meshes: Sequence[MeshRuns]) -> tuple[MeshNumbers, MeshNumbers]:
 
 
 def level_limits(meshes: Sequence[MeshRuns], resolved: bool = True) -> tuple[MeshNumbers, MeshNumbers]:
-    """Return limits and half-widths, by key, of two or more levels from coarse to fine that ran once each.
+    """Return limits and half-widths, by key, of two or more levels from coarse to fine, as `level_limit`.
+
+    They are of every banded number that all runs of the finest two know. Bands hold what the cells of the
+    finest held back, see `fem_impact.answers.refine.ringing`; the vibration energy's is `floored`.
+    """
+    sizes, limits, bands = [mesh.size for mesh in meshes[-3:]], dict[str, float](), dict[str, float]()
+    for key in KEYS:
+        means = [mesh.mean([key]) for mesh in meshes[-3:]] if key.banded else [None, None]
+        if None in means[-2:]:
+            continue
+        # a number that a coarser level does not know changes by itself
+        values = [mesh.values([key]) or [0.0] for mesh in meshes[-3:]]
+        limits[key.name], bands[key.name] = level_limit(sizes, values, resolved)
+        if key in VIBRATION:
+            bands[key.name] = floored(bands[key.name], meshes[-1].runs)
+    for name, change in held_back(meshes[-1].runs[0]).items():
+        if name in bands:
+            own = meshes[-1].mean([KEY_TABLE[name]]) or 0.0
+            bands[name] = max(bands[name], abs(own + change - limits[name]))
+    return limits, bands
+
+
+def level_limit(
+    sizes: Sequence[float], values: Sequence[Sequence[float]], resolved: bool = True
+) -> tuple[float, float]:
+    """Return limit and half-width of one number from its values on two or three levels from coarse to fine.
 
     They are those of the finest two, but no half-width is less than `HALVED` of the change between the two
     levels before: two levels may agree by chance. Where only the finest ``resolved`` its contact, nothing is
-    extrapolated: its own value stands, with what order `LOWEST` leaves of the change to it. Bands hold what
-    the cells of the finest held back, see `fem_impact.answers.refine.ringing`.
+    extrapolated: its own value stands, with what order `LOWEST` leaves of the change to it.
     """
-    limits, bands = mesh_limits(meshes[-2:])
-    if isinstance(bands, Unknown) or isinstance(limits, Unknown):
-        return limits, bands
-    values = {
-        name: [mesh.mean([KEY_TABLE[name]]) or 0.0 for mesh in meshes[-3:]] for name in bands
-    }  # a number that a coarser level does not know changes by itself
-    if not resolved:
-        left = (meshes[-2].size / meshes[-1].size) ** LOWEST - 1
-        limits = {name: of[-1] for name, of in values.items()}
-        bands = {name: abs(of[-1] - of[-2]) / left for name, of in values.items()}
-        if (vibration := VIBRATION[0].name) in bands:
-            bands[vibration] = floored(bands[vibration], meshes[-1].runs)
-    wider = {
-        name: max(band, HALVED * abs(values[name][-2] - values[name][-3])) if len(meshes) > 2 else band
-        for name, band in bands.items()
-    }
-    for name, change in held_back(meshes[-1].runs[0]).items():
-        if name in wider:
-            wider[name] = max(wider[name], abs(values[name][-1] + change - limits[name]))
-    return limits, wider
+    means = [fmean(on_level) for on_level in values]
+    if resolved:
+        limit = limit_of(sizes[-2:], values[-2:])
+        value, band = limit.value, limit.uncertainty
+    else:
+        value, band = means[-1], abs(means[-1] - means[-2]) / ((sizes[-2] / sizes[-1]) ** LOWEST - 1)
+    return value, max(band, HALVED * abs(means[-2] - means[-3])) if len(means) > 2 else band
 
 
 def extrapolated(meshes: Sequence[MeshRuns], keys: Sequence[Key]) -> ExtrapolatedValue | None:
@@ -237,7 +248,7 @@ def pair_limit(fine: float, coarse: float, ratio: float, offsets: int = 1) -> tu
     return fine + half, abs(half) * (ONE_RUN if offsets == 1 else 1.0)
 
 
-def limit_of(sizes: list[float], values: Sequence[Sequence[float]]) -> ExtrapolatedValue:
+def limit_of(sizes: Sequence[float], values: Sequence[Sequence[float]]) -> ExtrapolatedValue:
     """Return the limit, with scale 1, from the values of several runs on each mesh; ``sizes`` in any unit.
 
     The standard error of the limit by the scatter of those values is the root mean square change of the
@@ -255,7 +266,9 @@ def limit_of(sizes: list[float], values: Sequence[Sequence[float]]) -> Extrapola
     return ExtrapolatedValue(value, order, extrapolation + scatter, 1.0, scatter)
 
 
-def _limit(sizes: list[float], values: list[float], offsets: int) -> tuple[float, float | None, float]:
+def _limit(
+    sizes: Sequence[float], values: Sequence[float], offsets: int
+) -> tuple[float, float | None, float]:
     """Return limit, order and uncertainty by extrapolation from the mean of ``offsets`` on each mesh."""
     last, first = (values[sizes.index(extreme(sizes))] for extreme in (min, max))
     if len(sizes) == 2:

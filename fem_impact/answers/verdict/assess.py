@@ -9,18 +9,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fem_impact.answers.refine.budget import LONGER, Budget, about_s
-from fem_impact.answers.refine.extrapolate import MeshRuns
-from fem_impact.answers.refine.loop import Level, RefinementLoop, Stop, levels_of_twins
+from fem_impact.answers.refine.budget import LONGER, about_s
+from fem_impact.answers.refine.chain import LevelChain
+from fem_impact.answers.refine.level import LevelRun
 from fem_impact.answers.verdict.effect import (
     Answer,
     VibrationEffect,
     largest,
     modal_effect,
     modal_pair,
+    pair_of,
     solid_effect,
     unfinished,
-    unsupported,
     untargeted,
 )
 from fem_impact.answers.verdict.reliability import known_error
@@ -29,6 +29,8 @@ from fem_impact.answers.verdict.twins import inclined, twins
 from fem_impact.case.case import Case
 from fem_impact.case.limits import flat_part, not_reduced
 from fem_impact.errors import RunError, SceneError
+from fem_impact.options import RunOptions
+from fem_impact.progress import Notice, Progress
 from fem_impact.tables.text import plain
 
 if TYPE_CHECKING:
@@ -42,12 +44,10 @@ BUDGET = 60.0
 FIDELITIES = ("auto", "modal", "solid")
 ANGLES = tuple(np.radians(np.arange(5.0, 81.0, 5.0)))
 """Inclinations among which the worst one is looked for, rad."""
-LEAST_MESHES = 2
-"""Meshes that ``solid`` runs whatever the budget: one alone cannot estimate its own error."""
+LEAST_LEVELS = 2
+"""Levels that ``solid`` runs whatever the budget: one alone cannot estimate its own error."""
 
 LACKING = "There is no reduced model of {}: finite elements alone answer."
-COUNT = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth")
-
 Tell = Callable[[str], object]
 
 
@@ -147,8 +147,8 @@ def assess(
     unlike = quick is not None and not known_error(scene).alike
     open_still = quick is None or unlike or quick.answer(tolerance) == "undecided"
     if fidelity == "solid" or (fidelity == "auto" and open_still):
-        least = LEAST_MESHES if fidelity == "solid" else int(not elsewhere)
-        solid, told, more = _solid(scene, least, tolerance, Budget(budget_s, workers), quick, tell)
+        least = LEAST_LEVELS if fidelity == "solid" or quick is None else 0
+        solid, told, more = _solid(scene, least, tolerance, budget_s, workers, quick is not None, tell)
         here, used = (solid, "solid") if solid else (quick, "modal")
         notes += told
         more = f"--fidelity solid {more}" if more and fidelity == "solid" else more
@@ -190,104 +190,70 @@ def _check(fidelity: str, tolerance: float, budget_s: float) -> None:
         raise SceneError("must lie above 0 and below 1e6 s.", key="budget", value=f"{budget_s:g} s")
 
 
-@dataclass(frozen=True, slots=True)
-class VerdictJudge:
-    """Decides where the change of e by vibration is known well enough, beside what may be neglected.
-
-    Attributes
-    ----------
-    levels : of a scene and its twin
-    quick : what the reduced model says, None where there is none
-    tolerance : change of e that may be neglected
-    """
-
-    levels: Sequence[Level]
-    quick: VibrationEffect | None
-    tolerance: float
-
-    def failure(self, done: MeshRuns) -> str:
-        """Return why the twins on a mesh say nothing, empty where they do."""
-        return unfinished((done.runs[0], done.runs[1]))
-
-    def decided(self, done: Sequence[MeshRuns], scatter: float = 1.0) -> bool:
-        """Say whether meshes answer; one alone does where the reduced model bears it out."""
-        effect = solid_effect(self.levels, done)
-        return self.supported(done, effect) and effect.answer(self.tolerance) != "undecided"
-
-    def supported(self, done: Sequence[MeshRuns], effect: VibrationEffect) -> bool:
-        """Say whether two meshes ran, or the reduced model, known well enough, agrees with one."""
-        quick = self.quick
-        borne_out = quick is not None and quick.band <= self.tolerance and quick.meets(effect)
-        return len(done) >= LEAST_MESHES or borne_out
-
-    def effect(self, done: Sequence[MeshRuns]) -> tuple[VibrationEffect, list[str]]:
-        """Return the change of e that finished meshes show, with notes on what its band holds.
-
-        Where the reduced model contradicts one mesh, the band holds what both say; where there is no reduced
-        model, the error of one mesh is not known.
-        """
-        effect, quick = solid_effect(self.levels, done), self.quick
-        if self.supported(done, effect):
-            return effect, []
-        if quick is None:
-            note = "One mesh alone does not tell its error, and no reduced model bears it out."
-            return unsupported(effect, self.levels[0]), [note]
-        note = (
-            f"One mesh of finite elements says {effect.value:+.3f} ± {effect.band:.3f}, the reduced model "
-            f"{quick.value:+.3f} ± {quick.band:.3f}: the band holds both."
-        )
-        return effect.widened(quick), [note]
-
-
 def _solid(
     scene: Scene,
     least: int,
     tolerance: float,
-    budget: Budget,
-    quick: VibrationEffect | None,
+    budget_s: float,
+    workers: int,
+    has_quick: bool,
     tell: Tell,
 ) -> tuple[VibrationEffect | None, list[str], str]:
-    """Return what finite elements say, None where the budget allows no mesh or no run gives an e.
+    """Return what finite elements say, None where the budget allows too few levels or no run gives an e.
 
-    Notes on it follow, and the options with which another mesh would run. ``least`` meshes run whatever the
-    budget. One mesh alone counts where the reduced model, ``quick``, bears it out.
+    Notes on it follow, and the options with which another level would run. ``least`` levels run whatever the
+    budget. ``has_quick``: the reduced model has an answer, which counts where finite elements have none.
     """
+
+    def decides(levels: Sequence[LevelRun]) -> bool:
+        effect = solid_effect(levels)
+        return effect is not None and effect.answer(tolerance) != "undecided"
+
+    begun = set[str]()
+
+    def announce(progress: Progress | Notice) -> None:
+        if isinstance(progress, Progress) and progress.note not in begun:
+            begun.add(progress.note)
+            tell(f"finite elements, {progress.note} ...")
+
+    free, stiff = twins(untargeted(scene))
+    levels = LevelChain(Case(free), RunOptions(progress=announce), budget_s, workers, decides, stiff, least)
     try:
-        levels = levels_of_twins(*twins(untargeted(scene)))
-    except SceneError as refused:
-        if quick is None or least:
+        levels.refine()
+    except (SceneError, RunError) as refused:
+        if least or not has_quick:
             raise
         return None, [f"Finite elements have no answer here: {refused}"], ""
-
-    def announce(level: int, seconds: float) -> None:
-        tell(f"finite elements, {COUNT[level]} mesh, about {about_s(seconds)} ...")
-
-    judge, both = VerdictJudge(levels, quick, tolerance), len(levels[0].scenes)
-    loop = RefinementLoop(levels, budget, least=least, first=both, announce=announce)
-    stop = loop.run(judge)
-    if isinstance(stop.error, SceneError) and quick is None and not loop.done:
-        raise stop.error
-    note, more = _stopped(loop, stop)
-    effect, notes = judge.effect(loop.done) if loop.done else (None, [])
-    return effect, [*note, *notes], more
+    effect = solid_effect(levels.done)
+    if effect is not None and effect.answer(tolerance) != "undecided":
+        return effect, [], ""
+    note, more = _stopped(levels)
+    return effect, [*note, *([] if effect else [_nothing(levels.done)])], more
 
 
-def _stopped(loop: RefinementLoop, stop: Stop) -> tuple[list[str], str]:
-    """Return a note on why no other mesh runs, and the options with which one would."""
-    if stop.because == "decided":
-        return [], ""
-    if stop.because == "finest":
-        return ["No finer mesh is tried: none of the family has finer cells at the contact."], ""
-    which = COUNT[len(loop.done)]
-    if stop.because == "failed":
-        return [f"Finite elements give no result on the {which} mesh: {stop.error}"], ""
-    limit_s, spent_s = loop.budget.limit_s, loop.budget.spent_s
-    more = loop.budget.forecast_s(loop.finer[0].scenes)
-    left, enough = max(limit_s - spent_s, 0.0), about_s(spent_s + LONGER * more)
+def _nothing(levels: Sequence[LevelRun]) -> str:
+    """Say why levels tell nothing of the change of e."""
+    failed = unfinished(pair_of(levels[-1]))
+    if failed:
+        return f"Finite elements have no answer here: {failed}"
+    if len(levels) < LEAST_LEVELS:
+        return "One level of finite elements alone does not tell its error."
+    return "The last level of finite elements does not resolve the contact."
+
+
+def _stopped(levels: LevelChain) -> tuple[list[str], str]:
+    """Return a note on why no other level runs, and the options with which one would."""
+    if levels.failed:
+        return [f"Finite elements give no result on level {len(levels.done) + 1}: {levels.failed}"], ""
+    then = levels.following
+    if then is None:
+        return ["No finer level is tried."], ""
+    more_s, spent_s = levels.forecast_s(then), levels.spent_s
+    left_s, enough = max(levels.budget_s - spent_s, 0.0), about_s(spent_s + LONGER * more_s)
     note = (
-        f"A {which} mesh{', finer,' if loop.done else ''} would take about "
-        f"{about_s(more)} more, and {plain(left, 2)} s are left of the budget of {limit_s:g} s. "
-        f'For it give --budget "{enough}".'
+        f"Level {len(levels.done) + 1}, finer, would take about {about_s(more_s)} more, and "
+        f"{plain(left_s, 2)} s are left of the budget of {levels.budget_s:g} s. For it give "
+        f'--budget "{enough}".'
     )
     return [note], f'--budget "{enough}"'
 

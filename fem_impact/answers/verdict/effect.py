@@ -11,15 +11,14 @@ from fem_impact.answers.refine.extrapolate import (
     ONE_RUN,
     VIBRATION,
     MeshRuns,
-    extrapolated,
-    floored,
-    limit_of,
+    level_limit,
+    level_limits,
     vibration_floor,
 )
+from fem_impact.answers.refine.level import LevelRun
 from fem_impact.answers.verdict.reliability import known_error
 from fem_impact.answers.verdict.twins import twins
 from fem_impact.case.case import Case
-from fem_impact.case.cells import ERROR, expected_cells, kind
 from fem_impact.case.plates import half_space_error, is_thin
 from fem_impact.outcome.keys import known, or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
@@ -27,17 +26,11 @@ from fem_impact.outcome.shares import SHARES
 from fem_impact.run.simulate import simulate
 
 if TYPE_CHECKING:
-    from fem_impact.answers.refine.loop import Level
     from fem_impact.scene.types import Scene
 
 
-REDUCED, ONE_MESH, MESHES = "the reduced model", "one mesh of finite elements", "meshes of finite elements"
+REDUCED, MESHES = "the reduced model", "meshes of finite elements"
 """What a change of e rests on."""
-
-OWN_CELLS = (
-    " All meshes have the cells of your file behind the contact, whose error they do not show: the {:.2g} by "
-    "which such a mesh was off on the measured sets is added. A file of smaller cells shows it."
-)
 
 COUNTS = (
     " The band of the vibration energy is at least {:.2g} % of E_0, by which its two independent counts (by "
@@ -85,20 +78,6 @@ class VibrationEffect:
     error: str
     errors: Mapping[str, float]
 
-    def widened(self, other: VibrationEffect) -> VibrationEffect:
-        """Return the change with bands of e and E_vib that hold those of another one, too."""
-        low = min(self.value - self.band, other.value - other.band)
-        high = max(self.value + self.band, other.value + other.band)
-        apart = abs(self.E_vib - other.E_vib) + other.E_vib_band
-        return replace(
-            self,
-            value=0.5 * (low + high),
-            band=0.5 * (high - low),
-            E_vib_band=max(self.E_vib_band, apart),
-            models=f"{self.model} and {other.model} together",
-            error=f"{self.model}, and {other.model} within",
-        )
-
     def at_least(self, off: float) -> VibrationEffect:
         """Return the change with a band no smaller than ``off``, an error that finite elements showed."""
         if off <= self.band:
@@ -112,10 +91,6 @@ class VibrationEffect:
         return (
             f"{self.value:+.3f} ± {self.band:.3f}" if self.band < inf else f"{self.value:+.3f}, error unknown"
         )
-
-    def meets(self, other: VibrationEffect) -> bool:
-        """Say whether both may be right: their bands have values in common."""
-        return abs(self.value - other.value) <= self.band + other.band
 
     def answer(self, tolerance: float) -> Answer:
         """Say whether rigid theory may be used if e may be off by ``tolerance``."""
@@ -157,112 +132,53 @@ def modal_effect(scene: Scene, pair: Pair) -> VibrationEffect:
     )
 
 
-def solid_effect(levels: Sequence[Level], done: Sequence[MeshRuns]) -> VibrationEffect:
-    """Return what finite elements say: the limit of the finest two meshes, or one with its known error.
+def solid_effect(levels: Sequence[LevelRun]) -> VibrationEffect | None:
+    """Return what finite elements say on the levels of a scene and its twin, from coarse to fine.
 
-    Parameters
-    ----------
-    levels : the levels of a scene and its twin
-    done : the runs on the first of them, each with vibration and without it
+    It is None where fewer than two levels give a coefficient of both, or the last does not resolve its
+    contact.
     """
-    pair = list(zip(levels, done, strict=False))[-2:]
-    return _of_two(*pair) if len(pair) == 2 else _of_one(*pair[0])
-
-
-def unsupported(effect: VibrationEffect, level: Level) -> VibrationEffect:
-    """Return what one mesh says that nothing bears out: its error is not known."""
-    source = f"Finite elements on one mesh ({_size(level)} at the contact), whose error is not known."
-    return replace(effect, band=inf, E_vib_band=inf, source=source, error=f"of {ONE_MESH} unknown")
-
-
-def _of_one(level: Level, mesh: MeshRuns) -> VibrationEffect:
-    (free, stiff), (share, error) = mesh.runs, _known_error(level, mesh)
-    E_vib = known(free.energy.vibration)
+    useful = [level for level in levels if not unfinished(pair_of(level))]
+    if len(useful) < 2 or not useful[-1].record.resolved:
+        return None
+    coarse, fine = useful[-2:]
+    (free, stiff), used = pair_of(fine), useful[-3:]
+    changes = [[_difference(pair_of(level))] for level in used]
+    value, band = level_limit([level.size for level in used], changes, coarse.record.resolved)
+    with_vibration = [MeshRuns(level.size, [pair_of(level)[0]]) for level in used]
+    limits, bands = (known(of) for of in level_limits(with_vibration, coarse.record.resolved))
+    E_vib, E_vib_band = (of[VIBRATION[0].name] for of in (limits, bands))
+    errors = {
+        key.path[-1]: abs(limits[key.name] - known(key.of(free))) + bands[key.name]
+        for key in (*(share.key for share in SHARES), KEY_TABLE["W_skin_over_E_0"])
+        if key.name in bands
+    }
     return VibrationEffect(
-        level.scenes[0].impact.angle,
-        _difference(mesh.runs),
-        error,
-        E_vib,
-        floored(share * E_vib, [free]),
-        free,
-        stiff,
-        f"Finite elements on one mesh ({_size(level)} at the contact), which gives e within "
-        f"{100 * share:.2g} %.",
-        ONE_MESH,
-        ONE_MESH,
-        f"known error of {ONE_MESH}",
-        {},
-    )
-
-
-def _of_two(coarser: tuple[Level, MeshRuns], finer: tuple[Level, MeshRuns]) -> VibrationEffect:
-    """Return the limits of two meshes; the band of the change of e holds both where they disagree.
-
-    They disagree where they differ by more than meshes of such cells were off by on the measured sets.
-    """
-    (_, coarse), (level, fine) = coarser, finer
-    (free, stiff), scene = fine.runs, level.scenes[0]
-    changes = [_difference(mesh.runs) for mesh in (coarse, fine)]
-    limit = limit_of([coarse.size, fine.size], [[change] for change in changes])
-    value, band = limit.value, limit.uncertainty
-    source = f"Finite elements on meshes of {_size(coarser[0])} and {_size(level)} at the contact; "
-    apart, expected = abs(changes[1] - changes[0]), _known_error(*coarser)[1] + _known_error(*finer)[1]
-    if apart > expected:
-        low, high = min(value - band, changes[0]), max(value + band, changes[0])
-        value, band = 0.5 * (low + high), 0.5 * (high - low)
-        source += (
-            f"the change of e differs by {apart:.2g} between them, more than the {expected:.2g} that "
-            "such meshes were off by on the measured sets: the band holds both, and all limits."
-        )
-    else:
-        source += (
-            f"the band is {ONE_RUN:g} times the range of the limits of all orders of convergence from "
-            "3/4 up, as each mesh runs once."
-        )
-    source += COUNTS.format(100 * vibration_floor(free))
-    with_vibration = [MeshRuns(mesh.size, mesh.runs[:1]) for mesh in (coarse, fine)]
-    vibration = extrapolated(with_vibration, VIBRATION)
-    assert vibration is not None  # this twin vibrates
-    E_vib, E_vib_band = vibration.value, vibration.uncertainty
-    if scene.projectile.own_mesh:
-        share, error = _known_error(*finer)
-        band, E_vib_band = band + error, E_vib_band + share * E_vib
-        source += OWN_CELLS.format(error)
-    return VibrationEffect(
-        scene.impact.angle,
+        free.motion.alpha,
         value,
         band,
         E_vib,
         E_vib_band,
         free,
         stiff,
-        source,
+        f"Finite elements on {len(levels)} levels, the last two with cells of {_size(coarse)} and "
+        f"{_size(fine)} at the contact; the band is {ONE_RUN:g} times the range of the limits of all orders "
+        "of convergence from 3/4 up, as each mesh runs once, and at least half of the change before."
+        + COUNTS.format(100 * vibration_floor(free)),
         MESHES,
         MESHES,
         f"band of the {MESHES}",
-        _share_errors(with_vibration),
+        errors,
     )
 
 
-def _share_errors(meshes: Sequence[MeshRuns]) -> dict[str, float]:
-    """Return how far shares of E_0 on the finer of two meshes may be off, by name: to the end of a band."""
-    errors = {}
-    for key in (*(share.key for share in SHARES), KEY_TABLE["W_skin_over_E_0"]):
-        limit = extrapolated(meshes, (key,))
-        if limit is not None:
-            share = known(key.of(meshes[-1].runs[0]))
-            errors[key.path[-1]] = abs(limit.value - share) + limit.uncertainty
-    return errors
+def pair_of(level: LevelRun) -> Pair:
+    """Return the outcomes with vibration and without it on a level."""
+    free, stiff = level.outcomes
+    return free, stiff
 
 
-def _known_error(level: Level, mesh: MeshRuns) -> tuple[float, float]:
-    """Return the error of e on a mesh by its cells over the contact: relative, and of the twins' larger e."""
-    bodies = Case(level.scenes[0]).bodies
-    share = ERROR[kind(bodies)] / expected_cells(bodies)
-    return share, share * max(abs(known(run.restitution.edge.e)) for run in mesh.runs)
-
-
-def _size(level: Level) -> str:
+def _size(level: LevelRun) -> str:
     return f"{level.size * 1e3:.3g} mm"
 
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from fem_impact.answers.refine.loop import levels_of_twins
 from own_bodies import taper, write
 from wide_contact import WIDE
 
@@ -14,7 +15,6 @@ from fem_impact.answers.cost.settings import settings_of
 from fem_impact.answers.refine import budget as budgets
 from fem_impact.answers.refine import levels as levels_module
 from fem_impact.answers.refine.levels import FAMILY
-from fem_impact.answers.refine.loop import levels_of_twins
 from fem_impact.answers.verdict import assess as assess_module
 from fem_impact.answers.verdict.assess import assess
 from fem_impact.answers.verdict.dropped import dropped

@@ -1,0 +1,99 @@
+"""One level of a run: the runs that share its mesh, what they found, and the limits of several levels."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from fem_impact.answers.refine.extrapolate import MeshNumbers, MeshRuns, level_limits
+from fem_impact.answers.refine.quantities import QUANTITIES, TARGETED
+from fem_impact.case.case import Case
+from fem_impact.case.record import ContactRecord
+from fem_impact.files.atomic import read_text, write_text
+from fem_impact.files.run_directory import RECORD
+from fem_impact.options import RunOptions
+from fem_impact.outcome.keys import Unknown
+from fem_impact.outcome.record import Outcome
+from fem_impact.run.program import stamp
+from fem_impact.run.simulate import simulate_recorded
+
+# shifts of a meshed barrier's grid along t, in cells at the contact, at which a level runs
+GRID_OFFSETS = (0.0, 0.5)
+STAMP = "level.stamp"
+"""File of a level's directory that says what was computed there."""
+
+
+@dataclass(frozen=True, slots=True)
+class LevelRun:
+    """A level that has run.
+
+    Attributes
+    ----------
+    splits : how often the cells at the contact are split there
+    size : edge of the cells that resolve the contact, m
+    cases, outcomes : of its last runs: at the places of the barrier's grid, or of a scene and its twin
+    record : what they found together
+    wall_s : wall time, s, of all its runs
+    repeats : how often it ran again with more room
+    """
+
+    splits: int
+    size: float
+    cases: tuple[Case, ...]
+    outcomes: tuple[Outcome, ...]
+    record: ContactRecord
+    wall_s: float
+    repeats: int = 0
+
+    @property
+    def outcome(self) -> Outcome:
+        """The outcome of the scene itself, at the first place of the grid."""
+        return self.outcomes[0]
+
+    @property
+    def runs(self) -> MeshRuns:
+        """Its runs beside the size of its cells."""
+        return MeshRuns(self.size, list(self.outcomes))
+
+
+def limits_of(levels: Sequence[LevelRun]) -> tuple[MeshNumbers, MeshNumbers]:
+    """Return limits and half-widths, by key, of two levels or more from coarse to fine."""
+    return level_limits([level.runs for level in levels], levels[-2].record.resolved)
+
+
+def relative_errors(levels: Sequence[LevelRun]) -> dict[str, float]:
+    """Return the half-widths over their scales of what a wanted error is about (`TARGETED`), by name.
+
+    What has no band is left out: all where the last level does not resolve its contact, and the vibration of
+    a rod that is rigid.
+    """
+    limits, bands = (
+        limits_of(levels) if len(levels) > 1 and levels[-1].record.resolved else (Unknown(""), Unknown(""))
+    )
+    if isinstance(limits, Unknown) or isinstance(bands, Unknown):
+        return {}
+    errors = {}
+    for quantity in QUANTITIES:
+        (key, *_), finest = quantity.keys, levels[-1].runs.mean(quantity.keys)
+        if quantity.name in TARGETED and key.name in bands and finest is not None:
+            # the larger of limit and finest value, so that a limit near zero does not inflate the errors
+            size = max(abs(limits[key.name]), abs(finest))
+            errors[quantity.name] = bands[key.name] / quantity.scale(size, levels[-1].outcome)
+    return errors
+
+
+def simulate_level(case: Case, options: RunOptions) -> tuple[Outcome, ContactRecord]:
+    """Return outcome and record of a run of a level, from its files where it ran before it was resumed."""
+    assert case.record is not None, "a level follows a record"
+    computed = f"{stamp(case.scene)}record {case.record.digest()}\n"
+    out = options.out
+    if out is not None and options.resume and (out / STAMP).is_file():
+        if read_text(out / STAMP) == computed and (out / "outcome.json").is_file():
+            return Outcome.read(out / "outcome.json"), ContactRecord.read(out / RECORD)
+        options = replace(options, resume=read_text(out / STAMP) == computed)
+    if out is not None:
+        out.mkdir(parents=True, exist_ok=True)
+        write_text(out / STAMP, computed)
+    outcome, record = simulate_recorded(case.scene, "solid", options, case)
+    assert record is not None, "finite elements leave a record"
+    return outcome, record
