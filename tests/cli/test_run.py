@@ -17,7 +17,7 @@ from fem_impact.scene.write import digest, to_toml
 
 def test_run_passes_the_scene_and_prints_the_outcome(cli, stand):
     code, out, err = cli("run", "t5b", "--out", "here")
-    name, (scene, fidelity, options, _) = stand.calls[0]
+    name, (scene, fidelity, options, *_) = stand.calls[0]
     assert (code, name, scene) == (0, "simulate", load("t5b"))
     assert fidelity is None
     assert options.out == Path("here")
@@ -35,7 +35,7 @@ def test_an_own_rod_has_its_restitution_with_the_arms_of_its_tip(cli, stand):
 
 def test_changes_are_applied_and_filed_apart(cli, stand):
     code, _, _ = cli("run", "t5b", "--set", "accuracy.tip_size=0.5 mm", "--set", "save.frames=10", "--quiet")
-    _, (scene, _, options, _) = stand.calls[0]
+    _, (scene, _, options, *_) = stand.calls[0]
     assert code == 0
     assert (scene.accuracy.tip_size, scene.save.frames) == (0.0005, 10)
     assert options.out == Path("results") / f"t5b-{digest(scene)[:8]}"
@@ -44,7 +44,7 @@ def test_changes_are_applied_and_filed_apart(cli, stand):
 def test_a_target_runs_side_by_side_on_the_cores_there_are(cli, stand, monkeypatch):
     monkeypatch.setattr("fem_impact.cli.run.cores", lambda: 3)
     assert cli("run", "t5b", "--set", "accuracy=20 %", "--quiet")[0] == 0
-    scene, fidelity, _, workers = stand.calls[0][1]
+    scene, fidelity, _, workers, *_ = stand.calls[0][1]
     assert (scene.accuracy.target, fidelity, workers) == (0.2, None, 3)
 
 

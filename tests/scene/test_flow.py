@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from fem_impact.answers.cost.stored import _steel
 from fem_impact.case.case import Case
 from fem_impact.case.effects.plasticity import hardening_of, strength_of
 from fem_impact.errors import SceneError
@@ -141,7 +140,6 @@ def test_the_limit_pressure_of_a_body_without_ultimate_stress_is_finite():
     assert strength_of(metal(**LAWS["plastic modulus"])) == pytest.approx(408e6)
     assert strength_of(metal(yield_stress="90 MPa", ultimate_stress="200 MPa")) == 200e6
     assert strength_of(metal()) == np.inf
-    assert max(_steel("rod", metal(**LAWS["perfect"]), True).values()) < np.inf
 
 
 def test_the_numbers_of_a_flow_curve_are_changed_on_the_command_line():

@@ -190,7 +190,8 @@ class LevelChain:
         if record.crushed:  # smaller cells are crushed sooner
             return None
         if self.decides or self._target:
-            if self._decided or ran >= finest + MOST_FINER:
+            cut = 1 < len(self.done) > self.counted
+            if self._decided or cut or ran >= finest + MOST_FINER:
                 return None
             finest = max(finest, ran + 1)
         if not (record.resolved or self._is_sized) and len(self.done) < self.scene.accuracy.levels + MORE:

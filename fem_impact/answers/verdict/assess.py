@@ -147,7 +147,7 @@ def assess(
     unlike = quick is not None and not known_error(scene).alike
     open_still = quick is None or unlike or quick.answer(tolerance) == "undecided"
     if fidelity == "solid" or (fidelity == "auto" and open_still):
-        least = LEAST_LEVELS if fidelity == "solid" or quick is None else 0
+        least = LEAST_LEVELS if fidelity == "solid" else 1
         solid, told, more = _solid(scene, least, tolerance, budget_s, workers, quick is not None, tell)
         here, used = (solid, "solid") if solid else (quick, "modal")
         notes += told
@@ -221,7 +221,7 @@ def _solid(
     try:
         levels.refine()
     except (SceneError, RunError) as refused:
-        if least or not has_quick:
+        if least == LEAST_LEVELS or not has_quick:
             raise
         return None, [f"Finite elements have no answer here: {refused}"], ""
     effect = solid_effect(levels.done)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fem_impact.answers.refine import chain
+from fem_impact.answers.refine import level as level_module
 from fem_impact.answers.refine.chain import LevelChain
 from fem_impact.answers.refine.extrapolate import MeshRuns, level_limits, mesh_limits
 from fem_impact.answers.wanted_error import compiled, simulate
@@ -161,14 +161,14 @@ def test_a_budget_ends_the_levels_and_tells_what_is_missing():
 
 
 def test_a_level_that_leaves_its_zones_is_repeated_with_more_room(monkeypatch):
-    run, rooms = chain.simulate_recorded, []
+    run, rooms = level_module.simulate_recorded, []
 
     def narrow(scene, fidelity, options, case):
         rooms.append(case.record.rod.spread)
         outcome, record = run(scene, fidelity, options, case)
         return outcome, replace(record, left=len(rooms) == 2)
 
-    monkeypatch.setattr(chain, "simulate_recorded", narrow)
+    monkeypatch.setattr(level_module, "simulate_recorded", narrow)
     scene = replace(QUICK, accuracy=replace(QUICK.accuracy, tip_size=1.2e-3, barrier_size=None))
     levels = LevelChain(Case(scene))
     levels.run()
@@ -186,7 +186,7 @@ def test_the_files_of_the_last_level_stand_above_those_of_the_others(tmp_path):
 
 def test_levels_that_are_done_are_not_run_again(tmp_path, monkeypatch):
     whole = simulate(QUICK, options=RunOptions(tmp_path / "whole"))
-    run, ran = chain.simulate_recorded, []
+    run, ran = level_module.simulate_recorded, []
 
     def counted(scene, fidelity, options, case):
         ran.append(scene)
@@ -194,7 +194,7 @@ def test_levels_that_are_done_are_not_run_again(tmp_path, monkeypatch):
             raise KeyboardInterrupt
         return run(scene, fidelity, options, case)
 
-    monkeypatch.setattr(chain, "simulate_recorded", counted)
+    monkeypatch.setattr(level_module, "simulate_recorded", counted)
     with pytest.raises(KeyboardInterrupt):
         simulate(QUICK, options=RunOptions(tmp_path / "cut"))
     resumed = simulate(QUICK, options=RunOptions(tmp_path / "cut", resume=True))

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from fem_impact.answers.refine import chain
+from fem_impact.answers.refine import level as level_module
 from fem_impact.answers.refine.chain import LevelChain
 from fem_impact.answers.wanted_error import simulate
 from fem_impact.case.case import Case
@@ -59,7 +59,7 @@ def test_each_repeat_has_twice_the_room_of_the_one_before(level, monkeypatch):
         rooms.append((case.record.rod.reach, case.record.barrier.spread))
         return level.outcome, replace(level.record, left=True)
 
-    monkeypatch.setattr(chain, "simulate_recorded", left)
+    monkeypatch.setattr(level_module, "simulate_recorded", left)
     levels = LevelChain(Case(QUICK), done=[level])
     levels._run_level(2)
     assert levels.done[-1].repeats == 2
@@ -69,7 +69,7 @@ def test_each_repeat_has_twice_the_room_of_the_one_before(level, monkeypatch):
 @pytest.fixture
 def failing(monkeypatch):
     """Let the second level end as a function of its outcome and record says."""
-    run, ran = chain.simulate_recorded, []
+    run, ran = level_module.simulate_recorded, []
 
     def set_up(end):
         def ended(scene, fidelity, options, case):
@@ -77,7 +77,7 @@ def failing(monkeypatch):
             outcome, record = run(scene, fidelity, options, case)
             return end(outcome, record) if len(ran) == 2 else (outcome, record)
 
-        monkeypatch.setattr(chain, "simulate_recorded", ended)
+        monkeypatch.setattr(level_module, "simulate_recorded", ended)
         return ran
 
     return set_up
@@ -112,7 +112,7 @@ def test_numbers_of_a_coarser_level_that_did_not_resolve_the_contact_are_withhel
 
 
 def test_a_pilot_that_fails_is_an_error(monkeypatch):
-    monkeypatch.setattr(chain, "simulate_recorded", lambda *_: not_finite(*_[:2]))
+    monkeypatch.setattr(level_module, "simulate_recorded", lambda *_: not_finite(*_[:2]))
     with pytest.raises(RunError, match="not finite"):
         simulate(QUICK)
 
