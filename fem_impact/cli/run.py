@@ -83,8 +83,9 @@ def run(options: Options) -> int:
     from fem_impact.answers.wanted_error import compiled, on_levels, simulate
 
     say_kept(scene, options)
-    if options.budget and not on_levels(scene, options.fidelity or "solid"):
-        problem = "is for several meshes, and this run has one or none."
+    budget = stated_budget(options)
+    if budget and not on_levels(scene, options.fidelity or "solid"):
+        problem = "is for several meshes, and the scene asks for one."
         raise UsageError(problem, key="--budget", remedy="Leave it out, or accuracy.levels.")
     case = compiled(scene, options.fidelity or "solid")
     if case.fidelity == "solid" and not options.quiet:
@@ -96,7 +97,6 @@ def run(options: Options) -> int:
         with told_kept(out, options), closing(chosen_meter(options)) as meter:
             run_options = RunOptions(out, meter, options.resume, options.checkpoint)
             fidelity = options.fidelity or None
-            budget = stated_budget(options)
             outcome = simulate(scene, fidelity, run_options, cores(), budget, case)
     except KeyboardInterrupt:
         way = (
