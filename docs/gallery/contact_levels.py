@@ -9,7 +9,7 @@ from fem_impact.fem.geometry import build_geometry, to_barrier_frame
 (chain := LevelChain(Case(load("t5b")))).run()
 panels = plt.subplots(1, len(chain.done), figsize=(11, 3.6), layout="constrained")[1]
 for ax, level in zip(panels, chain.done, strict=True):
-    bodies, g = level.case.bodies, build_geometry(level.case.bodies, level.case.zones, 0.0, True)
+    bodies, g = (case := level.cases[0]).bodies, build_geometry(case.bodies, case.zones, 0.0, True)
     rod, barrier = (g.rod.mesh.cells, g.rod_points, "#f6b26b"), (g.barrier.cells, g.barrier.points, "#9fc5e8")
     for name, (cells, x, tone) in {"rod": rod, "barrier": barrier}.items():
         cut = ((on := x[cells, 1] < 1e-9).sum(axis=1) == 4) & (np.abs(x[cells]).max(axis=(1, 2)) < 8e-3)
