@@ -62,7 +62,7 @@ def test_every_level_closes_its_ledger(quick):
 
 def test_thin_rows_lie_under_the_skin_that_was_pressed(quick):
     level = quick[0].done[-1]
-    bodies, zones = level.case.bodies, level.case.zones
+    bodies, zones = (case := level.cases[0]).bodies, case.zones
     assert zones.rod_rows == 2
     pressed = level.record.rod.touched.mean(axis=0)
     thick = {}
