@@ -102,6 +102,14 @@ class Faceted:
         """Slenderness coefficient (Eq 29) with the largest width, m^-0.3815."""
         return float(slenderness(self.length, self.diameter))
 
+    def reversed(self) -> Faceted:
+        """Return the body with its tail as its tip: turned by half a turn in the plane of motion."""
+        low, high, mass, x, z, xx, zz = self.parts.T
+        length = self.length
+        moved = (length - high, length - low, mass, -x, length * mass - z, xx)
+        parts = np.column_stack([*moved, length**2 * mass - 2.0 * length * z + zz])
+        return Faceted(self.points * [-1, 1, -1] + [0, 0, length], self.facets, parts)
+
     @property
     def face(self) -> float:
         """Half width along x of the flat face at the tip, m; 0 where there is none."""

@@ -15,6 +15,7 @@ from fem_impact.case.elastic_only import require_crushing_named
 from fem_impact.case.layers import block_of, require_layers, thin_layer
 from fem_impact.case.limits import (
     require_first_part,
+    require_followed,
     require_own_mesh,
     require_point,
     require_shallow,
@@ -74,6 +75,7 @@ class Case:
         case = cls(scene, fidelity, record)
         require_crushing_named(scene)
         require_still(scene.barrier, fidelity)
+        require_followed(scene)
         require_own_mesh(case.bodies, fidelity)
         require_plate(case.bodies, case.meshed_through)
         require_first_part(case.bodies)

@@ -13,7 +13,7 @@ from fem_impact.outcome.limitation import Limitation, limitations
 from fem_impact.physics.contact import FLAT
 from fem_impact.scene import library
 from fem_impact.scene.barrier import Barrier
-from fem_impact.scene.impact import BESIDE
+from fem_impact.scene.impact import BESIDE, FIRST
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.types import Scene
 from fem_impact.scene.units import format_quantity
@@ -159,6 +159,19 @@ def require_still(barrier: Barrier, fidelity: str) -> None:
             value=f"{barrier.inertia:.3g} kg m2",
             remedy="Use the fidelity modal or solid, or leave out inertia and centre_depth.",
         )
+
+
+def require_followed(scene: Scene) -> None:
+    """Refuse a barrier that nothing holds where more than the first impact is asked for (SceneError)."""
+    if scene.impact.until == FIRST or scene.barrier.mass is None:
+        return
+    raise SceneError(
+        "follows a body that comes back to a barrier which the first impact has set moving, and nothing is "
+        "known of what holds or stops that.",
+        key="impact.until",
+        value=scene.impact.until,
+        remedy='Leave out barrier.mass, so that the barrier stands, or use until = "first".',
+    )
 
 
 def require_point(bodies: Bodies, fidelity: str) -> None:

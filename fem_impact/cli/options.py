@@ -22,6 +22,7 @@ class Options(argparse.Namespace):
     vary: Sequence[str] = ()
     columns: str = ""
     fidelity: str = ""
+    until: str = ""
     ids: Sequence[str] = ()
     name: str = ""
     out: Path | None = None

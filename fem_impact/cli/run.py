@@ -50,6 +50,8 @@ def add_options(parser: CommandParser) -> None:
         help="rigid: impulses (at once); modal: vibration modes and a contact law (a second); "
         "solid: finite elements (default)",
     )
+    until = 'how far the body is followed: first (default), "3 strikes", or rest; as --set impact.until'
+    add_text(parser, "--until", "STRIKES", until)
     budget = "wall time: no level of meshes begins that would exceed it (default: 10 min)"
     add_text(parser, "--budget", "TIME", budget)
     add_out(parser, "results/SCENE")
@@ -76,6 +78,8 @@ def _seconds(text: str) -> float:
 
 def run(options: Options) -> int:
     """Compute one scene, write its results and print them."""
+    if options.until:
+        options.changes = [*options.changes, f"impact.until={options.until}"]
     scene = changed_scene(options.scene, options.changes)
     if options.resume and options.fidelity in ("rigid", "modal"):
         problem = f"is for finite elements only: a {options.fidelity} run takes seconds."
@@ -109,6 +113,7 @@ def run(options: Options) -> int:
         sys.stdout.write(outcome.to_json().rstrip("\n") + "\n")
     else:
         print_outcome(outcome, out, own_tests=(scene.measured or "").endswith(OWN))
+        _say_strikes(outcome, options)
         _say_comparison(scene, outcome, options)
         _say_screening(case, options)
     if outcome.validity.finished:
@@ -116,6 +121,15 @@ def run(options: Options) -> int:
     cause = outcome.validity.stopped_because
     sys.stderr.write(f"fem-impact: error: the run stopped early: {cause} Results: {out}\n")
     return RunError.exit_code
+
+
+def _say_strikes(outcome: Outcome, options: Options) -> None:
+    """Print the strikes of a body that is followed beyond its first impact."""
+    from fem_impact.cli.strikes import print_strikes, strike_lines
+
+    if lines := strike_lines(outcome):
+        sys.stdout.write("\n".join(lines) + "\n")
+        print_strikes(outcome, options)
 
 
 def _say_comparison(scene: Scene, outcome: Outcome, options: Options) -> None:

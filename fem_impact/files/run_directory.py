@@ -13,7 +13,7 @@ from fem_impact.files.lock import LOCK
 CHECKPOINT = "run.checkpoint"
 FIELDS = "fields.vtkhdf"
 RECORD = "contact.npz"
-BESIDE = ("contacts.csv", "history.csv", FIELDS, "waves.h5", RECORD)
+BESIDE = ("contacts.csv", "strikes.csv", "history.csv", FIELDS, "waves.h5", RECORD)
 """Files beside an outcome, whose digests stand in `DIGESTS`."""
 COMPUTED = (CHECKPOINT, "outcome.json", *BESIDE, DIGESTS, "level-*")
 """Files that a run computes."""

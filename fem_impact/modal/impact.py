@@ -265,7 +265,7 @@ def _result(
     barrier += 0.5 * (scene.barrier.inertia or 0.0) * float(base_spin**2)
     parts = energies.sum(), friction, plastic, viscous, held_n, held_t, barrier, tally[SUM.plate]
     contacts = course.contacts[: int(clock[CLOCK.touches])]
-    fell = fall(case.slots.gravity, scene.impact.angle, clock[CLOCK.time], contacts[:, :2])
+    fell = fall(case.slots.gravity, scene.impact.vertical, clock[CLOCK.time], contacts[:, :2])
     V_n, V_t = motion[0] + fell[0], motion[1] + fell[1]
     kinetic = _kinetic(rod, V_n, V_t, motion[2])
     return ModalResult(

@@ -118,7 +118,7 @@ def contact_rate(
 
 def start_of(case: Case, rod: ModalRod) -> Start:
     """Return the constants of rod and barrier."""
-    g, struck, angle = case.slots.gravity or 0.0, case.scene.barrier, case.scene.impact.angle
+    g, struck, angle = case.slots.gravity or 0.0, case.scene.barrier, case.scene.impact.vertical
     return Start(
         rod.mass,
         rod.k2,

@@ -29,6 +29,7 @@ from fem_impact.outcome.groups import (
     Validity,
 )
 from fem_impact.outcome.keys import Key, Num, Unknown, keys_of, or_none
+from fem_impact.outcome.strikes import Strikes
 from fem_impact.plugins import providers
 from fem_impact.tables.table import Missing, Table
 from fem_impact.version import __version__
@@ -68,6 +69,7 @@ class Outcome:
     energy: Energy
     contact: Contact
     heat: Heat
+    strikes: Strikes
     cost: RunCost
 
     schema_version: ClassVar[int] = SCHEMA_VERSION

@@ -24,9 +24,10 @@ from fem_impact.outcome.groups import (
     RunCost,
     Validity,
 )
-from fem_impact.outcome.keys import Num, Unknown
+from fem_impact.outcome.keys import Num, Unknown, unknown
 from fem_impact.outcome.limitation import Limitation, limitations
 from fem_impact.outcome.record import Outcome, installed_versions, utc_now
+from fem_impact.outcome.strikes import Strikes
 from fem_impact.physics.contact import between
 from fem_impact.run.common import (
     CUT_OFF,
@@ -41,10 +42,12 @@ from fem_impact.run.common import (
 )
 from fem_impact.run.resolution import without, without_end
 from fem_impact.run.unusual import unusual
+from fem_impact.scene.impact import FIRST
 from fem_impact.scene.write import digest
 
 ONE_POINT = Unknown("only finite elements find where the bodies touch: this fidelity has one contact point")
 NO_TARGET = Unknown("the scene gives a mesh, not the error it allows")
+FIRST_ALONE = "the scene asks for the first impact alone (impact.until)"
 GRAVITY_TOLD, GRAVITY_RULES = 0.01, 0.5  # speed gained by falling over the approach: told, and too much
 
 
@@ -135,7 +138,8 @@ class Reduction:
         cut = failed or ("" if end.separated else end.reason)
         origin = _provenance(case, choices, omitted)
         shown = () if withheld or cut else unusual(origin, self.motion, self.restitution, energy)
-        again = strikes_again(end.leaving) if end.finished and not failed else ""
+        alone = case.scene.impact.until == FIRST
+        again = strikes_again(end.leaving) if end.finished and not failed and alone else ""
         of_result = limitations("result", *shown, gravity, again)
         outcome = Outcome(
             provenance=origin,
@@ -152,6 +156,7 @@ class Reduction:
                 markers=markers,
             ),
             heat=heat,
+            strikes=replace(unknown(Strikes, FIRST_ALONE), until=case.scene.impact.until),
             cost=cost,
         )
         outcome = without(outcome, Unknown(withheld)) if withheld else outcome
@@ -214,7 +219,7 @@ def _gravity(case: Case, contacts: Array | None) -> tuple[str, str]:
     if contacts is None:
         return "", ""
     speed = (case.slots.gravity or 0.0) * (float(contacts[-1, 1]) - between(contacts[:, :2]))
-    share = speed * cos(case.scene.impact.angle) / case.contact.approach
+    share = speed * cos(case.scene.impact.vertical) / case.contact.approach
     gained = (
         f"Gravity gives the rod {speed * 1e3:.3g} mm/s while it touches, {100 * share:.2g} % of its approach"
     )

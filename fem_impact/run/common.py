@@ -107,7 +107,7 @@ def momentum_error(case: Case, motion: RodMotion, base_n: float, base_t: float, 
 
     ``fallen``, m/s, is what gravity gave the rod in flights between contacts, which is taken out.
     """
-    before, alpha, M = case.scene.relative, case.scene.impact.angle, case.scene.barrier.mass or 0.0
+    before, alpha, M = case.scene.relative, case.scene.impact.vertical, case.scene.barrier.mass or 0.0
     V_n, V_t, _ = after(motion)
     gained_n = motion.mass * (V_n - motion.v_n + fallen * cos(alpha)) + M * base_n
     gained_t = motion.mass * (V_t - motion.v_t + fallen * sin(alpha)) + M * base_t
@@ -168,7 +168,7 @@ def restitution(case: Case, motion: RodMotion, barrier: BarrierMotion, fallen: f
         none = unknown(ArmCoefficients, NO_PUSH.reason)
         return Restitution(mu=NO_PUSH, mu_c=NO_PUSH, paper=none, edge=none, impulse=none)
     e = float(rigid.restitution(m.v_n, V_n, Omega, d_c, omega))
-    spin, alpha = m.k_squared * (Omega - omega), case.scene.impact.angle
+    spin, alpha = m.k_squared * (Omega - omega), case.scene.impact.vertical
     centre = (spin + d_d * (V_t - m.v_t)) / (V_n - m.v_n)
     tests = tests_of(case.scene)
     table = tests.arms if tests else None

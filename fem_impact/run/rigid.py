@@ -46,7 +46,7 @@ ASSUMPTIONS = (
 def rigid_outcome(case: Case) -> Outcome:
     """Return the outcome by rigid impulse-momentum theory; what the theory does not give is unknown."""
     rod = case.bodies.body
-    loss = _normal_loss(case)
+    loss = normal_loss(case, case.contact)
     path, wall, cpu = _timed_path(case.contact, loss.e)
     V_n, V_t, Omega = (float(velocity) for velocity in path.motion)
     base = _barrier_gain(case, V_n, V_t)
@@ -113,13 +113,17 @@ class NormalLoss(NamedTuple):
     source: str
 
 
-def _normal_loss(case: Case) -> NormalLoss:
-    """Return the stated restitution, or Thornton's of what flows times that of a viscous contact."""
-    restitution, law = case.scene.restitution, contact_law(case.contact)
+def normal_loss(case: Case, pair: ContactPair) -> NormalLoss:
+    """Return the stated restitution, or Thornton's of what flows times that of a viscous contact.
+
+    ``pair`` is how both touch: at first, or in a later strike.
+    """
+    restitution = case.scene.restitution
     if restitution is not None:
         return NormalLoss(restitution, 0.0, f"Restitution {restitution:g} (energetic) is the scene's own.")
+    law = contact_law(pair)
     loss, flows = case.slots.contact_loss, not isinf(law.limit)
-    plastic = thornton(law, case.contact.effective_mass, case.contact.approach) if flows else 1.0
+    plastic = thornton(law, pair.effective_mass, pair.approach) if flows else 1.0
     e = plastic * viscous_restitution(loss or 0.0)
     viscous = (plastic**2 - e**2) / (1 - e**2) if loss else 0.0
     return NormalLoss(e, viscous, _told(e, law, loss))

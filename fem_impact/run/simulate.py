@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from fem_impact.errors import SceneError
 from fem_impact.files.run_directory import CHECKPOINT
 from fem_impact.options import RunOptions
+from fem_impact.scene.impact import FIRST
 
 if TYPE_CHECKING:
     from fem_impact.case.case import Case
@@ -113,7 +114,7 @@ def _compute(case: Case, options: RunOptions) -> tuple[Outcome, ContactRecord | 
     if case.fidelity == "rigid":
         from fem_impact.run.rigid import rigid_outcome
 
-        return rigid_outcome(case), None
+        return _followed(case, rigid_outcome(case)), None
     if case.fidelity == "modal":
         from fem_impact.run.modal import closed
         from fem_impact.run.modal import reduce as reduce_modal
@@ -136,9 +137,19 @@ def _compute(case: Case, options: RunOptions) -> tuple[Outcome, ContactRecord | 
     with threadpool_limits(1, "blas"):
         end = solve(case, replace(options, stamp=stamp(case.scene)))
         outcome = reduce(end)
+    outcome = _followed(case, outcome)
     told = texts(outcome.validity.limitations, "resolution")
     resolved = not any(sentence.startswith(NOT_RESOLVED) for sentence in told)
     return outcome, replace(end.record, resolved=resolved)
+
+
+def _followed(case: Case, outcome: Outcome) -> Outcome:
+    """Return an outcome with all strikes that its scene asks for, whose code is imported only then."""
+    if case.scene.impact.until == FIRST:
+        return outcome
+    from fem_impact.run.strikes import with_strikes
+
+    return with_strikes(case, outcome)
 
 
 def _write(outcome: Outcome, record: ContactRecord | None, out: Path) -> None:
@@ -148,9 +159,11 @@ def _write(outcome: Outcome, record: ContactRecord | None, out: Path) -> None:
     from fem_impact.tables.history import CONTACTS
     from fem_impact.tables.table import Table
 
-    contacts = outcome.to_dict()["contacts"]
+    contacts, strikes = (outcome.to_dict()[name] for name in ("contacts", "strikes"))
     if contacts is not None:
         write_text(out / "contacts.csv", Table.of(CONTACTS, contacts).csv())
+    if strikes:
+        write_text(out / "strikes.csv", Table.of(tuple(strikes[0]), strikes).csv())
     if record is not None:
         record.write(out / RECORD)
     outcome.write(out / "outcome.json")

@@ -52,7 +52,8 @@ def reduce(result: SolidResult) -> Outcome:
         raise RunError(f"There was no contact in {past}. {result.reason}")
     case, m, contacts = result.case, result.motion, result.model.book.table
     # what gravity gave the rod beside its impact is taken out
-    fallen_n, fallen_t = fall(case.slots.gravity, case.scene.impact.angle, result.time, contacts[:, :2])
+    vertical = case.scene.impact.vertical
+    fallen_n, fallen_t = fall(case.slots.gravity, vertical, result.time, contacts[:, :2])
     V_n = m.V_n + fallen_n
     end = ImpactEnd(
         V_n=V_n,

@@ -132,7 +132,21 @@ IMPACT = (ANGLE, V_N, V_T, OMEGA)  # as seen from the barrier
 MOTION = (ANGLE, replace(V_N, low=-500.0, high=500.0, remedy=""), V_T, OMEGA)
 _GIVEN = "none: the velocities are stated in another way"
 HEIGHT = Parameter(
-    "height", "height of fall along the rod's axis", "length", 1e-12, 1e4, derived=_GIVEN, unit="m"
+    "height",
+    "height of fall, along the rod's axis unless slope is stated",
+    "length",
+    1e-12,
+    1e4,
+    derived=_GIVEN,
+    unit="m",
+)
+SLOPE = Parameter(
+    "slope",
+    "slope of the barrier, above 0 where up the slope is up; gravity acts by it",
+    "angle",
+    -math.pi / 2,
+    math.pi / 2,
+    derived="that of the angle: the rod's axis is vertical",
 )
 SPEED = Parameter("speed", "speed along the rod's axis", "speed", 1e-6, 500.0, derived=_GIVEN)
 _MASSIVE = "none: the barrier is massive"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection
 from dataclasses import dataclass
 from math import atan2, cos, hypot, isclose, radians, sin, sqrt
@@ -12,6 +13,8 @@ from fem_impact.scene import fields
 from fem_impact.scene.checks import check_numbers
 
 BESIDE = radians(2.0)  # rad between velocity and axis of a dropped rod at most; of the measured ones .017
+FIRST, REST = "first", "rest"
+STRIKES = re.compile(r"([1-9][0-9]{0,2}) strikes?")
 WAYS = (("height",), ("speed",), ("v_n", "v_t"))
 """The keys of each way to state how fast the rod comes."""
 _KEEP = "Give a height, or a speed along the rod's axis, or v_n and v_t, and keep one of them."
@@ -21,6 +24,8 @@ _KEEP = "Give a height, or a speed along the rod's axis, or v_n and v_t, and kee
 class Impact:
     """Motion at first contact: angle in rad, v_n and v_t of the mass centre in m/s, omega in rad/s.
 
+    ``slope``, rad, is that of the barrier; None: the rod's axis is vertical. ``until`` says how far the body
+    is followed: "first", to the end of the first impact, "3 strikes", or "rest".
     Where the velocities follow from a ``height``, m, or a ``speed``, m/s, that is kept beside them: make such
     an impact by `Impact.dropped` or `Impact.thrown`.
     """
@@ -31,25 +36,56 @@ class Impact:
     omega: float = 0.0
     height: float | None = None
     speed: float | None = None
+    slope: float | None = None
+    until: str = FIRST
 
     def __post_init__(self) -> None:
-        check_numbers(self, (*fields.MOTION, fields.HEIGHT, fields.SPEED))
+        check_numbers(self, (*fields.MOTION, fields.HEIGHT, fields.SPEED, fields.SLOPE))
+        _check_until(self.until)
         if self.height is None and self.speed is None:
             return
         speed = self.speed if self.height is None else _fallen(self.height)
-        wanted = _along(self.angle, speed) if speed and None in (self.height, self.speed) else (0.0, 0.0)
+        way = self.angle if self.height is None else self.vertical
+        wanted = _along(way, speed) if speed and None in (self.height, self.speed) else (0.0, 0.0)
         if not all(isclose(a, b, rel_tol=1e-9) for a, b in zip(wanted, (self.v_n, self.v_t), strict=True)):
             raise SceneError("does not belong to its v_n and v_t.", key=self.stated[0], remedy=_KEEP)
 
     @classmethod
-    def dropped(cls, angle: float, height: float, omega: float = 0.0) -> Impact:
-        """Return the impact of a rod that fell from rest by ``height``, m, along its axis: v^2 = 2 g h."""
-        return cls(angle, *_along(angle, _fallen(fields.HEIGHT.checked(height))), omega, height=height)
+    def dropped(
+        cls,
+        angle: float,
+        height: float,
+        omega: float = 0.0,
+        slope: float | None = None,
+        until: str = FIRST,
+    ) -> Impact:
+        """Return the impact of a rod that fell from rest by ``height``, m, down the vertical: v^2 = 2 g h."""
+        fallen = _along(angle if slope is None else slope, _fallen(fields.HEIGHT.checked(height)))
+        return cls(angle, *fallen, omega, height=height, slope=slope, until=until)
 
     @classmethod
-    def thrown(cls, angle: float, speed: float, omega: float = 0.0) -> Impact:
+    def thrown(
+        cls,
+        angle: float,
+        speed: float,
+        omega: float = 0.0,
+        slope: float | None = None,
+        until: str = FIRST,
+    ) -> Impact:
         """Return the impact of a rod that moves along its axis at ``speed``, m/s."""
-        return cls(angle, *_along(angle, fields.SPEED.checked(speed)), omega, speed=speed)
+        along = _along(angle, fields.SPEED.checked(speed))
+        return cls(angle, *along, omega, speed=speed, slope=slope, until=until)
+
+    @property
+    def vertical(self) -> float:
+        """Angle, rad, between the vertical and the barrier's normal: the slope, or that of the rod's axis."""
+        return self.angle if self.slope is None else self.slope
+
+    @property
+    def most_strikes(self) -> int | None:
+        """How many strikes are followed, None where they are to the rest."""
+        counted = STRIKES.fullmatch(self.until)
+        return int(counted[1]) if counted else 1 if self.until == FIRST else None
 
     @property
     def stated(self) -> tuple[str, ...]:
@@ -60,6 +96,15 @@ class Impact:
     def beside(self) -> float:
         """Angle, rad, from the rod's axis to its velocity; about 0 for a rod that was dropped."""
         return atan2(-self.v_t, -self.v_n) - self.angle
+
+
+def _check_until(until: object) -> None:
+    """Refuse another word than those that say how far a body is followed (SceneError)."""
+    if not isinstance(until, str) or not (until in (FIRST, REST) or STRIKES.fullmatch(until)):
+        remedy = 'Use "first", "rest", or a number of strikes up to 999, such as "3 strikes".'
+        raise SceneError(
+            "does not say how far the body is followed.", key="until", value=until, remedy=remedy
+        )
 
 
 def _fallen(height: float) -> float:
@@ -116,7 +161,8 @@ def restated(old: Impact, table: dict[str, Any], changed: Collection[str]) -> di
     new = set(changed)
     _refuse_one_of_two(old, new)
     if not new & {key for way in WAYS for key in way}:
-        if "angle" not in new or old.stated != WAYS[2] or abs(old.beside) > BESIDE:
+        along = old.slope is None and abs(old.beside) <= BESIDE
+        if "angle" not in new or old.stated != WAYS[2] or not along:
             return table
         table, new = {**table, "speed": fields.SPEED.write(hypot(old.v_n, old.v_t))}, {"speed"}
     both = (fields.V_N, fields.V_T) if new & set(WAYS[2]) else ()

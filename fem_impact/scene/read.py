@@ -348,15 +348,17 @@ def _barrier(table: Table) -> Barrier:
 
 
 def _impact(table: Table) -> Impact:
-    """Read a motion that a height, a speed or velocities state."""
-    known = (*fields.IMPACT, fields.HEIGHT, fields.SPEED)
+    """Read a motion that a height, a speed or velocities state, and how far it is followed."""
+    known = (*fields.IMPACT, fields.SLOPE, fields.HEIGHT, fields.SPEED)
     given = {p.key for p in known if {p.key, p.si_key} & set(table)}
-    check_keys(table, (*(p.key for p in known), *(p.si_key for p in known)), [p.key for p in known])
-    way = the_way(given)
+    shown = [*(p.key for p in known), "until"]
+    check_keys(table, (*shown, *(p.si_key for p in known)), shown)
+    way, words = the_way(given), {key: table[key] for key in ("until",) if key in table}
     if way == WAYS[2]:
-        return Impact(**numbers_of(table, fields.IMPACT))
+        return Impact(**numbers_of(table, (*fields.IMPACT, fields.SLOPE), words), **words)
     made = Impact.dropped if way == WAYS[0] else Impact.thrown
-    return made(**numbers_of(table, (fields.ANGLE, fields.OMEGA, *(p for p in known if p.key in way))))
+    stated = (fields.ANGLE, fields.OMEGA, fields.SLOPE, *(p for p in known if p.key in way))
+    return made(**numbers_of(table, stated, words), **words)
 
 
 def _accuracy(table: Table | str) -> Accuracy:

@@ -26,7 +26,7 @@ PLACES = {
     for place, wanted in (
         ("a material", fields.MATERIAL),
         ("[surface]", fields.SURFACE),
-        ("[impact]", (*fields.IMPACT, fields.HEIGHT, fields.SPEED)),
+        ("[impact]", (*fields.IMPACT, fields.SLOPE, fields.HEIGHT, fields.SPEED)),
         ("[accuracy]", fields.ACCURACY),
         ("[save]", fields.SAVE),
     )

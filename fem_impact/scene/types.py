@@ -153,7 +153,8 @@ class Scene:
         impact, barrier = self.impact, self.barrier
         if barrier.v_n == barrier.v_t == 0.0:
             return impact
-        return Impact(impact.angle, impact.v_n - barrier.v_n, impact.v_t - barrier.v_t, impact.omega)
+        v_n, v_t = impact.v_n - barrier.v_n, impact.v_t - barrier.v_t
+        return Impact(impact.angle, v_n, v_t, impact.omega, slope=impact.slope, until=impact.until)
 
 
 def _check_approach(scene: Scene) -> None:

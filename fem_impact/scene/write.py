@@ -15,7 +15,7 @@ import tomli_w
 from fem_impact.scene import fields
 from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.flow import Flow, TableFlow
-from fem_impact.scene.impact import Impact
+from fem_impact.scene.impact import FIRST, Impact
 from fem_impact.scene.material import Material
 from fem_impact.scene.own_mesh import OwnMesh
 from fem_impact.scene.parameter import Parameter
@@ -111,10 +111,10 @@ def _barrier(barrier: Barrier) -> dict[str, Any]:
 
 def _impact(impact: Impact) -> dict[str, Any]:
     """Write the velocities as they are stated."""
-    stated = ("angle", *impact.stated, "omega")
-    return _written(
-        impact, tuple(p for p in (*fields.IMPACT, fields.HEIGHT, fields.SPEED) if p.key in stated)
-    )
+    stated = ("angle", *impact.stated, "omega", "slope")
+    known = (*fields.IMPACT, fields.SLOPE, fields.HEIGHT, fields.SPEED)
+    until = {} if impact.until == FIRST else {"until": impact.until}
+    return _written(impact, tuple(p for p in known if p.key in stated)) | until
 
 
 def _accuracy(accuracy: Accuracy) -> dict[str, Any]:

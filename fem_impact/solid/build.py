@@ -281,7 +281,7 @@ class Builder:
 
     def weight(self, gravity: float) -> Weight:
         """Return the rod's weight under the acceleration ``gravity``, m/s2."""
-        n, alpha = self.meshed.layout.rod_size, self.scene.impact.angle
+        n, alpha = self.meshed.layout.rod_size, self.scene.impact.vertical
         down = np.zeros((len(self.meshed.rod.places), 3))
         down[:, 0], down[:, 2] = -np.sin(alpha), -np.cos(alpha)
         direction = np.zeros(self.meshed.layout.size)

@@ -104,7 +104,8 @@ def outline(body: Projectile | Turned | Faceted) -> Outline:
     ['-180 to -90', '-90 to 0', '0 to 90', '90 to 180']
     """
     if isinstance(body, Projectile):
-        return Outline(_of_rod(body))
+        own = (Corner(x, z - body.z_c, r, low, high) for x, z, r, low, high, _ in body.rounds())
+        return Outline(tuple(own))
     if isinstance(body, Faceted):
         line = hull(body.points[:, [0, 2]], OF_MESH * body.length)
         return Outline(_of_vertices(line - [body.x_c, body.z_c], smooth=False))
@@ -117,19 +118,6 @@ def _least(one: Corner) -> float:
     away = math.hypot(one.x, one.z)
     above = (-math.atan2(one.x, one.z) - one.low) % TURN < one.high - one.low  # its centre, at some time
     return min(one.arms(one.low)[1], one.arms(one.high)[1], one.radius - away if above else math.inf)
-
-
-def _of_rod(rod: Projectile) -> tuple[Corner, ...]:
-    """Return the corners of a rod with a turned tip, from its tail over the tip to its tail."""
-    nose, R, z_c = rod.nose, rod.diameter / 2, rod.z_c
-    tip = [Corner(nose.face, nose.r - z_c, nose.r, 0.0, nose.sweep)]
-    if nose.has_cone:
-        tip.append(Corner(R, nose.z_side - z_c, 0.0, nose.sweep, math.pi / 2))
-    half = [*tip, Corner(R, rod.length - z_c, 0.0, math.pi / 2, math.pi)]
-    mirrored = [one._replace(x=-one.x, low=0.0 - one.high, high=0.0 - one.low) for one in reversed(half)]
-    if nose.face == 0.0:  # the arc on both sides of the pole is one
-        return (*mirrored[:-1], half[0]._replace(low=-nose.sweep), *half[1:])
-    return (*mirrored, *half)
 
 
 def _of_vertices(line: Floats, smooth: bool) -> tuple[Corner, ...]:

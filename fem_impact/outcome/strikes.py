@@ -1,0 +1,105 @@
+"""The strikes of a body from its first to its rest, as an outcome holds them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from fem_impact.outcome.keys import Num, Unknown, group, key, known
+
+if TYPE_CHECKING:
+    import pandas
+
+_N = " (number from 1)"
+
+
+@group
+class StrikeRecord:
+    """One strike: when, where, with which motion before and after, and what each account got of it."""
+
+    time: float = key("time_s", "s", "Since first contact.")
+    fidelity: str = key("fidelity", "", "What computed it: rigid, modal or solid.")
+    part: str = key("part", "", "What struck: tip, tail, face, side, or the surface of a ball.")
+    x: float = key("x_m", "m", "Its place across the axis, above 0 on the side that came down first.")
+    z: float = key("z_m", "m", "Its place along the axis, from the tip.")
+    along: float = key("along_m", "m", "Where it struck the barrier, up the slope from the first contact.")
+    alpha: float = key("alpha_rad", "rad", "Angle between axis and normal, counted on over full turns.")
+    approach: float = key("approach_m_per_s", "m/s", "Speed of the place towards the barrier.")
+    sliding: float = key("sliding_m_per_s", "m/s", "Velocity of the place up the slope.")
+    v_n: float = key("v_n_m_per_s", "m/s", "Normal velocity of the mass centre before.")
+    v_t: float = key("v_t_m_per_s", "m/s", "Tangential velocity of the mass centre before.")
+    omega: float = key("omega_rad_per_s", "rad/s", "Spin before.")
+    V_n: float = key("V_n_m_per_s", "m/s", "Normal velocity of the mass centre after.")
+    V_t: float = key("V_t_m_per_s", "m/s", "Tangential velocity of the mass centre after.")
+    Omega: float = key("Omega_rad_per_s", "rad/s", "Spin after.")
+    e: float = key("e", "-", "Ratio of the normal velocities of the place.")
+    mu: float = key("mu", "-", "Impulse ratio.")
+    impulse_n: float = key("impulse_n_Ns", "N s", "Normal impulse on the body.")
+    impulse_t: float = key("impulse_t_Ns", "N s", "Tangential impulse on the body.")
+    force: float | None = key("peak_force_N", "N", "Largest normal force; null of a strike without duration.")
+    before: float = key("E_before_J", "J", "Kinetic energy of the rigid motion before.")
+    after: float = key("E_after_J", "J", "Kinetic energy of the rigid motion after.")
+    friction: float = key("W_friction_J", "J", "Friction.")
+    plastic: float = key("E_plastic_J", "J", "Plastic work of both bodies.")
+    damping: float = key(
+        "W_damping_J", "J", "Viscous loss of the contact, and of the modes in the flight before."
+    )
+    vibration: float = key("E_vib_J", "J", "Vibration after it.")
+    taken: float = key("E_vib_before_J", "J", "Vibration before it, after the damping of the flight.")
+    other: float = key(
+        "E_other_J", "J", "Waves, residual stress, bending of a plate, and what the balance misses."
+    )
+
+    @property
+    def lost(self) -> float:
+        """Energy that the rigid motion lost, J."""
+        return self.before - self.after
+
+
+@group
+class Strikes:
+    """All strikes of a body that is followed beyond its first impact, and where its energy went."""
+
+    until: str = key(
+        "strikes_until", "", 'How far the body was to be followed: "first", "N strikes" or "rest".'
+    )
+    each: tuple[StrikeRecord, ...] | Unknown = key("strikes", "s, m, m/s, J", "Each strike that counts.")
+    end: str | Unknown = key(
+        "strikes_end",
+        "",
+        "How it ends: rests, rolls on, slides on, leaves, tumbles on, bounces on, jams, or goes on.",
+    )
+    because: str | Unknown = key("strikes_ended_because", "", "Why it ended, as a sentence.")
+    time: Num = key("strikes_time_s", "s", "From first contact to the end; to the rest of a body that rests.")
+    way: Num = key("strikes_way_m", "m", "Way of the mass centre up the slope until then.")
+    hardest_energy: int | Unknown = key(
+        "strikes_hardest_by_energy", "-", f"Strike that took most from the rigid motion{_N}."
+    )
+    hardest_force: int | Unknown = key("strikes_hardest_by_force", "-", f"Strike of the largest force{_N}.")
+    hardest_heat: int | Unknown = key("strikes_hardest_by_heat", "-", f"Strike of the most friction{_N}.")
+    other_end: Num = key(
+        "strikes_other_end_over_first",
+        "-",
+        "Largest speed at which the other end strikes over that of the first strike.",
+    )
+    gravity: Num = key("strikes_W_gravity_J", "J", "Work of gravity, all flights and contacts.")
+    friction: Num = key("strikes_W_friction_J", "J", "Friction of all strikes, and of sliding between them.")
+    plastic: Num = key("strikes_E_plastic_J", "J", "Plastic work of all strikes.")
+    damping: Num = key("strikes_W_damping_J", "J", "Viscous loss of all contacts, and damping of the modes.")
+    other: Num = key("strikes_E_other_J", "J", "What else the strikes took: see E_other_J of each.")
+    settled: Num = key(
+        "strikes_settled_J", "J", "Energy of what is too weak to count as a strike, lost without rebound."
+    )
+    left: Num = key("strikes_left_J", "J", "Energy of motion and vibration at the end.")
+    residual: Num = key(
+        "strikes_residual_over_E_0", "-", "What the balance over all strikes misses, over E_0."
+    )
+
+    def to_dataframe(self) -> pandas.DataFrame:
+        """Return a row a strike, with the columns of its JSON (ResultError: there are none)."""
+        import pandas
+
+        from fem_impact.outcome.keys import keys_of
+
+        columns = tuple(keys_of(StrikeRecord))
+        rows = [[one.of(strike) for one in columns] for strike in known(self.each)]
+        return pandas.DataFrame(rows, columns=[one.name for one in columns])

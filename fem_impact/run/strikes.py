@@ -1,0 +1,319 @@
+"""The strikes after the first impact, by rigid theory: each with the restitution of its own contact."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from math import copysign, cos, pi, remainder, sin
+from typing import TYPE_CHECKING
+
+from fem_impact.case.effects.registry import AUTO
+from fem_impact.outcome.keys import Num, Unknown, known, or_none
+from fem_impact.outcome.limitation import limitations
+from fem_impact.outcome.record import Outcome
+from fem_impact.outcome.strikes import StrikeRecord, Strikes
+from fem_impact.physics.contact import ContactPair
+from fem_impact.run.rigid import NormalLoss, normal_loss
+from rigid import GRAVITY, kinetic_energy
+from rigid.strikes import (
+    LEAST,
+    Approach,
+    Corner,
+    Finish,
+    Outline,
+    Pull,
+    Sequence,
+    State,
+    Strike,
+    outline,
+    sequence,
+)
+
+if TYPE_CHECKING:
+    from fem_impact.case.case import Case
+    from fem_impact.scene.material import Material
+    from fem_impact.scene.types import Scene
+
+BESIDE = 1e-6  # rad from the end of a corner's inclinations, at which it touches alone
+NO_FORCE = Unknown("a rigid impact without duration has no force")
+FINISHED = {
+    Finish.RESTS: "It rests.",
+    Finish.ROLLS: "It rolls or rocks on without a further strike.",
+    Finish.SLIDES: "It slides on.",
+    Finish.LEAVES: "It leaves the barrier and does not come back.",
+    Finish.COUNTED: "As many strikes as asked for are done.",
+    Finish.BOUNCES: "Its strikes lose so little that they do not end; what is left is told.",
+    Finish.TUMBLES: "It tumbles down the slope faster and faster.",
+    Finish.JAMS: "Friction drives it into the barrier as it slides, which rigid theory does not follow.",
+}
+RULES = (
+    "A strike that brings less than "
+    f"{LEAST:g} of E_0 along its normal does not rebound: its contact is held, and the body pivots, rolls or "
+    "slides on it.",
+    "Two feet at one instant strike one after the other, the one that comes down first; a face or side that "
+    "comes down level and without spin strikes in its middle.",
+)
+LATER = "Strikes after the first are those of a rigid body: vibration is not carried on into them."
+LEVEL = (
+    "Strike {} lands a straight part level, and its restitution is that of a round contact as wide as the "
+    "model allows."
+)
+LOSSLESS = (
+    "{} of the strikes lose nothing along the normal: the contact law knows no loss below its yield speed. "
+    "The rattle lasts longer than a real one."
+)
+
+
+def gravity_of(scene: Scene) -> float:
+    """Return the gravity, m/s2, of flights: 0 only where the scene leaves the effect out."""
+    named = "gravity" in scene.effects or (AUTO in scene.effects and "-gravity" not in scene.effects)
+    return GRAVITY if named else 0.0
+
+
+def with_strikes(case: Case, outcome: Outcome) -> Outcome:
+    """Return an outcome with the strikes that its scene asks for, from its first impact on.
+
+    The first strike of a rigid run is that of the sequence; of finite elements it is their impact, after
+    whose last separation the body goes on as a rigid one.
+    """
+    after = [outcome.motion.V_n, outcome.motion.V_t, outcome.motion.Omega]
+    unknown = next((v for v in after if isinstance(v, Unknown)), None)
+    if unknown is not None:
+        because = Unknown(f"the motion after the first impact is not known: {unknown.reason}")
+        return replace(outcome, strikes=replace(outcome.strikes, each=because))
+    course = _Course.of(case)
+    rigid_first = outcome.provenance.fidelity == "rigid"
+    strikes = course.from_first() if rigid_first else course.after(outcome)
+    told = limitations("model", *RULES, "" if rigid_first else LATER, *course.doubts(strikes))
+    validity = replace(outcome.validity, limitations=(*outcome.validity.limitations, *told))
+    return replace(outcome, strikes=strikes, validity=validity)
+
+
+@dataclass(frozen=True, eq=False)
+class _Course:
+    """A case whose body is followed: its outline, what acts on it, and the losses of its strikes so far."""
+
+    case: Case
+    shape: Outline
+    pull: Pull
+    losses: dict[State, NormalLoss]
+
+    @classmethod
+    def of(cls, case: Case) -> _Course:
+        g, vertical = gravity_of(case.scene), case.scene.impact.vertical
+        pull = Pull(g * cos(vertical), g * sin(vertical), case.contact.body.k2, case.contact.f)
+        return cls(case, outline(case.contact.body), pull, {})
+
+    def from_first(self) -> Strikes:
+        """Return all strikes of a rigid body."""
+        seen = self.case.scene.relative
+        begin = self._touching(seen.angle, seen.v_n, seen.v_t, seen.omega)
+        found = sequence(self.shape, begin, self.pull, self._restitution, until=seen.most_strikes)
+        return self._told(found, (), 0.0)
+
+    def after(self, outcome: Outcome) -> Strikes:
+        """Return the impact of an outcome as the first strike, and the strikes of the rigid body after it."""
+        scene, motion = self.case.scene, outcome.motion
+        contacts = known(outcome.contact.intervals)
+        lasts = contacts[-1].end if contacts else 0.0
+        turn = 0.5 * lasts * (scene.impact.omega + known(motion.Omega))
+        V_n, V_t = known(motion.V_n) - scene.barrier.v_n, known(motion.V_t) - scene.barrier.v_t
+        touching = self._touching(scene.impact.angle + turn, V_n, V_t, known(motion.Omega))
+        begin = touching._replace(time=lasts, along=0.5 * lasts * (scene.relative.v_t + V_t))
+        most = scene.impact.most_strikes
+        found = sequence(
+            self.shape, begin, self.pull, self._restitution, until=None if most is None else most - 1
+        )
+        return self._told(found, (_first_record(self, outcome),), begin.along)
+
+    def doubts(self, strikes: Strikes) -> list[str]:
+        """Return what is to be told of restitutions that follow from the law of a round contact."""
+        if self.case.scene.restitution is not None or isinstance(strikes.each, Unknown):
+            return []
+        flat = [str(k) for k, one in enumerate(strikes.each, 1) if one.part in ("face", "side")]
+        lossless = sum(loss.e == 1.0 for loss in self.losses.values())
+        level = [LEVEL.format(", ".join(flat))] if flat else []
+        return level + ([LOSSLESS.format(lossless)] if lossless else [])
+
+    def _touching(self, alpha: float, v_n: float, v_t: float, omega: float) -> State:
+        """Return a body that touches at an inclination."""
+        height = self.shape.corners[self.shape.lowest(alpha, omega)].arms(alpha)[1]
+        return State(0.0, height, 0.0, alpha, v_n, v_t, omega)
+
+    def _restitution(self, strike: Approach) -> float:
+        loss = normal_loss(self.case, self._pair(strike))
+        self.losses[strike.state] = loss
+        return loss.e
+
+    def _pair(self, strike: Approach) -> ContactPair:
+        """Return body and barrier as they touch in a strike; of its tail as those of the body turned over."""
+        first, state, one = self.case.contact, strike.state, self.shape.corners[strike.corner]
+        angle = remainder(state.alpha if strike.line else _inside(one, state.alpha), 2.0 * pi)
+        body = first.body
+        if abs(angle) > 0.5 * pi:
+            body, angle = body.reversed(), angle - copysign(pi, angle)
+        material, yields = _struck(self.case, strike.place[1] + first.body.z_c)
+        return replace(
+            first,
+            body=body,
+            angle=angle,
+            v_n=state.V_n,
+            v_t=state.V_t,
+            omega=state.Omega,
+            rod=material,
+            rod_yields=yields,
+        )
+
+    def _told(self, found: Sequence, before: tuple[StrikeRecord, ...], way: float) -> Strikes:
+        """Return the record of a sequence that follows other strikes."""
+        case, mass = self.case, self.case.contact.body.mass
+        each = (*before, *(self._record(strike) for strike in found.strikes))
+        begin, end, pull = found.start, found.end, self.pull
+        lost = mass * (sum(one.normal + one.friction for one in found.small) + found.settled)
+        left = mass * 0.5 * (end.V_n**2 + end.V_t**2 + pull.k2 * end.Omega**2)
+        fallen = pull.g_n * (begin.height - end.height) + pull.g_t * (begin.along - end.along)
+        E_0 = each[0].before if each else 1.0
+        finish = found.finish
+        return Strikes(
+            until=case.scene.impact.until,
+            each=each,
+            end=finish.value,
+            because=FINISHED[finish],
+            time=end.time,
+            way=end.along,
+            hardest_energy=_hardest([one.lost for one in each]),
+            hardest_force=_hardest([one.force for one in each]),
+            hardest_heat=_hardest([one.friction for one in each]),
+            other_end=_other_end(each, case.contact.body.length),
+            gravity=mass * fallen,
+            friction=sum(one.friction for one in each) + mass * found.held_heat,
+            plastic=sum(one.plastic for one in each),
+            damping=sum(one.damping for one in each),
+            other=sum(one.other + (one.vibration if one in before else 0.0) for one in each),
+            settled=lost,
+            left=left,
+            residual=mass * found.residual / E_0,
+        )
+
+    def _record(self, strike: Strike) -> StrikeRecord:
+        """Return the record of one strike of the rigid body."""
+        case, before = self.case, strike.before
+        state, body = before.state, case.contact.body
+        loss = self.losses[state]
+        place = before.place[0] + body.x_c, before.place[1] + body.z_c
+        return StrikeRecord(
+            time=state.time,
+            fidelity="rigid",
+            part=_part(place, before, self.shape, body.length),
+            x=place[0],
+            z=place[1],
+            along=state.along - before.d_c + case.contact.arms[0],
+            alpha=state.alpha,
+            approach=-before.normal,
+            sliding=before.sliding,
+            v_n=state.V_n,
+            v_t=state.V_t,
+            omega=state.Omega,
+            V_n=strike.V_n,
+            V_t=strike.V_t,
+            Omega=strike.Omega,
+            e=strike.e,
+            mu=strike.mu,
+            impulse_n=body.mass * strike.p,
+            impulse_t=body.mass * strike.q,
+            force=None,
+            before=_kinetic(case, state),
+            after=_kinetic(case, strike.after),
+            friction=body.mass * strike.friction,
+            plastic=body.mass * (1.0 - loss.viscous) * strike.normal,
+            damping=body.mass * loss.viscous * strike.normal,
+            vibration=0.0,
+            taken=0.0,
+            other=0.0,
+        )
+
+
+def _kinetic(case: Case, state: State) -> float:
+    """Return the kinetic energy of the rigid motion, J."""
+    body = case.contact.body
+    return float(kinetic_energy(state.V_n, state.V_t, state.Omega, mass=body.mass, k2=body.k2))
+
+
+def _first_record(course: _Course, outcome: Outcome) -> StrikeRecord:
+    """Return the impact of an outcome as the first strike."""
+    case, motion, energy = course.case, outcome.motion, outcome.energy
+    seen, barrier, pair = case.scene.relative, case.scene.barrier, case.contact
+    E_0, (x, z) = energy.E_0, pair.touch_point
+    V_n, V_t = known(motion.V_n) - barrier.v_n, known(motion.V_t) - barrier.v_t
+    parts = [energy.rigid, energy.friction, energy.plastic, energy.damping, energy.vibration]
+    kept, friction, plastic, damping, vibration = (E_0 * (or_none(part) or 0.0) for part in parts)
+    return StrikeRecord(
+        time=0.0,
+        fidelity=outcome.provenance.fidelity,
+        part="tip" if z < 0.5 * pair.body.length else "tail",
+        x=x,
+        z=z,
+        along=0.0,
+        alpha=seen.angle,
+        approach=pair.approach,
+        sliding=pair.sliding,
+        v_n=seen.v_n,
+        v_t=seen.v_t,
+        omega=seen.omega,
+        V_n=V_n,
+        V_t=V_t,
+        Omega=known(motion.Omega),
+        e=known(outcome.restitution.edge.e),
+        mu=known(outcome.restitution.mu),
+        impulse_n=motion.mass * (V_n - seen.v_n),
+        impulse_t=motion.mass * (V_t - seen.v_t),
+        force=or_none(outcome.contact.peak_force),
+        before=E_0,
+        after=kept,
+        friction=friction,
+        plastic=plastic,
+        damping=damping,
+        vibration=vibration,
+        taken=0.0,
+        other=E_0 - kept - friction - plastic - damping - vibration,
+    )
+
+
+def _part(place: tuple[float, float], strike: Approach, shape: Outline, length: float) -> str:
+    """Return what struck at a place (x, z), m, from the tip: an end, a straight part, or a ball."""
+    if len(shape.corners) == 1:
+        return "surface"
+    if strike.line:
+        on_face = abs(remainder(strike.state.alpha, pi)) < 0.25 * pi
+        return "face" if on_face else "side"
+    return "tip" if place[1] < 0.5 * length else "tail"
+
+
+def _inside(one: Corner, alpha: float) -> float:
+    """Return the inclination, rad, at which a corner touches alone, next to one at which a line does."""
+    middle, half = 0.5 * (one.low + one.high), 0.5 * (one.high - one.low) - BESIDE
+    return middle + min(max(remainder(alpha - middle, 2.0 * pi), -half), half)
+
+
+def _struck(case: Case, z: float) -> tuple[Material, bool]:
+    """Return the material of the body at a place, m from its tip, and whether it may yield."""
+    segments, pair = case.scene.projectile.segments, case.contact
+    part = next((one for one in segments if z <= one.to), None)
+    if part is None or part == segments[0]:
+        return pair.rod, pair.rod_yields
+    return part.material, False  # only the first segment may yield
+
+
+def _hardest(values: Iterable[float | None]) -> int | Unknown:
+    """Return the number, from 1, of the largest value that is known."""
+    known_ones = [(value, -number) for number, value in enumerate(values, 1) if value is not None]
+    return -max(known_ones)[1] if known_ones else NO_FORCE
+
+
+def _other_end(each: tuple[StrikeRecord, ...], length: float) -> Num:
+    """Return the largest speed at which the other end strikes over that of the first strike."""
+    first = each[0].z < 0.5 * length
+    others = [one.approach for one in each if (one.z < 0.5 * length) != first and one.part in ("tip", "tail")]
+    if not others:
+        return Unknown("the other end does not strike by itself")
+    return max(others) / each[0].approach

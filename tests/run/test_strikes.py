@@ -1,0 +1,178 @@
+"""A scene that is followed beyond its first impact: keys, records, totals, refusals."""
+
+import math
+
+import pytest
+
+from fem_impact.errors import SceneError
+from fem_impact.outcome.keys import Unknown
+from fem_impact.outcome.limitation import texts
+from fem_impact.outcome.record import Outcome
+from fem_impact.run.simulate import simulate
+from fem_impact.run.strikes import gravity_of
+from fem_impact.scene.read import read_dict, read_toml
+from fem_impact.scene.shipped import load, replace, replace_all
+from fem_impact.scene.write import to_dict, to_toml
+from rigid import GRAVITY
+
+
+def rattling(**changes):
+    stated = {"impact.until": "rest", "impact.slope": "0 deg", **changes}
+    return replace_all(load("quick"), {key.replace("__", "."): value for key, value in stated.items()})
+
+
+@pytest.fixture(scope="module")
+def floor():
+    return simulate(rattling(), "rigid")
+
+
+# the scene
+
+
+def test_a_scene_without_the_keys_is_written_as_before():
+    impact = to_dict(load("quick"))["impact"]
+    assert not {"until", "slope"} & set(impact)
+    assert to_dict(replace(load("quick"), "impact.until", "first"))["impact"] == impact
+
+
+def test_slope_and_until_are_written_and_read_back(tmp_path):
+    path = tmp_path / "scene.toml"
+    path.write_text(to_toml(rattling(impact__until="3 strikes")))
+    scene = read_toml(path)
+    assert (scene.impact.until, scene.impact.most_strikes, scene.impact.slope) == ("3 strikes", 3, 0.0)
+    assert scene == rattling(impact__until="3 strikes")
+
+
+@pytest.mark.parametrize("until, most", [("first", 1), ("1 strike", 1), ("12 strikes", 12), ("rest", None)])
+def test_words_that_say_how_far(until, most):
+    assert rattling(impact__until=until).impact.most_strikes == most
+
+
+@pytest.mark.parametrize("until", ["0 strikes", "three strikes", "", 3, "Rest", "1000 strikes"])
+def test_other_words_are_refused_with_those_that_hold(until):
+    with pytest.raises(SceneError, match=r'impact.until.*"first", "rest", or a number of strikes'):
+        rattling(impact__until=until)
+
+
+def test_a_height_falls_down_the_vertical():
+    data = to_dict(load("quick"))
+    data.pop("measured", None)
+    data["impact"] = {"angle": "30 deg", "height": "0.5 m", "slope": "0 deg"}
+    impact = read_dict(data).impact
+    assert (impact.v_n, impact.v_t) == pytest.approx((-math.sqrt(2 * GRAVITY * 0.5), 0.0))
+    assert read_dict(to_dict(read_dict(data))).impact == impact
+    assert replace(read_dict(data), "impact.angle", "60 deg").impact.v_t == pytest.approx(0.0)
+
+
+def test_without_a_slope_the_axis_is_vertical():
+    impact = load("quick").impact
+    assert impact.vertical == impact.angle
+    assert rattling().impact.vertical == 0.0
+
+
+def test_a_free_barrier_is_refused_with_the_remedy():
+    with pytest.raises(SceneError, match=r"impact.until.*Leave out barrier.mass"):
+        simulate(rattling(barrier__mass="1 kg"), "rigid")
+
+
+@pytest.mark.parametrize("effects", [["auto", "-gravity"], ["friction", "barrier-rigid"]])
+def test_gravity_acts_in_flight_unless_it_is_left_out(effects):
+    assert gravity_of(rattling()) == GRAVITY
+    assert gravity_of(rattling(effects=effects)) == 0.0
+
+
+# the record
+
+
+def test_a_scene_of_the_first_impact_has_no_strikes():
+    strikes = simulate(load("quick"), "rigid").strikes
+    assert strikes.until == "first"
+    assert isinstance(strikes.each, Unknown)
+    assert "impact.until" in strikes.each.reason
+
+
+def test_the_first_strike_is_the_first_impact(floor):
+    first = floor.strikes.each[0]
+    assert first.V_n == pytest.approx(floor.motion.V_n, rel=1e-12)
+    assert first.Omega == pytest.approx(floor.motion.Omega, rel=1e-12)
+    assert first.mu == pytest.approx(floor.restitution.mu, rel=1e-12)
+    assert first.friction == pytest.approx(floor.energy.friction * floor.energy.E_0, rel=1e-12)
+
+
+def test_the_energy_of_all_strikes_adds_up(floor):
+    s = floor.strikes
+    spent = s.friction + s.plastic + s.damping + s.other + s.settled + s.left
+    assert floor.energy.E_0 + s.gravity == pytest.approx(spent, rel=1e-10)
+    assert abs(s.residual) < 1e-10
+    for one in s.each:
+        parts = one.friction + one.plastic + one.damping + one.other + one.vibration
+        assert one.lost == pytest.approx(parts, rel=1e-9, abs=1e-14)
+
+
+def test_a_rod_on_a_floor_comes_to_rest_and_its_hardest_strikes_are_named(floor):
+    s = floor.strikes
+    assert (s.end, s.left) == ("rests", 0.0)
+    assert s.each[s.hardest_energy - 1].lost == max(one.lost for one in s.each)
+    assert s.each[s.hardest_heat - 1].friction == max(one.friction for one in s.each)
+    assert isinstance(s.hardest_force, Unknown)
+    tails = [one.approach for one in s.each if one.part == "tail"]
+    assert s.other_end == pytest.approx(max(tails) / s.each[0].approach)
+    assert "strikes again" not in floor.validity.stopped_because
+
+
+def test_each_strike_takes_the_law_of_its_own_contact(floor):
+    assert len({round(one.e, 6) for one in floor.strikes.each}) > 3
+    stated = simulate(rattling(restitution=0.4), "rigid").strikes.each
+    slipped = [one.e for one in stated if abs(one.mu) == pytest.approx(0.57)]
+    assert slipped == pytest.approx([0.4] * len(slipped), abs=1e-9)
+
+
+def test_a_rod_slides_on_down_a_slope_steeper_than_its_friction_holds():
+    strikes = simulate(replace(load("quick"), "impact.until", "rest"), "rigid").strikes
+    assert strikes.end == "slides on"
+    assert strikes.gravity > 0.0
+    held = simulate(rattling(impact__slope="20 deg"), "rigid").strikes
+    assert held.end == "rests"
+
+
+def test_a_wanted_number_of_strikes_is_done():
+    strikes = simulate(rattling(impact__until="3 strikes"), "rigid").strikes
+    assert (len(strikes.each), strikes.end) == (3, "goes on")
+    assert strikes.left > 0.0
+
+
+def test_without_gravity_the_rod_leaves():
+    strikes = simulate(rattling(effects=["auto", "-gravity"]), "rigid").strikes
+    assert strikes.end == "leaves"
+    assert strikes.gravity == 0.0
+
+
+def test_the_record_is_read_back_and_a_table_made_of_it(floor, tmp_path):
+    floor.write(tmp_path / "outcome.json")
+    again = Outcome.read(tmp_path / "outcome.json")
+    assert again.strikes.each[1].approach == floor.strikes.each[1].approach
+    assert again.strikes.each[0].force is None
+    table = floor.strikes.to_dataframe()
+    assert len(table) == len(floor.strikes.each)
+    assert table["part"].iloc[1] == floor.strikes.each[1].part
+
+
+def test_what_the_rules_are_and_what_the_law_leaves_out_is_told(floor):
+    told = " ".join(texts(floor.validity.limitations, "model"))
+    assert "does not rebound" in told
+    assert "one after the other" in told
+    assert "lose nothing along the normal" in told
+
+
+def test_a_body_of_segments_takes_the_material_of_the_part_that_strikes():
+    parts = [{"to": "40 mm", "material": "rod-steel"}, {"material": "plate-steel"}]
+    scene = rattling()
+    data = to_dict(scene)
+    data["projectile"] = {
+        **{key: value for key, value in data["projectile"].items() if key != "material"},
+        "segments": parts,
+    }
+    data.pop("measured", None)
+    tail = next(one for one in simulate(read_dict(data), "rigid").strikes.each if one.part == "tail")
+    plain = next(one for one in simulate(scene, "rigid").strikes.each if one.part == "tail")
+    assert tail.e != pytest.approx(plain.e, abs=1e-3)
