@@ -10,7 +10,7 @@ import numpy as np
 
 from fem_impact.case.case import Case
 from fem_impact.case.measured import reduced_table
-from fem_impact.modal.impact import ModalResult, solve
+from fem_impact.modal.impact import Arrival, ModalResult, solve
 from fem_impact.modal.pressed import PressedSite
 from fem_impact.outcome.groups import ContactSite, Energy, Heat, Markers, RunCost
 from fem_impact.outcome.keys import Num, Unknown, unknown
@@ -34,14 +34,17 @@ KEPT = Unknown("the modes of a rod are computed once and kept")
 
 
 def closed(
-    case: Case, progress: Callable[[Progress], None] | None = None, recorded: bool = False
+    case: Case,
+    progress: Callable[[Progress], None] | None = None,
+    recorded: bool = False,
+    arrival: Arrival | None = None,
 ) -> ModalResult:
     """Compute an impact as `solve` does, with half the time step, and half of that, while the ledger is open.
 
     Of 57 random scenes one missed 1.1e-4 of E_0, and half of it with half the step.
     """
     for halved in range(HALVINGS + 1):
-        result = solve(case, progress, recorded, 0.5**halved)
+        result = solve(case, progress, recorded, 0.5**halved, arrival)
         if abs(result.residual / result.E_0) <= RESIDUAL_LIMIT:
             break
     return result

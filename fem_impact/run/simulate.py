@@ -123,7 +123,12 @@ def _compute(case: Case, options: RunOptions) -> tuple[Outcome, ContactRecord | 
         result = closed(case, options.progress, recorded=options.out is not None)
         if options.out is not None:
             write_history(case, result, options.out / "history.csv")
-        return reduce_modal(case, result), None
+        outcome = reduce_modal(case, result)
+        if case.scene.impact.until != FIRST:
+            from fem_impact.run.modal_strikes import with_modal_strikes
+
+            outcome = with_modal_strikes(case, outcome, result)
+        return outcome, None
     from threadpoolctl import threadpool_limits
 
     from fem_impact.outcome.limitation import texts

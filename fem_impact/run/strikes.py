@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
-from math import copysign, cos, pi, remainder, sin
+from dataclasses import dataclass, field, replace
+from math import copysign, cos, inf, pi, remainder, sin
 from typing import TYPE_CHECKING
 
 from fem_impact.case.effects.registry import AUTO
@@ -22,7 +22,6 @@ from rigid.strikes import (
     Finish,
     Outline,
     Pull,
-    Sequence,
     State,
     Strike,
     outline,
@@ -55,8 +54,8 @@ RULES = (
 )
 LATER = "Strikes after the first are those of a rigid body: vibration is not carried on into them."
 LEVEL = (
-    "Strike {} lands a straight part level, and its restitution is that of a round contact as wide as the "
-    "model allows."
+    "{} of the strikes land a straight part level; their restitution is that of a round contact as wide as "
+    "the model allows."
 )
 LOSSLESS = (
     "{} of the strikes lose nothing along the normal: the contact law knows no loss below its yield speed. "
@@ -81,66 +80,106 @@ def with_strikes(case: Case, outcome: Outcome) -> Outcome:
     if unknown is not None:
         because = Unknown(f"the motion after the first impact is not known: {unknown.reason}")
         return replace(outcome, strikes=replace(outcome.strikes, each=because))
-    course = _Course.of(case)
-    rigid_first = outcome.provenance.fidelity == "rigid"
-    strikes = course.from_first() if rigid_first else course.after(outcome)
-    told = limitations("model", *RULES, "" if rigid_first else LATER, *course.doubts(strikes))
-    validity = replace(outcome.validity, limitations=(*outcome.validity.limitations, *told))
-    return replace(outcome, strikes=strikes, validity=validity)
+    followed, seen = Followed.of(case), case.scene.relative
+    if outcome.provenance.fidelity == "rigid":
+        end, finish = followed.go_on(followed.touching(seen.angle, seen.v_n, seen.v_t, seen.omega))
+        return followed.outcome(outcome, end, finish, RULES)
+    followed.each.append(_first_record(followed, outcome))
+    end, finish = followed.go_on(followed.after(outcome))
+    return followed.outcome(outcome, end, finish, (LATER, *RULES), followed.each[0].vibration)
 
 
-@dataclass(frozen=True, eq=False)
-class _Course:
-    """A case whose body is followed: its outline, what acts on it, and the losses of its strikes so far."""
+@dataclass(eq=False)
+class Followed:
+    """A body that is followed: its outline, what acts on it, a record of each strike, and the books.
+
+    Attributes
+    ----------
+    losses : restitution and what follows from it, by the motion before a strike of the rigid body
+    gravity, settled, heat : J, of gravity, of strikes too weak to count, of friction between strikes
+    level, lossless : strikes of the rigid body that land level, and that lose nothing along the normal
+    """
 
     case: Case
     shape: Outline
     pull: Pull
-    losses: dict[State, NormalLoss]
+    each: list[StrikeRecord] = field(default_factory=list)
+    losses: dict[State, NormalLoss] = field(default_factory=dict)
+    gravity: float = 0.0
+    settled: float = 0.0
+    heat: float = 0.0
+    level: int = 0
+    lossless: int = 0
 
     @classmethod
-    def of(cls, case: Case) -> _Course:
+    def of(cls, case: Case) -> Followed:
+        """Return the body of a case, that has not struck."""
         g, vertical = gravity_of(case.scene), case.scene.impact.vertical
         pull = Pull(g * cos(vertical), g * sin(vertical), case.contact.body.k2, case.contact.f)
-        return cls(case, outline(case.contact.body), pull, {})
+        return cls(case, outline(case.contact.body), pull)
 
-    def from_first(self) -> Strikes:
-        """Return all strikes of a rigid body."""
-        seen = self.case.scene.relative
-        begin = self._touching(seen.angle, seen.v_n, seen.v_t, seen.omega)
-        found = sequence(self.shape, begin, self.pull, self._restitution, until=seen.most_strikes)
-        return self._told(found, (), 0.0)
+    @property
+    def missing(self) -> int | None:
+        """How many strikes are still asked for, None where they are not counted."""
+        most = self.case.scene.impact.most_strikes
+        return None if most is None else most - len(self.each)
 
-    def after(self, outcome: Outcome) -> Strikes:
-        """Return the impact of an outcome as the first strike, and the strikes of the rigid body after it."""
+    def go_on(self, begin: State, strong: float = inf) -> tuple[State, Finish]:
+        """Follow the rigid body and book it, to the end or to a ``strong`` strike; see `sequence`."""
+        mass = self.case.contact.body.mass
+        if self.missing == 0:
+            return begin, Finish.COUNTED
+        found = sequence(
+            self.shape,
+            begin,
+            self.pull,
+            self._restitution,
+            until=self.missing,
+            energy=self.each[0].before / mass if self.each else None,
+            strong=strong,
+        )
+        self.each += [self._record(strike) for strike in found.strikes]
+        self.gravity += self.work(begin, found.end)
+        self.settled += mass * (sum(one.normal + one.friction for one in found.small) + found.settled)
+        self.heat += mass * found.held_heat
+        self.level += sum(one.before.line > 0.0 for one in found.strikes)
+        self.lossless += sum(one.e_energetic == 1.0 for one in found.strikes)
+        return found.end, found.finish
+
+    def after(self, outcome: Outcome) -> State:
+        """Return the motion after the impact of an outcome, whose contact turns the body by its mean spin."""
         scene, motion = self.case.scene, outcome.motion
         contacts = known(outcome.contact.intervals)
         lasts = contacts[-1].end if contacts else 0.0
         turn = 0.5 * lasts * (scene.impact.omega + known(motion.Omega))
         V_n, V_t = known(motion.V_n) - scene.barrier.v_n, known(motion.V_t) - scene.barrier.v_t
-        touching = self._touching(scene.impact.angle + turn, V_n, V_t, known(motion.Omega))
-        begin = touching._replace(time=lasts, along=0.5 * lasts * (scene.relative.v_t + V_t))
-        most = scene.impact.most_strikes
-        found = sequence(
-            self.shape, begin, self.pull, self._restitution, until=None if most is None else most - 1
-        )
-        return self._told(found, (_first_record(self, outcome),), begin.along)
+        begin = self.touching(scene.impact.angle + turn, V_n, V_t, known(motion.Omega))
+        return begin._replace(time=lasts, along=0.5 * lasts * (scene.relative.v_t + V_t))
 
-    def doubts(self, strikes: Strikes) -> list[str]:
+    def _doubts(self) -> tuple[str, ...]:
         """Return what is to be told of restitutions that follow from the law of a round contact."""
-        if self.case.scene.restitution is not None or isinstance(strikes.each, Unknown):
-            return []
-        flat = [str(k) for k, one in enumerate(strikes.each, 1) if one.part in ("face", "side")]
-        lossless = sum(loss.e == 1.0 for loss in self.losses.values())
-        level = [LEVEL.format(", ".join(flat))] if flat else []
-        return level + ([LOSSLESS.format(lossless)] if lossless else [])
+        if self.case.scene.restitution is not None:
+            return ()
+        both = (LEVEL, self.level), (LOSSLESS, self.lossless)
+        return tuple(sentence.format(count) for sentence, count in both if count)
 
-    def _touching(self, alpha: float, v_n: float, v_t: float, omega: float) -> State:
+    def kinetic(self, state: State) -> float:
+        """Return the kinetic energy of the rigid motion, J."""
+        body = self.case.contact.body
+        return float(kinetic_energy(state.V_n, state.V_t, state.Omega, mass=body.mass, k2=body.k2))
+
+    def work(self, start: State, end: State) -> float:
+        """Return the work of gravity, J, on the way from one state to another."""
+        fell = self.pull.g_n * (start.height - end.height) + self.pull.g_t * (start.along - end.along)
+        return self.case.contact.body.mass * fell
+
+    def touching(self, alpha: float, v_n: float, v_t: float, omega: float) -> State:
         """Return a body that touches at an inclination."""
         height = self.shape.corners[self.shape.lowest(alpha, omega)].arms(alpha)[1]
         return State(0.0, height, 0.0, alpha, v_n, v_t, omega)
 
     def _restitution(self, strike: Approach) -> float:
+        """Return the energetic restitution of a strike, and keep where its loss goes."""
         loss = normal_loss(self.case, self._pair(strike))
         self.losses[strike.state] = loss
         return loss.e
@@ -164,17 +203,28 @@ class _Course:
             rod_yields=yields,
         )
 
-    def _told(self, found: Sequence, before: tuple[StrikeRecord, ...], way: float) -> Strikes:
-        """Return the record of a sequence that follows other strikes."""
-        case, mass = self.case, self.case.contact.body.mass
-        each = (*before, *(self._record(strike) for strike in found.strikes))
-        begin, end, pull = found.start, found.end, self.pull
-        lost = mass * (sum(one.normal + one.friction for one in found.small) + found.settled)
-        left = mass * 0.5 * (end.V_n**2 + end.V_t**2 + pull.k2 * end.Omega**2)
-        fallen = pull.g_n * (begin.height - end.height) + pull.g_t * (begin.along - end.along)
-        E_0 = each[0].before if each else 1.0
-        finish = found.finish
-        return Strikes(
+    def outcome(
+        self,
+        outcome: Outcome,
+        end: State,
+        finish: Finish,
+        told: tuple[str, ...],
+        vibration: float = 0.0,
+        damped: float = 0.0,
+    ) -> Outcome:
+        """Return an outcome with all strikes, whose body ends so.
+
+        ``vibration`` and ``damped``, J, are what its modes still hold and have lost since the last strike.
+        """
+        each, case = tuple(self.each), self.case
+        sums = {
+            name: sum(getattr(one, name) for one in each)
+            for name in ("friction", "plastic", "damping", "other")
+        }
+        sums["friction"] += self.heat
+        sums["damping"] += damped
+        left, E_0 = self.kinetic(end) + vibration, each[0].before
+        strikes = Strikes(
             until=case.scene.impact.until,
             each=each,
             end=finish.value,
@@ -185,15 +235,14 @@ class _Course:
             hardest_force=_hardest([one.force for one in each]),
             hardest_heat=_hardest([one.friction for one in each]),
             other_end=_other_end(each, case.contact.body.length),
-            gravity=mass * fallen,
-            friction=sum(one.friction for one in each) + mass * found.held_heat,
-            plastic=sum(one.plastic for one in each),
-            damping=sum(one.damping for one in each),
-            other=sum(one.other + (one.vibration if one in before else 0.0) for one in each),
-            settled=lost,
+            gravity=self.gravity,
+            **sums,
+            settled=self.settled,
             left=left,
-            residual=mass * found.residual / E_0,
+            residual=(E_0 + self.gravity - sum(sums.values()) - self.settled - left) / E_0,
         )
+        every = (*outcome.validity.limitations, *limitations("model", *told, *self._doubts()))
+        return replace(outcome, strikes=strikes, validity=replace(outcome.validity, limitations=every))
 
     def _record(self, strike: Strike) -> StrikeRecord:
         """Return the record of one strike of the rigid body."""
@@ -204,7 +253,7 @@ class _Course:
         return StrikeRecord(
             time=state.time,
             fidelity="rigid",
-            part=_part(place, before, self.shape, body.length),
+            part=part_of(place, before.line, state.alpha, self.shape, body.length),
             x=place[0],
             z=place[1],
             along=state.along - before.d_c + case.contact.arms[0],
@@ -222,8 +271,8 @@ class _Course:
             impulse_n=body.mass * strike.p,
             impulse_t=body.mass * strike.q,
             force=None,
-            before=_kinetic(case, state),
-            after=_kinetic(case, strike.after),
+            before=self.kinetic(state),
+            after=self.kinetic(strike.after),
             friction=body.mass * strike.friction,
             plastic=body.mass * (1.0 - loss.viscous) * strike.normal,
             damping=body.mass * loss.viscous * strike.normal,
@@ -233,13 +282,7 @@ class _Course:
         )
 
 
-def _kinetic(case: Case, state: State) -> float:
-    """Return the kinetic energy of the rigid motion, J."""
-    body = case.contact.body
-    return float(kinetic_energy(state.V_n, state.V_t, state.Omega, mass=body.mass, k2=body.k2))
-
-
-def _first_record(course: _Course, outcome: Outcome) -> StrikeRecord:
+def _first_record(course: Followed, outcome: Outcome) -> StrikeRecord:
     """Return the impact of an outcome as the first strike."""
     case, motion, energy = course.case, outcome.motion, outcome.energy
     seen, barrier, pair = case.scene.relative, case.scene.barrier, case.contact
@@ -279,13 +322,12 @@ def _first_record(course: _Course, outcome: Outcome) -> StrikeRecord:
     )
 
 
-def _part(place: tuple[float, float], strike: Approach, shape: Outline, length: float) -> str:
-    """Return what struck at a place (x, z), m, from the tip: an end, a straight part, or a ball."""
+def part_of(place: tuple[float, float], line: float, alpha: float, shape: Outline, length: float) -> str:
+    """Return what strikes at a place (x, z), m, from the tip: an end, a ``line``, m, or a ball."""
     if len(shape.corners) == 1:
         return "surface"
-    if strike.line:
-        on_face = abs(remainder(strike.state.alpha, pi)) < 0.25 * pi
-        return "face" if on_face else "side"
+    if line:
+        return "face" if abs(remainder(alpha, pi)) < 0.25 * pi else "side"
     return "tip" if place[1] < 0.5 * length else "tail"
 
 

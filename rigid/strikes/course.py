@@ -56,6 +56,8 @@ def sequence(
     until: int | None = None,
     least: float = LEAST,
     most: int = MOST,
+    energy: float | None = None,
+    strong: float = math.inf,
 ) -> Sequence:
     """Follow a rigid body from its first touch.
 
@@ -68,6 +70,8 @@ def sequence(
     until : number of strikes after which to stop; None: follow it to its rest
     least : share of the energy at first touch below which a strike does not rebound
     most : strikes at most; a body that loses nothing strikes for ever
+    energy : kinetic energy at the first touch of a body that has struck before, per unit mass, m2/s2
+    strong : share of it along the normal at which to stop before a strike, for another model to take over
 
     Raises
     ------
@@ -85,7 +89,7 @@ def sequence(
     >>> found.finish.value
     'rests'
     """
-    course = _Course(outline, pull, restitution, until, least, most, start)
+    course = _Course(outline, pull, restitution, until, least, most, start, energy, strong)
     corner: int | None = None
     for _ in range(EVENTS * most):
         corner = course.fly() if corner is None else course.keep(corner)
@@ -105,6 +109,8 @@ class _Course:
     least: float
     most: int
     state: State
+    energy: float | None
+    strong: float
     strikes: list[Strike] = field(default_factory=list)
     small: list[Strike] = field(default_factory=list)
     phases: list[Phase] = field(default_factory=list)
@@ -116,7 +122,8 @@ class _Course:
 
     def __post_init__(self) -> None:
         state, k2 = self.state, self.pull.k2
-        self.E_0 = 0.5 * (state.V_n**2 + state.V_t**2 + k2 * state.Omega**2)
+        moving = 0.5 * (state.V_n**2 + state.V_t**2 + k2 * state.Omega**2)
+        self.E_0 = moving if self.energy is None else self.energy
         g = math.hypot(self.pull.g_n, self.pull.g_t)
         self.touching = TOUCHING * math.sqrt(2.0 * self.E_0)
         self.runaway = RUNAWAY * (self.E_0 + 2.0 * g * self.outline.widest)
@@ -235,7 +242,11 @@ class _Course:
             self._settle(self.state._replace(V_n=self.state.V_n - before.normal))
             return corner
         along_normal = 0.5 * before.normal**2 / (1.0 + before.d_c**2 / self.pull.k2)
-        counts = not self.strikes or along_normal >= self.least * self.E_0
+        if along_normal >= self.strong * self.E_0:
+            self.finish = Finish.STRONG
+            return None
+        first = self.energy is None and not self.strikes
+        counts = first or along_normal >= self.least * self.E_0
         e = self.restitution(before) if counts else 0.0
         strike = _resolved(before, e, self.pull)
         (self.strikes if counts else self.small).append(strike)

@@ -19,6 +19,7 @@ class Finish(Enum):
     BOUNCES = "bounces on"
     TUMBLES = "tumbles on"
     JAMS = "jams"
+    STRONG = "strikes hard"
 
 
 @dataclass(frozen=True, slots=True)

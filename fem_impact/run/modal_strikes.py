@@ -1,0 +1,235 @@
+"""Strikes of the reduced model one after the other: between them its modes swing on and are damped."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from math import floor, sqrt
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.optimize import brentq
+
+from fem_impact.arrays import Array
+from fem_impact.case.effects.damping import loss_factor
+from fem_impact.case.effects.registry import AUTO
+from fem_impact.modal.impact import Arrival, ModalResult
+from fem_impact.modal.motion import AT
+from fem_impact.modal.sites import lowest_place
+from fem_impact.outcome.keys import Unknown
+from fem_impact.outcome.strikes import StrikeRecord
+from fem_impact.run.modal import closed
+from fem_impact.run.strikes import RULES, Followed, part_of
+from rigid.strikes import Finish, State, next_touch
+
+if TYPE_CHECKING:
+    from fem_impact.case.case import Case
+    from fem_impact.outcome.record import Outcome
+
+WEAK, MOST = 1e-3, 40
+"""Least energy along the normal, over E_0, of a strike that modes compute, and the most of them."""
+LOOK = 0.5  # rad of the fastest mode between looks at a rod that nearly touches
+TOLD = (
+    "{} strikes are computed with modes, each on a surface that nothing has dented; in flight the modes "
+    "swing on, damped by the loss factor {:g}. Strikes that bring less than {:g} of E_0 along their normal, "
+    "and all after {} by modes, are those of a rigid body; the modes do not feel them."
+)
+SMOOTH = "A rod that leaves its dent is taken to leave the surface beside it."
+
+
+def modal_loss(case: Case) -> float:
+    """Return the loss factor of the modes in flight: 0 only where the scene leaves their damping out."""
+    effects = case.scene.effects
+    named = "material-damping" in effects or (AUTO in effects and "-material-damping" not in effects)
+    return loss_factor(case.bodies) if named else 0.0
+
+
+def with_modal_strikes(case: Case, outcome: Outcome, first: ModalResult) -> Outcome:
+    """Return the outcome of a first impact with the strikes after it that its scene asks for."""
+    if not first.finished:
+        because = Unknown(f"the first impact did not end: {first.reason}")
+        return replace(outcome, strikes=replace(outcome.strikes, each=because))
+    course = _ModalCourse.of(case, first)
+    finish = course.to_the_end()
+    told = TOLD.format(course.strikes, course.loss, WEAK, MOST), SMOOTH, *RULES
+    held = course.vibration, course.damped
+    return course.followed.outcome(outcome, course.state, finish, told, *held)
+
+
+@dataclass(eq=False)
+class _ModalCourse:
+    """Strikes by modes so far: the rod after the last of them, with its modes, and a record of each."""
+
+    case: Case
+    followed: Followed
+    result: ModalResult
+    state: State
+    q: Array
+    rate: Array
+    loss: float
+    strikes: int = 0
+    damped: float = 0.0
+
+    @classmethod
+    def of(cls, case: Case, first: ModalResult) -> _ModalCourse:
+        """Return the course after the first impact."""
+        followed = Followed.of(case)
+        seen = case.scene.relative
+        begin = followed.touching(seen.angle, seen.v_n, seen.v_t, seen.omega)
+        course = cls(case, followed, first, begin, first.last.q, first.last.rate, modal_loss(case))
+        course._enter(begin, first, 0.0)
+        return course
+
+    @property
+    def vibration(self) -> float:
+        """Energy of the modes, J."""
+        return _energy(self.result, self.q, self.rate)
+
+    def to_the_end(self) -> Finish:
+        """Follow the rod: hard strikes by modes, what lies between and after them as a rigid body."""
+        while self.followed.missing != 0 and self.strikes < MOST and self.result.finished:
+            touch = self._touch()
+            if touch is None or not self._hard(touch):
+                state, finish = self.followed.go_on(self.state, WEAK)
+                self._swing_on(state)
+                if finish is not Finish.STRONG:
+                    return finish
+                touch = state
+            self._strike(touch)
+        end, finish = self.followed.go_on(self.state)
+        self._swing_on(end)
+        return finish
+
+    def _hard(self, state: State) -> bool:
+        """Return whether modes compute a strike."""
+        k2, mass = self.followed.pull.k2, self.case.contact.body.mass
+        corner = self.followed.shape.corners[self.followed.shape.lowest(state.alpha, state.Omega)]
+        d_c = corner.arms(state.alpha)[0]
+        comes = min(0.0, state.V_n + d_c * state.Omega)
+        return 0.5 * mass * comes**2 / (1.0 + d_c**2 / k2) >= WEAK * self.followed.each[0].before
+
+    def _swing_on(self, state: State) -> None:
+        """Take over a later state of the rigid body; what the modes lose meanwhile is damping."""
+        held = self.vibration
+        self.q, self.rate = self._swung(state.time - self.state.time)
+        self.damped += held - self.vibration
+        self.state = state
+
+    def _strike(self, before: State) -> None:
+        """Strike at a later state in flight."""
+        self.followed.gravity += self.followed.work(self.state, before)
+        self._swing_on(before)
+        turn = before.alpha - self.case.scene.impact.angle
+        arrival = Arrival(before.V_n, before.V_t, before.Omega, turn, self.q, self.rate)
+        self._enter(before, closed(self.case, arrival=arrival), self.vibration)
+
+    def _touch(self) -> State | None:
+        """Return the rigid motion in which the vibrating rod touches next."""
+        pull, shape, rod = self.followed.pull, self.followed.shape, self.result.rod
+        swing = np.sqrt(self.q**2 + (self.rate / rod.omega) ** 2) if len(rod.omega) else np.zeros(0)
+        reach = max(
+            float(np.hypot(t, n) @ swing)
+            for t, n in zip(abs(rod.sites.along_t), abs(rod.sites.along_n), strict=True)
+        )
+        rigid = next_touch(shape, self.state, pull.g_n)
+        if rigid is None or reach == 0.0:
+            return None if rigid is None else self.state.flown(rigid[0], pull.g_n, pull.g_t)
+        early = next_touch(shape, self.state._replace(height=self.state.height - reach), pull.g_n)
+        start = 0.0 if early is None else early[0]
+        step = LOOK / float(rod.omega[-1])
+        low, opened = start, self._gap(start) > 0.0
+        for k in range(1, 2 + floor((rigid[0] - start) / step + reach / step)):
+            high = start + k * step
+            gap = self._gap(high)
+            if opened and gap <= 0.0:
+                dt = float(brentq(self._gap, low, high, xtol=1e-15))
+                return self.state.flown(dt, pull.g_n, pull.g_t)
+            low, opened = high, opened or gap > 0.0
+            if high > rigid[0] + step and not opened:
+                break
+        return self.state.flown(rigid[0], pull.g_n, pull.g_t)
+
+    def _gap(self, dt: float) -> float:
+        """Return the height, m, of what is lowest of the vibrating rod, ``dt``, s, from now."""
+        state = self.state.flown(dt, self.followed.pull.g_n, self.followed.pull.g_t)
+        turn = state.alpha - self.case.scene.impact.angle
+        return state.height + lowest_place(self.result.rod.sites, turn, self._swung(dt)[0])[1]
+
+    def _swung(self, dt: float) -> tuple[Array, Array]:
+        """Return amplitudes and rates of the modes ``dt``, s, from now: exact damped oscillators."""
+        omega = self.result.rod.omega
+        if not len(omega):
+            return self.q, self.rate
+        slow, free = 0.5 * self.loss * omega, omega * sqrt(1.0 - 0.25 * self.loss**2)
+        decay, c, s = np.exp(-slow * dt), np.cos(free * dt), np.sin(free * dt)
+        drive = (self.rate + slow * self.q) / free
+        q = decay * (c * self.q + s * drive)
+        return q, decay * (free * (c * drive - s * self.q)) - slow * q
+
+    def _enter(self, before: State, result: ModalResult, taken: float) -> None:
+        """Enter a strike, and go on from the state after it."""
+        case, last = self.case, result.last
+        corner = self.followed.shape.corners[self.followed.shape.lowest(before.alpha, before.Omega)]
+        d_c, d_d = corner.arms(before.alpha)
+        x, z = (
+            a + b
+            for a, b in zip(
+                corner.place(before.alpha), (case.contact.body.x_c, case.contact.body.z_c), strict=True
+            )
+        )
+        V_n, V_t, Omega = (float(v) for v in last.rigid[:3])
+        after = before._replace(
+            time=before.time + result.time,
+            along=before.along + float(last.rigid[AT.along]),
+            alpha=case.scene.impact.angle + float(last.rigid[AT.turn]),
+            V_n=V_n,
+            V_t=V_t,
+            Omega=Omega,
+        )
+        outline = self.followed.touching(after.alpha, V_n, V_t, Omega).height
+        after = after._replace(height=max(float(last.rigid[AT.height]), outline))
+        fell = self.followed.work(before, after._replace(height=float(last.rigid[AT.height])))
+        self.followed.gravity += fell
+        p, q = (float(one) for one in result.contacts[:, 2:].sum(axis=0))
+        comes = before.V_n + d_c * before.Omega
+        kinetic = [self.followed.kinetic(one) for one in (before, after)]
+        vibration = _energy(result, last.q, last.rate)
+        spent = result.friction + result.plastic + result.viscous
+        self.followed.each.append(
+            StrikeRecord(
+                time=before.time,
+                fidelity="modal",
+                part=part_of((x, z), 0.0, before.alpha, self.followed.shape, case.contact.body.length),
+                x=x,
+                z=z,
+                along=before.along - d_c + case.contact.arms[0],
+                alpha=before.alpha,
+                approach=-comes,
+                sliding=before.V_t - d_d * before.Omega,
+                v_n=before.V_n,
+                v_t=before.V_t,
+                omega=before.Omega,
+                V_n=V_n,
+                V_t=V_t,
+                Omega=Omega,
+                e=-(V_n + d_c * Omega) / comes,
+                mu=q / p,
+                impulse_n=p,
+                impulse_t=q,
+                force=result.force,
+                before=kinetic[0],
+                after=kinetic[1],
+                friction=result.friction,
+                plastic=result.plastic,
+                damping=result.viscous + self.damped,
+                vibration=vibration,
+                taken=taken,
+                other=kinetic[0] + taken + fell - kinetic[1] - vibration - spent,
+            )
+        )
+        self.result, self.state, self.q, self.rate = result, after, last.q, last.rate
+        self.strikes, self.damped = self.strikes + 1, 0.0
+
+
+def _energy(result: ModalResult, q: Array, rate: Array) -> float:
+    """Return the energy of modes of given amplitudes and rates, J."""
+    return float(0.5 * (rate**2 + (result.rod.omega * q) ** 2).sum())

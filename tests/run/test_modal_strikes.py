@@ -1,0 +1,104 @@
+"""Strikes of the reduced model one after the other."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from fem_impact.case.case import Case
+from fem_impact.outcome.limitation import texts
+from fem_impact.run.modal import closed
+from fem_impact.run.modal_strikes import _ModalCourse, modal_loss
+from fem_impact.run.simulate import simulate
+from fem_impact.scene.shipped import load, replace_all
+
+FLOOR = {"impact.slope": "0 deg", "impact.until": "rest"}
+ELASTIC = ["vibration", "barrier-elastic", "gravity"]
+
+
+@pytest.fixture(scope="module")
+def rattle():
+    return simulate(replace_all(load("quick"), FLOOR), "modal")
+
+
+def test_the_first_strike_is_the_first_impact(rattle):
+    first = rattle.strikes.each[0]
+    assert first.fidelity == "modal"
+    assert first.Omega == pytest.approx(rattle.motion.Omega, rel=1e-12)
+    assert first.friction == pytest.approx(rattle.energy.friction * rattle.energy.E_0, rel=1e-12)
+    assert first.force == rattle.contact.peak_force
+
+
+def test_hard_strikes_are_those_of_modes_and_weak_ones_of_a_rigid_body(rattle):
+    s = rattle.strikes
+    by = {kind: [one for one in s.each if one.fidelity == kind] for kind in ("modal", "rigid")}
+    assert len(by["modal"]) > 3
+    mass, k2 = rattle.motion.mass, rattle.motion.k_squared
+    # the effective mass of a strike is at least that of an end
+    least = 0.5 * mass / (1 + 0.045**2 / k2)
+    assert all(least * one.approach**2 < 1e-3 * rattle.energy.E_0 for one in by["rigid"])
+    assert s.end == "rests"
+    assert s.each[s.hardest_force - 1].force == max(one.force for one in by["modal"])
+
+
+def test_the_books_of_the_rattle_close(rattle):
+    s = rattle.strikes
+    assert abs(s.residual) < 1e-10
+    assert abs(s.other) < 3e-3 * rattle.energy.E_0  # dents that are left, and the ledgers of the strikes
+    told = " ".join(texts(rattle.validity.limitations, "model"))
+    assert "strikes are computed with modes" in told
+
+
+def test_without_losses_motion_and_vibration_keep_the_energy():
+    changes = FLOOR | {"effects": ELASTIC, "impact.until": "4 strikes", "impact.angle": "60 deg"}
+    scene = replace_all(load("quick"), changes | {"impact.v_n": "-1 m/s", "impact.v_t": "0 m/s"})
+    assert modal_loss(Case.of(scene, "modal")) == 0.0
+    s, E_0 = simulate(scene, "modal").strikes, 0.5
+    E_0 = s.each[0].before
+    assert [one.fidelity for one in s.each] == ["modal"] * 4
+    assert s.friction == s.plastic == 0.0
+    assert abs(s.damping) < 1e-12 * E_0
+    assert E_0 + s.gravity == pytest.approx(s.left, rel=1e-4)
+    assert max(one.taken for one in s.each) > 1e-3 * E_0  # a strike meets the vibration of the one before
+
+
+def test_a_strike_may_take_vibration_back_into_motion():
+    gained = []
+    for angle in range(50, 80, 5):
+        changes = FLOOR | {"effects": ELASTIC, "impact.until": "4 strikes", "impact.angle": f"{angle} deg"}
+        scene = replace_all(load("quick"), changes | {"impact.v_n": "-1 m/s", "impact.v_t": "0 m/s"})
+        each = simulate(scene, "modal").strikes.each
+        gained += [one.taken - one.vibration for one in each]
+    assert max(gained) > 0.0
+
+
+def test_modes_in_flight_are_damped_oscillators():
+    scene = replace_all(load("quick"), FLOOR)
+    case = Case.of(scene, "modal")
+    course = _ModalCourse.of(case, closed(case))
+    omega, eta, dt = course.result.rod.omega, course.loss, 3e-4
+    q, rate = course._swung(dt)
+    for k in (0, len(omega) - 1):
+        exact = solve_ivp(
+            lambda t, y, w=omega[k]: [y[1], -eta * w * y[1] - w**2 * y[0]],
+            (0.0, dt),
+            [course.q[k], course.rate[k]],
+            rtol=1e-11,
+            atol=1e-20,
+        ).y[:, -1]
+        size = math.hypot(course.q[k], course.rate[k] / omega[k])
+        assert q[k] == pytest.approx(exact[0], abs=1e-7 * size)
+        assert rate[k] == pytest.approx(exact[1], abs=1e-7 * size * omega[k])
+
+
+def test_a_vibrating_rod_touches_where_its_lowest_place_meets_the_barrier():
+    changes = FLOOR | {"impact.angle": "60 deg"}
+    case = Case.of(replace_all(load("t4"), changes), "modal")
+    course = _ModalCourse.of(case, closed(case))
+    state = course._touch()
+    dt = state.time - course.state.time
+    assert course._gap(dt) == pytest.approx(0.0, abs=1e-10)
+    # and not before: looked at ten times as closely
+    look = np.arange(dt - 1e-4, dt - 1e-8, 2e-8)
+    assert min(course._gap(float(t)) for t in look) > -1e-9
