@@ -161,7 +161,10 @@ def coverage(errors: pandas.DataFrame, by: list[str]) -> pandas.DataFrame:
 
 
 def ends(scenes: Iterable[DrawnScene], results: Results, model: str) -> pandas.DataFrame:
-    """Return how the runs of a model ended, a row a scene: ``end``, ``reason``, ``cpu_s``."""
+    """Return how the runs of a model ended, a row a scene: ``end``, ``reason``, ``cpu_s``, and ``bare``.
+
+    Bare is a run with numbers that tells no error of e.
+    """
     import pandas
 
     rows = []
@@ -177,9 +180,14 @@ def ends(scenes: Iterable[DrawnScene], results: Results, model: str) -> pandas.D
                 "end": result.end,
                 "reason": " ".join(result.why.strip().splitlines()[-1:]),
                 "cpu_s": result.cpu_s,
+                "bare": result.has_numbers and _bare(result.outcome),
             }
         )
-    return pandas.DataFrame(rows, columns=["scene", "family", "barrier", "end", "reason", "cpu_s"])
+    return pandas.DataFrame(rows, columns=["scene", "family", "barrier", "end", "reason", "cpu_s", "bare"])
+
+
+def _bare(outcome: Outcome | None) -> bool:
+    return outcome is not None and outcome.estimate(KEYS["e"])[1] is None
 
 
 def times(scenes: Iterable[DrawnScene], results: Results) -> pandas.DataFrame:

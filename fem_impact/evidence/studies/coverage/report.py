@@ -48,6 +48,7 @@ HEAD = (
     Column("error", "median error", digits=2),
     Column("needed", f"factor for {AIM:.0%}", digits=2),
 )
+NUMBERS = ("finished", "strikes again")  # ends of runs that gave numbers
 LONGEST = 160  # letters of a reason
 
 
@@ -118,7 +119,8 @@ def _times(table: pandas.DataFrame) -> list[str]:
 def _ended(table: pandas.DataFrame) -> str:
     counts = table["end"].value_counts()
     parts = ", ".join(f"{count} {end}" for end, count in counts.items())
-    return f"Of {len(table)} default runs: {parts}."
+    bare, numbers = int(table["bare"].sum()), int(table["end"].isin(NUMBERS).sum())
+    return f"Of {len(table)} default runs: {parts}. Of the {numbers} with numbers {bare} tell no error of e."
 
 
 def _reduced(table: pandas.DataFrame) -> list[str]:
@@ -149,7 +151,7 @@ def _ends(table: pandas.DataFrame) -> Sheet:
 
 def _reasons(table: pandas.DataFrame) -> Sheet:
     """Return the reason of each default run that gave no numbers."""
-    without = table[~table["end"].isin(["finished", "strikes again"])]
+    without = table[~table["end"].isin(NUMBERS)]
     rows = [(row.scene, row.end, row.reason[:LONGEST]) for row in without.itertuples()]
     table = Table.of(("scene", "end", "reason"), rows, left=(0, 1, 2))
     return Sheet("reasons", "Default runs without numbers", table)
