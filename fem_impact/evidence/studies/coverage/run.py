@@ -37,7 +37,7 @@ PLANNED: Mapping[str, float] = {DEFAULT: 20.0, FINER: 50.0, FINEST: 100.0, MODAL
 """Processor time, s, that a run of each model is expected to take."""
 MOST: Mapping[str, float] = {DEFAULT: 60.0, FINER: 90.0, FINEST: 180.0, MODAL: 60.0}
 """Processor time, s, after which a run of each model is broken off: it is too dear for the study."""
-NEXT: Mapping[str, tuple[str, float]] = {FINER: (DEFAULT, 15.0), FINEST: (FINER, 10.0)}
+NEXT: Mapping[str, tuple[str, float]] = {FINER: (DEFAULT, 11.0), FINEST: (FINER, 10.0)}
 """After which run a finer one follows, and the processor time, s, that this may have taken at most."""
 ENGINE = ("answers/refine", "answers/wanted_error.py")
 """Sources that run the levels; `source_digest` holds those of each level."""
