@@ -101,6 +101,18 @@ def test_the_scenes_can_be_read_and_their_bodies_made(tmp_path):
         assert scene.id == drawn_scene.name and scene.projectile.body().mass > 0
 
 
+def test_each_family_is_what_its_name_says():
+    stated = {scene.family: scene for scene in drawn(1, 0)}
+    tables = {family: scene.tables["projectile"] for family, scene in stated.items()}
+    assert {family for family, table in tables.items() if "bore" in table} >= {"tube"}
+    assert {tables[family].get("tip") for family in ("sharp edge", "flat pin", "disc, ring")} == {"plain"}
+    assert (tables["rounded edge"]["tip"], tables["round nose"]["tip"]) == ("B", "A")
+    assert {family for family, table in tables.items() if "profile" in table} == {"stepped", "tapered"}
+    assert stated["own mesh"].body in BODIES and "mesh" in tables["own mesh"]
+    disc = [float(tables["disc, ring"][key].split()[0]) for key in ("length", "diameter")]
+    assert disc[0] < 0.36 * disc[1]
+
+
 # area of half a section over width squared: square, hexagon over its corners, square over its diagonal
 AREAS = {"square bar": 1 / 2, "hexagonal bar": 3 * 3**0.5 / 16, "corner bar": 1 / 4, "bent bar": 1 / 2}
 
@@ -204,7 +216,10 @@ def test_shares_have_wilson_intervals_and_the_factor_that_is_needed():
 
 
 def test_the_error_of_the_reduced_model_is_read_from_what_it_tells():
-    text = "nine tenths stay below: e 0.027 and 0.072, mu 1e-2 and 3e-2, E_vib 0.002 and 0.016 of E_0."
+    text = (
+        "nine tenths stay below, of scene 1 and 2: "
+        "e 0.027 and 0.072, mu 1e-2 and 3e-2, E_vib 0.002 and 0.016 of E_0."
+    )
     modal = outcome_maker.outcome(
         mesh_limit=None, mesh_band=None, limitations=[{"kind": "model", "text": text}], mu=0.3, e_edge=0.5
     )
