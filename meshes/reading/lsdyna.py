@@ -1,13 +1,13 @@
 """Keyword files of LS-DYNA: nodes, solid elements, parts."""
 
 from collections.abc import Iterator
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 
 from meshes.errors import MeshError
 from meshes.reading.includes import full_text
+from meshes.reading.sections import fixed_fields, sections
 from meshes.reading.stored import Elements, StoredMesh, number_of, whole_number
 
 __all__ = ["lsdyna"]
@@ -65,32 +65,21 @@ def lsdyna(path: Path) -> StoredMesh:
 
 
 def _keywords(text: str) -> Iterator[tuple[str, bool, list[str]]]:
-    """Yield each keyword, whether its fields are long, and its lines."""
-    name, long, every, lines = "", False, False, list[str]()
-    for line in text.splitlines():
-        if line.startswith("$") or not line.strip():
-            continue
-        if not line.startswith("*"):
-            lines.append(line.rstrip())
-            continue
-        if name:
-            yield name, long, lines
-        name, lines = line[1:].strip().upper(), []
-        if name.startswith("KEYWORD"):
-            every = "LONG=Y" in name.replace(" ", "")
-        long = (every or name.endswith("+")) and not name.endswith("-")
-        name = name.rstrip("+-% ").strip()
+    """Yield each keyword up to *END, whether its fields are long, and its lines."""
+    every = False
+    for head, lines in sections(text, "*", "$"):
+        if head.startswith("KEYWORD"):
+            every = "LONG=Y" in head.replace(" ", "")
+        long = (every or head.endswith("+")) and not head.endswith("-")
+        name = head.rstrip("+-% ").strip()
         if name == "END":
-            break
-    yield name, long, lines
+            return
+        yield name, long, lines
 
 
 def _split(line: str, widths: list[int]) -> list[str]:
     """Return the fields of a line: between commas, or of fixed widths."""
-    if "," in line:
-        return [part.strip() for part in line.split(",")]
-    ends = np.cumsum([0, *widths])
-    return [line[low:high].strip() for low, high in pairwise(ends)]
+    return [part.strip() for part in line.split(",")] if "," in line else fixed_fields(line, widths)
 
 
 def _solids(name: str, lines: list[str], width: int) -> Iterator[tuple[int, list[int]]]:

@@ -1,13 +1,13 @@
 """Starter files of Radioss: nodes and solid elements by part."""
 
 from collections.abc import Iterator
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 
 from meshes.errors import MeshError
 from meshes.reading.includes import full_text
+from meshes.reading.sections import fixed_fields, sections
 from meshes.reading.stored import Elements, StoredMesh, number_of, whole_number
 
 __all__ = ["radioss"]
@@ -37,7 +37,7 @@ def radioss(path: Path) -> StoredMesh:
     titles: dict[str, str] = {}
     solids: list[tuple[str, list[int]]] = []
     found = Elements()
-    for name, lines in _blocks(full_text(path, "radioss")):
+    for name, lines in sections(full_text(path, "radioss"), "/", "#"):
         for start, problem in REFUSED.items():
             if name.removeprefix("/").startswith(start):
                 raise MeshError(problem.format(name))
@@ -62,29 +62,10 @@ def radioss(path: Path) -> StoredMesh:
     return found.stored(np.array(points, dtype=np.float64).reshape(-1, 3))
 
 
-def _blocks(text: str) -> Iterator[tuple[str, list[str]]]:
-    """Yield each keyword, without its leading stroke, with its lines."""
-    name, lines = "", list[str]()
-    for line in text.splitlines():
-        if line.startswith("#") or not line.strip():
-            continue
-        if not line.startswith("/"):
-            lines.append(line.rstrip())
-            continue
-        if name:
-            yield name, lines
-        name, lines = line.strip()[1:].upper(), []
-    if name:
-        yield name, lines
-
-
 def _split(line: str, widths: list[int]) -> list[str]:
     """Return the fields of a line: of fixed widths, or between spaces where they are shorter than these."""
     parts = line.split()
-    if len(parts) >= len(widths) or len(line) <= widths[0]:
-        return parts
-    ends = np.cumsum([0, *widths])
-    return [line[low:high].strip() for low, high in pairwise(ends)]
+    return parts if len(parts) >= len(widths) or len(line) <= widths[0] else fixed_fields(line, widths)
 
 
 def _solids(kind: str, lines: list[str]) -> Iterator[list[int]]:
