@@ -15,7 +15,9 @@ Tree = dict[str, Any]
 Try = tuple[str, Tree, str]
 FIDELITY = re.compile(r"--fidelity (rigid|modal|solid)(?: or (modal|solid))?")
 ADDED = re.compile(r'[Aa]dd "(-?[a-z-]+)" to effects')
-EXAMPLE = re.compile(r'([a-z_]+ = (?:\{.*?\}|\[\[.*?\]\]|"[^"]*"|[\d.]+))')
+PLAIN = r"-?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
+EXAMPLE = re.compile(rf'((?<![.a-z_])[a-z_]+ = (?:\{{.*?\}}|\[\[.*?\]\]|"[^"]*"|{PLAIN}\b))')
+DOTTED = re.compile(rf'([a-z_]+\.[a-z_]+) = "?({PLAIN}(?: [a-z]+)?)"? or')
 ELASTIC = {"E": "30 GPa", "nu": 0.2, "rho": "2300 kg/m3"}
 VALUES: Tree = {
     "tangent_modulus": "1 MPa",
@@ -62,6 +64,8 @@ def followed(tree: Tree, fidelity: str, refusal: StatementError) -> Iterator[Try
         yield effect, changed(tree, "effects", [*tree.get("effects", ["auto"]), effect]), fidelity
     for example in EXAMPLE.findall(re.sub(LIST, "", said)) if "[" not in key else ():
         yield example, _put(tree, key, tomllib.loads(example)), fidelity
+    for place, value in DOTTED.findall(said):
+        yield f"{place} = {value}", changed(tree, place, value if " " in value else int(value)), fidelity
     yield from ((did, new, fidelity) for did, new in _stated(tree, key, refusal))
 
 
