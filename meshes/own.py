@@ -118,7 +118,8 @@ def read_own(path: str | Path, unit: float = 1.0, stated: Stated | None = None) 
     ignored = (f"left out: {', '.join(stored.ignored)}",) if stored.ignored else ()
     sets = {name: np.isin(body[1], cells) for name, cells in stored.sets.items()}
     present = {name: here for name, here in sets.items() if here.any()}
-    return replace(body[0], sets=present, told=(*ignored, *stood, *cut, *made.told, *body[0].told))
+    last = body[0].told[1:] if cut else body[0].told  # what was cut here is no half in the file
+    return replace(body[0], sets=present, told=(*ignored, *stood, *cut, *made.told, *last))
 
 
 def own_body(points: FloatArray, cells: IntArray, stated: Stated | None = None) -> OwnBody:
@@ -206,7 +207,11 @@ def _halved(
         turned = turned - np.array([0.0, 0.5 * (y.min() + y.max()), 0.0])
     cut = int(across(turned, cells, near).sum())
     places, made, of = halved_tetrahedra(turned, cells, near)
-    told = f"{cut} of {len(cells)} tetrahedra lie across the plane y = 0 and are cut there"
+    told = (
+        f"{cut} of {len(cells)} tetrahedra lie across the plane y = 0 and are cut there"
+        if cut
+        else f"half of {len(cells)} tetrahedra is taken: all of the body is there, with faces on y = 0"
+    )
     return places, tuple(made.items()), own[np.concatenate([of["tetra"], of["wedge"]])], (told,)
 
 
