@@ -23,6 +23,7 @@ from fem_impact.outcome.keys import Num, Unknown, or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.outcome.shares import ABOVE, ADDED, EnergyShare, above_modes, shares
 from fem_impact.progress import clock_text
+from fem_impact.scene.impact import FIRST
 from fem_impact.scene.types import OWN, Scene
 from fem_impact.scene.write import digest
 from fem_impact.tables.table import Table
@@ -113,7 +114,10 @@ def run(options: Options) -> int:
         sys.stdout.write(outcome.to_json().rstrip("\n") + "\n")
     else:
         print_outcome(outcome, out, own_tests=(scene.measured or "").endswith(OWN))
-        _say_strikes(outcome, options)
+        if scene.impact.until != FIRST:
+            from fem_impact.cli.strikes import print_strikes
+
+            print_strikes(outcome, options)
         _say_comparison(scene, outcome, options)
         _say_screening(case, options)
     if outcome.validity.finished:
@@ -121,15 +125,6 @@ def run(options: Options) -> int:
     cause = outcome.validity.stopped_because
     sys.stderr.write(f"fem-impact: error: the run stopped early: {cause} Results: {out}\n")
     return RunError.exit_code
-
-
-def _say_strikes(outcome: Outcome, options: Options) -> None:
-    """Print the strikes of a body that is followed beyond its first impact."""
-    from fem_impact.cli.strikes import print_strikes, strike_lines
-
-    if lines := strike_lines(outcome):
-        sys.stdout.write("\n".join(lines) + "\n")
-        print_strikes(outcome, options)
 
 
 def _say_comparison(scene: Scene, outcome: Outcome, options: Options) -> None:

@@ -176,7 +176,10 @@ def _layout(panel: Panel) -> dict[str, Any]:
         "barmode": "stack",
         "hovermode": "x unified" if _curves(panel) else "closest",
         "xaxis": _axis(panel.x, panel.x_range, panel) | _names("x", panel) | _decades("x", panel),
-        "yaxis": _axis(panel.y, panel.y_range, panel) | _names("y", panel) | _decades("y", panel),
+        "yaxis": _axis(panel.y, panel.y_range, panel)
+        | _names("y", panel)
+        | _decades("y", panel)
+        | ({"scaleanchor": "x"} if panel.equal else {}),
         "shapes": shapes + [_rectangle(part.start, part.end) for part in panel.intervals],
         "annotations": [
             *(

@@ -113,6 +113,8 @@ class Panel:
         Ends of the axes; those of the data where None.
     logarithmic : bool
         Whether both axes are.
+    equal : bool
+        Whether a length is as long along both axes.
     """
 
     title: str
@@ -128,6 +130,7 @@ class Panel:
     x_range: tuple[float, float] | None = None
     y_range: tuple[float, float] | None = None
     logarithmic: bool = False
+    equal: bool = False
 
     @property
     def informative(self) -> bool:

@@ -154,6 +154,8 @@ def _axes(axes: Axes, panel: Panel) -> None:
         axes.margins(x=0.22 if any(series.texts for series in panel.series) else 0.05)
     if panel.logarithmic:
         _logarithmic(axes)
+    if panel.equal:
+        axes.set_aspect("equal", adjustable="datalim")
     if panel.x_range:
         axes.set_xlim(panel.x_range)
     if panel.y_range:

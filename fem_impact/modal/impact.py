@@ -189,11 +189,13 @@ def solve(
     recorded: bool = False,
     step: float = 1.0,
     arrival: Arrival | None = None,
+    ahead: float | None = None,
 ) -> ModalResult:
     """Compute an impact; the modes of a new rod are computed first, and a first run says that it compiles.
 
     Where it is ``recorded``, the result holds what moved over time. ``step`` is the time step over the usual.
-    The rod comes as its scene says, or as its ``arrival`` does, on a surface that nothing has touched.
+    The rod comes as its scene says, or as its ``arrival`` does, on a surface that nothing has touched. The
+    impact is over where nothing would touch in a free flight of ``ahead``, s; None: see `horizon`.
     """
     if progress is not None:
         progress(setting_up(case.max_time, case.scene.id))
@@ -208,7 +210,7 @@ def solve(
         rate = give_law(case, rod, course.now, course.held, rod.first, E_0, slowest)
     dt = step * min(case.estimate.duration / STEPS, FASTEST / max([*rod.omega, rate]))
     latest = case.max_time if case.scene.accuracy.max_time else LATER * case.max_time
-    bounds = Bounds(dt, horizon(case.scene.projectile), latest)
+    bounds = Bounds(dt, horizon(case.scene.projectile) if ahead is None else ahead, latest)
     # compiles, or fetches what was compiled before, so that times are times of the impact
     course.follow(start, modes, rod.sites, bounds._replace(horizon=0.0))
     wall, cpu = time.perf_counter(), time.process_time()

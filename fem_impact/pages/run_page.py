@@ -6,6 +6,7 @@ import json
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from html import escape
+from math import cos, sin
 from pathlib import Path
 from typing import Any
 
@@ -17,21 +18,25 @@ from fem_impact.case.case import Case
 from fem_impact.errors import ResultError, RunError, SceneError, UsageError
 from fem_impact.figures.runs import partition_picture
 from fem_impact.figures.still import draw
+from fem_impact.figures.strikes import accounts_picture, path_picture
 from fem_impact.figures.style import percent
 from fem_impact.files.atomic import make_directory, read_text, write_text
 from fem_impact.files.digests import signed
 from fem_impact.outcome.keys import Key, Unknown, or_none
 from fem_impact.outcome.record import KEY_TABLE, KEYS, Outcome
+from fem_impact.outcome.strike_text import strikes_table, told
 from fem_impact.pages import html, sections
 from fem_impact.pages.html import Markup
 from fem_impact.physics.flash import ASSUMPTIONS
 from fem_impact.run.simulate import simulate
+from fem_impact.run.strikes import gravity_of
 from fem_impact.scene.inputs import inputs
 from fem_impact.scene.read import read_toml
 from fem_impact.scene.types import Scene
 from fem_impact.scene.write import to_toml
 from fem_impact.tables.table import Cell, Table, number
 from fem_impact.tables.text import markup
+from rigid.strikes import outline
 
 SIGNATURES = "Assessed by, date: ______________________    Checked by, date: ______________________"
 
@@ -139,6 +144,7 @@ def run_page(folder: Path) -> str:
         sections.beside_tests(outcome, scene, folder),
         html.section(f"Where the energy went{stop}", shares, _folded(outcome, "shares", ENERGY, rigid)),
         html.section("Motion", _folded(outcome, "velocities and impulse ratios", MOTION, rigid)),
+        _strikes(outcome, scene, folder),
         sections.waves_section(folder),
         sections.history_figures(outcome, folder),
         html.section(
@@ -157,6 +163,23 @@ def run_page(folder: Path) -> str:
     )
     origin = outcome.provenance
     return html.page(origin.scene_title, f"Run · {origin.scene_id}", _lead(outcome), _footer(outcome), body)
+
+
+def _strikes(outcome: Outcome, scene: Scene | None, folder: Path) -> Markup:
+    """Return the strikes of a body that is followed beyond its first impact, nothing of another run."""
+    each = or_none(outcome.strikes.each)
+    if not each or scene is None:
+        return Markup("")
+    g, vertical = gravity_of(scene), scene.impact.vertical
+    shape, pull = outline(scene.projectile.rigid_body), (g * cos(vertical), g * sin(vertical))
+    figures = make_directory(folder / "figures")
+    return html.section(
+        "From the first strike to rest",
+        html.paragraph(" ".join(told(outcome.strikes))),
+        html.figure(path_picture(each, shape, pull), figures),
+        html.figure(accounts_picture(each), figures),
+        html.details("Each strike", html.table(strikes_table(each))),
+    )
 
 
 def _stated(folder: Path) -> Scene | None:

@@ -18,20 +18,21 @@ from fem_impact.modal.sites import lowest_place
 from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.strikes import StrikeRecord
 from fem_impact.run.modal import closed
-from fem_impact.run.strikes import RULES, Followed, part_of
+from fem_impact.run.strikes import LEAST_BY_LAW, RULES, Followed, part_of
 from rigid.strikes import Finish, State, next_touch
 
 if TYPE_CHECKING:
     from fem_impact.case.case import Case
     from fem_impact.outcome.record import Outcome
 
-WEAK, MOST = 1e-3, 40
-"""Least energy along the normal, over E_0, of a strike that modes compute, and the most of them."""
+MOST = 40
+"""Strikes that modes compute at most."""
 LOOK = 0.5  # rad of the fastest mode between looks at a rod that nearly touches
 TOLD = (
-    "{} strikes are computed with modes, each on a surface that nothing has dented; in flight the modes "
-    "swing on, damped by the loss factor {:g}. Strikes that bring less than {:g} of E_0 along their normal, "
-    "and all after {} by modes, are those of a rigid body; the modes do not feel them."
+    "{} strikes are computed with modes, each on a surface that nothing has dented; what touches again "
+    "within a bending period belongs to the strike before. In flight the modes swing on, damped by the loss "
+    "factor {:g}. Strikes after {} by modes are those of a rigid body, and so are weak ones; the modes do "
+    "not feel them."
 )
 SMOOTH = "A rod that leaves its dent is taken to leave the surface beside it."
 
@@ -48,9 +49,9 @@ def with_modal_strikes(case: Case, outcome: Outcome, first: ModalResult) -> Outc
     if not first.finished:
         because = Unknown(f"the first impact did not end: {first.reason}")
         return replace(outcome, strikes=replace(outcome.strikes, each=because))
-    course = _ModalCourse.of(case, first)
+    course = _ModalCourse.of(case)
     finish = course.to_the_end()
-    told = TOLD.format(course.strikes, course.loss, WEAK, MOST), SMOOTH, *RULES
+    told = TOLD.format(course.strikes, course.loss, MOST), SMOOTH, *RULES
     held = course.vibration, course.damped
     return course.followed.outcome(outcome, course.state, finish, told, *held)
 
@@ -70,8 +71,12 @@ class _ModalCourse:
     damped: float = 0.0
 
     @classmethod
-    def of(cls, case: Case, first: ModalResult) -> _ModalCourse:
-        """Return the course after the first impact."""
+    def of(cls, case: Case) -> _ModalCourse:
+        """Return the course after the first strike.
+
+        It ends sooner than a first impact that stands by itself, which counts what touches much later to it.
+        """
+        first = closed(case, ahead=case.bodies.bending_period)
         followed = Followed.of(case)
         seen = case.scene.relative
         begin = followed.touching(seen.angle, seen.v_n, seen.v_t, seen.omega)
@@ -89,7 +94,7 @@ class _ModalCourse:
         while self.followed.missing != 0 and self.strikes < MOST and self.result.finished:
             touch = self._touch()
             if touch is None or not self._hard(touch):
-                state, finish = self.followed.go_on(self.state, WEAK)
+                state, finish = self.followed.go_on(self.state, LEAST_BY_LAW)
                 self._swing_on(state)
                 if finish is not Finish.STRONG:
                     return finish
@@ -105,7 +110,7 @@ class _ModalCourse:
         corner = self.followed.shape.corners[self.followed.shape.lowest(state.alpha, state.Omega)]
         d_c = corner.arms(state.alpha)[0]
         comes = min(0.0, state.V_n + d_c * state.Omega)
-        return 0.5 * mass * comes**2 / (1.0 + d_c**2 / k2) >= WEAK * self.followed.each[0].before
+        return 0.5 * mass * comes**2 / (1.0 + d_c**2 / k2) >= LEAST_BY_LAW * self.followed.each[0].before
 
     def _swing_on(self, state: State) -> None:
         """Take over a later state of the rigid body; what the modes lose meanwhile is damping."""
@@ -120,7 +125,8 @@ class _ModalCourse:
         self._swing_on(before)
         turn = before.alpha - self.case.scene.impact.angle
         arrival = Arrival(before.V_n, before.V_t, before.Omega, turn, self.q, self.rate)
-        self._enter(before, closed(self.case, arrival=arrival), self.vibration)
+        ahead = self.case.bodies.bending_period
+        self._enter(before, closed(self.case, arrival=arrival, ahead=ahead), self.vibration)
 
     def _touch(self) -> State | None:
         """Return the rigid motion in which the vibrating rod touches next."""

@@ -45,10 +45,12 @@ FINISHED = {
     Finish.TUMBLES: "It tumbles down the slope faster and faster.",
     Finish.JAMS: "Friction drives it into the barrier as it slides, which rigid theory does not follow.",
 }
+LEAST_BY_LAW = 1e-3
+"""As `LEAST` where restitutions follow from the contact law, which knows no loss of slow strikes."""
 RULES = (
     "A strike that brings less than "
-    f"{LEAST:g} of E_0 along its normal does not rebound: its contact is held, and the body pivots, rolls or "
-    "slides on it.",
+    f"{LEAST_BY_LAW:g} of E_0 along its normal ({LEAST:g} with a stated restitution) does not rebound: its "
+    "contact is held, and the body pivots, rolls or slides on it.",
     "Two feet at one instant strike one after the other, the one that comes down first; a face or side that "
     "comes down level and without spin strikes in its middle.",
 )
@@ -135,6 +137,7 @@ class Followed:
             self.pull,
             self._restitution,
             until=self.missing,
+            least=LEAST_BY_LAW if self.case.scene.restitution is None else LEAST,
             energy=self.each[0].before / mass if self.each else None,
             strong=strong,
         )
