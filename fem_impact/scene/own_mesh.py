@@ -170,7 +170,8 @@ def cell_regions(mesh: OwnMesh, names: tuple[str, ...], key: str = "mesh_materia
     for number, name in enumerate(names, 1):
         if name.upper() not in sets:
             known = ", ".join(sorted(mesh.body().sets)[:12]) or "none"
-            remedy = f"It has {known}."
+            faces = "A set of cells is meant, with their outer faces. " if key == "mesh_surfaces" else ""
+            remedy = f"{faces}It has {known}."
             raise SceneError("is no set of cells of the mesh.", key=f"{key}.{name}", remedy=remedy)
         here = sets[name.upper()]
         if region[here].any():
