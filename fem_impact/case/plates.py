@@ -110,8 +110,8 @@ def require_plate(bodies: Bodies, meshed_through: bool) -> None:
         )
     if barrier.span is not None and barrier.span < (least := least_span(bodies.contact)):
         raise SceneError(
-            f"is so short that bending waves are back within {contact_time(bodies.contact) * 1e6:.3g} us, before "
-            f"the contact ends: the plate gives way, a massive barrier is touched for "
+            f"is so short that bending waves are back within {contact_time(bodies.contact) * 1e6:.3g} us, "
+            "before the contact ends: the plate gives way, a massive barrier is touched for "
             f"{estimate.duration * 1e6:.3g} us.",
             key="barrier.span",
             value=f"{barrier.span * 1e3:.3g} mm",
