@@ -178,9 +178,9 @@ def require_point(bodies: Bodies, fidelity: str) -> None:
     """Refuse a straight part that comes down flat where one point of the tip is followed (SceneError).
 
     Rigid theory follows the middle of it where the scene states its restitution; finite elements on one mesh
-    hold a face that lands upright, and on levels of meshes any part.
+    hold a face that lands upright, and on levels of meshes any part, as the reduced model does.
     """
-    if fidelity == "rigid" and bodies.scene.restitution is not None:
+    if fidelity == "modal" or (fidelity == "rigid" and bodies.scene.restitution is not None):
         return
     body = bodies.body
     if isinstance(body, Faceted):
@@ -291,7 +291,6 @@ def not_reduced(bodies: Bodies) -> str:
     obstacles = {
         "a projectile with a mesh of its own": bodies.rod.own_mesh,
         "a barrier of layers": bodies.barrier.layers,
-        flat_part(bodies): bodies.contact.lands_flat,
         "a plate thinner than its contact is wide": is_wider(bodies),
     }
     return next((what for what, holds in obstacles.items() if holds), "")

@@ -14,6 +14,7 @@ from fem_impact.arrays import Array
 from fem_impact.case.case import Case
 from fem_impact.fem.kernels import compiled_before
 from fem_impact.modal.groove import WORK
+from fem_impact.modal.landing import height_of
 from fem_impact.modal.laws import give_law, set_law, start_of
 from fem_impact.modal.march import march
 from fem_impact.modal.motion import (
@@ -23,6 +24,7 @@ from fem_impact.modal.motion import (
     MOST_ROWS,
     OVER,
     ROW,
+    SITE,
     SUM,
     Bounds,
     ModalState,
@@ -43,6 +45,7 @@ from fem_impact.progress import Progress, compiling, setting_up
 
 STEPS = 1000  # over the estimated contact
 COMPILE = 6  # s, about, once
+LEVEL = 1e-10  # m, above what is lowest, within which a site touches at once
 LATER = 20  # of the latest time of finite elements, over which a contact of the reduced model may last
 FASTEST = 0.1  # of a step, rad of the highest mode and of the struck point on its contact
 
@@ -206,8 +209,9 @@ def solve(
     course = Course.of(len(rod.sites.along_t), _arriving(case, rod, arrival), MOST_ROWS if recorded else 0)
     E_0 = _kinetic(rod, *course.now.rigid[:3]) + float(_energies(rod, course.now).sum())
     slowest, rate = _approach(rod, course.now), 0.0
-    if rod.first >= 0 and arrival is None:
-        rate = give_law(case, rod, course.now, course.held, rod.first, E_0, slowest)
+    for s in _touching(rod, course.now):
+        if not course.held.site[s, SITE.known]:
+            rate = hypot(rate, give_law(case, rod, course.now, course.held, s, E_0, slowest, arrival is None))
     dt = step * min(case.estimate.duration / STEPS, FASTEST / max([*rod.omega, rate]))
     latest = case.max_time if case.scene.accuracy.max_time else LATER * case.max_time
     bounds = Bounds(dt, horizon(case.scene.projectile) if ahead is None else ahead, latest)
@@ -233,6 +237,12 @@ def _arriving(case: Case, rod: ModalRod, arrival: Arrival | None) -> ModalState:
     rigid[AT.height] = -low_n
     rigid[AT.away_n], rigid[AT.away_t] = (struck.centre_depth or 0.0) - low_n, -low_t - struck.centre_offset
     return ModalState(rigid, q, rate)
+
+
+def _touching(rod: ModalRod, now: ModalState) -> list[int]:
+    """Return the sites that touch as a strike begins: those that are lowest."""
+    height = float(now.rigid[AT.height])
+    return [s for s in range(len(rod.sites.along_t)) if height + height_of(rod, now, s) < LEVEL]
 
 
 def _approach(rod: ModalRod, now: ModalState) -> float:
@@ -280,7 +290,8 @@ def _result(
         energies=energies,
         friction=friction,
         plastic=plastic,
-        skin=friction + float(course.held.works[:, WORK.shear].sum()),
+        skin=friction
+        + float(course.held.works[:, WORK.shear].sum() + course.held.flats.works[:, WORK.shear].sum()),
         viscous=viscous,
         stored=held_n + held_t,
         plate=tally[SUM.plate],

@@ -11,6 +11,7 @@ from fem_impact.case.case import Case
 from fem_impact.modal.groove import ACROSS
 from fem_impact.modal.groove import AT as IN_GROOVE
 from fem_impact.modal.hertz import springs_over
+from fem_impact.modal.landing import height_of, in_body, lay_flat
 from fem_impact.modal.motion import AT, SITE, ModalState, Sites, Start, Touched
 from fem_impact.modal.rod import ModalRod
 from fem_impact.modal.sites import lowest, settle, skin
@@ -21,6 +22,7 @@ from fem_impact.scene.material import Material
 from rigid import Faceted
 
 BESIDE = 1e-4  # rad, that a law is at least away from the ends of its site's range of normals
+STEADIER = 30.0  # times as many steps where a whole row of cells touches and leaves at once
 SLOWEST = 0.25  # of the first approach, at which a site that touches later counts as coming at least
 
 
@@ -62,20 +64,38 @@ def pair_at(case: Case, rod: ModalRod, now: ModalState, s: int, slowest: float) 
 
 
 def give_law(
-    case: Case, rod: ModalRod, now: ModalState, held: Touched, s: int, energy: float, approach: float
+    case: Case,
+    rod: ModalRod,
+    now: ModalState,
+    held: Touched,
+    s: int,
+    energy: float,
+    approach: float,
+    begins: bool = False,
 ) -> float:
     """Give a site its law as it touches, and return how fast it may swing, rad/s, see `contact_rate`.
 
-    ``energy``, J, is the most that its contact can take up; ``approach``, m/s, is that of the first touch.
+    A straight part that lands flat gets one law with the site at its other end. ``energy``, J, is the most
+    that a contact can take up; ``approach``, m/s, is that of the first touch; ``begins`` says whether the
+    impact of the scene begins.
     """
-    begun = s == rod.first and now.rigid[AT.turn] == 0.0
+    rigid, row = now.rigid, held.site[s]
+    begun = s == rod.first and begins
     pair = case.contact if begun else pair_at(case, rod, now, s, SLOWEST * approach)
+    # it is found touching up to a step late: the surface under it is lowered by so much
+    row[SITE.sunk_n] -= max(0.0, row[SITE.sunk_n] - rigid[AT.height] - height_of(rod, now, s))
+    laid = lay_flat(case, rod, now, held, s, pair)
+    if laid:
+        ends, stiffness = laid
+        start = start_of(case, rod)
+        return STEADIER * max(contact_rate(start, rod.sites, now, end, stiffness) for end in ends)
     if not begun:
         settle(rod.sites, s, float(now.rigid[AT.turn]), pair.principal_radii[0])
     law = contact_law(pair, case.slots.contact_loss)
     flow = flow_law(pair, case.slots.rod_law, case.slots.barrier_law)
     set_law(held, s, law, flow, energy)
-    return contact_rate(law, flow, start_of(case, rod), rod.sites, now, s, reach(law, flow, energy))
+    stiffness = contact_stiffness(law, flow, reach(law, flow, energy))
+    return contact_rate(start_of(case, rod), rod.sites, now, s, stiffness)
 
 
 def set_law(held: Touched, s: int, law: ContactLaw, flow: FlowLaw, energy: float) -> None:
@@ -95,10 +115,15 @@ def reach(law: ContactLaw, flow: FlowLaw, energy: float) -> float:
     return float(np.sqrt(2 * flow.R1 * depth))
 
 
-def contact_rate(
-    law: ContactLaw, flow: FlowLaw, start: Start, sites: Sites, now: ModalState, s: int, widest: float
-) -> float:
-    """Return a bound, rad/s, of how fast a site swings on a contact of half length ``widest``, m.
+def contact_stiffness(law: ContactLaw, flow: FlowLaw, widest: float) -> float:
+    """Return the stiffness, N/m, of a contact of half length ``widest``, m."""
+    if flow.yields:
+        return 2 * widest * max(flow.normal, flow.shear)
+    return widest * max(1.5 * law.stiffness / sqrt(law.R), law.shear)
+
+
+def contact_rate(start: Start, sites: Sites, now: ModalState, s: int, stiffness: float) -> float:
+    """Return a bound, rad/s, of how fast a site swings on a contact of a stiffness, N/m.
 
     The tip of a thin rod gives way to its many modes as if it were light; on a contact that grows wide under
     the weight of the whole rod it swings faster than any of them.
@@ -109,10 +134,6 @@ def contact_rate(
     inverse_mass += start.inverse_barrier_inertia * (lever_t**2 + lever_n**2)
     inverse_mass += (t**2 + n**2) / (start.mass * start.k2)
     inverse_mass += float(np.sum(sites.along_t[s] ** 2 + sites.along_n[s] ** 2))
-    if flow.yields:
-        stiffness = 2 * widest * max(flow.normal, flow.shear)
-    else:
-        stiffness = widest * max(1.5 * law.stiffness / sqrt(law.R), law.shear)
     return sqrt(stiffness * inverse_mass)
 
 
@@ -132,9 +153,7 @@ def start_of(case: Case, rod: ModalRod) -> Start:
 
 def _metal(case: Case, rod: ModalRod, s: int, turn: float) -> tuple[Material, bool]:
     """Return the material of the rod at a site, and whether it may yield: only that of the tip may."""
-    spec, angle = case.scene.projectile, case.contact.angle
-    t, n = skin(rod.sites, s, turn)
-    z = case.bodies.body.z_c + cos(angle) * n + sin(angle) * t
+    spec, (_, z) = case.scene.projectile, in_body(case, *skin(rod.sites, s, turn))
     parts = [part for part in spec.segments if z <= part.to] or list(spec.segments[-1:])
     if not parts or parts[0] == spec.segments[0]:
         return case.contact.rod, case.contact.rod_yields

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem_impact.arrays import Array
+from fem_impact.modal.flat import Flats
 from fem_impact.modal.groove import CELLS
 from fem_impact.physics.contact_law import ContactLaw
 from fem_impact.physics.flow_law import FlowLaw
@@ -80,8 +81,8 @@ class SiteIndex(NamedTuple):
     Depth and place along t, m, and the viscous part of its force, N, when it was looked at last; how far it
     moved since, m, and the rate of its depth, m/s; its forces, N; arm (t, n) from the rod's mass centre, m;
     how far the barrier's turn has moved the surface under it, m; the step at which it is looked at next;
-    whether it was looked at in this step, has a law, and touches; its first and last touch, s; its impulses,
-    N s; its largest force, N, and depth, m, and the rod's turn then, rad.
+    whether it was looked at in this step, has a law (2: that of a flat part), and touches; its first and last
+    touch, s; its impulses, N s; its largest force, N, and depth, m, and the rod's turn then, rad.
     """
 
     depth: int = 0
@@ -197,6 +198,7 @@ class Touched(NamedTuple):
     depth, normal, sheared : (s, CELLS) cells, and ``state`` (s, 9), ``works`` (s, 3), J, ``size`` (s,), m, of
         a `fem_impact.modal.groove.Groove`
     work_t : (s,) work of the tangential force, J
+    flats : straight parts that have landed; their sites have no contacts of their own
     """
 
     site: Array
@@ -212,6 +214,7 @@ class Touched(NamedTuple):
     works: Array
     size: Array
     work_t: Array
+    flats: Flats
 
     @classmethod
     def nothing(cls, sites: int) -> Self:
@@ -223,9 +226,9 @@ class Touched(NamedTuple):
         laws = rows(len(ContactLaw._fields)), rows(len(FlowLaw._fields))
         springs = rows(SPRINGS), rows(SPRINGS), rows(SPRINGS)
         cells = rows(CELLS), rows(CELLS), rows(CELLS)
-        return cls(
-            rows(len(SITE)), *laws, *springs, *cells, rows(9), rows(3), np.zeros(sites), np.zeros(sites)
-        )
+        once = np.zeros(sites), np.zeros(sites)
+        whole = *laws, *springs, *cells, rows(9), rows(3), *once
+        return cls(rows(len(SITE)), *whole, Flats.none())
 
 
 class Bounds(NamedTuple):

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import sqrt
+from math import cos, sin, sqrt
 
 import numpy as np
 
+from fem_impact.arrays import Array
 from fem_impact.case.case import Case
+from fem_impact.modal.flat import LAW
 from fem_impact.modal.motion import SITE, Touched
 from fem_impact.modal.rod import ModalRod
 from fem_impact.modal.sites import skin
-from fem_impact.modal.touch import flow_of
+from fem_impact.modal.touch import OWN, flow_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,29 +40,63 @@ class PressedSite:
 
 def pressed_sites(case: Case, rod: ModalRod, held: Touched) -> tuple[PressedSite, ...]:
     """Return the places of contact in the order of their first touch."""
-    found = [_pressed(case, rod, held, s) for s in np.flatnonzero(held.site[:, SITE.end] > 0.0).tolist()]
+    own = np.flatnonzero((held.site[:, SITE.known] == OWN) & (held.site[:, SITE.end] > 0.0))
+    laid = np.flatnonzero((held.flats.deepest > 0.0).any(axis=1))
+    found = [
+        *(_pressed(case, rod, held, s) for s in own.tolist()),
+        *(_laid(case, rod, held, f) for f in laid.tolist()),
+    ]
     return tuple(sorted(found, key=lambda site: site.start))
 
 
 def _pressed(case: Case, rod: ModalRod, held: Touched, s: int) -> PressedSite:
+    """Return a site with a contact of its own."""
     flow, of = flow_of(held, s), held.site[s]
     across = 2.0 * of[SITE.deepest] if flow.yields else of[SITE.deepest]  # a Hertzian contact is narrower
     half, wide = sqrt(flow.R1 * across), sqrt(flow.R2 * across)
-    middle = skin(rod.sites, s, float(of[SITE.turned]))[0] + case.contact.arms[0]
-    if flow.yields and flow.ploughs:
-        depth = float(of[SITE.deepest])
-    else:
+    middle = skin(rod.sites, s, float(of[SITE.turned]))[0] - _first(case)
+    depth = float(of[SITE.deepest])
+    if not (flow.yields and flow.ploughs):
         depth = float(of[SITE.force]) * _flexibility(case) / (2.0 * sqrt(half * wide))
+    return _site([of], middle - half, middle + half, 2.0 * wide, depth)
+
+
+def _laid(case: Case, rod: ModalRod, held: Touched, f: int) -> PressedSite:
+    """Return a straight part that lay along the barrier; the barrier gives way by its share of the depth."""
+    flats, pair = held.flats, case.contact
+    rows = [held.site[s] for s in flats.ends[f]]
+    t = [skin(rod.sites, int(s), float(held.site[s, SITE.turned]))[0] for s in flats.ends[f]]
+    cells = flats.deepest[f] > 0.0
+    places = t[0] + flats.share[f][cells] * (t[1] - t[0]) - _first(case)
+    sunk = 0.5 * (flats.dent[f] + flats.deepest[f])
+    wide = np.sqrt(flats.base[f] + flats.law[f, LAW.widens] * sunk)
+    half = 0.5 * flats.law[f, LAW.size]
+    share, dent = _flexibility(case) * pair.modulus, float(flats.dent[f].max())
+    depth = share * (float(flats.deepest[f].max()) - dent) + (dent if pair.softer == pair.barrier else 0.0)
+    low, high = float(places.min()) - half, float(places.max()) + half
+    return _site(rows, low, high, 2.0 * float(wide[cells].max()), depth)
+
+
+def _site(rows: list[Array], low: float, high: float, width: float, depth: float) -> PressedSite:
+    """Return a place of contact from the rows of its sites, see `SiteIndex`."""
+    touched = [of for of in rows if of[SITE.end] > 0.0]
     return PressedSite(
-        start=float(of[SITE.start]),
-        end=float(of[SITE.end]),
-        impulse_n=float(of[SITE.impulse_n]),
-        impulse_t=float(of[SITE.impulse_t]),
-        low=middle - half,
-        high=middle + half,
-        width=2.0 * wide,
+        start=float(min(of[SITE.start] for of in touched)),
+        end=float(max(of[SITE.end] for of in touched)),
+        impulse_n=float(sum(of[SITE.impulse_n] for of in rows)),
+        impulse_t=float(sum(of[SITE.impulse_t] for of in rows)),
+        low=low,
+        high=high,
+        width=width,
         depth=depth,
     )
+
+
+def _first(case: Case) -> float:
+    """Return t, m, of what touches first from the mass centre: of a flat part, of the end before."""
+    body, angle = case.bodies.body, case.contact.angle
+    x, z = body.contact_point(angle)
+    return float(cos(angle) * (x - body.x_c) + sin(angle) * (z - body.z_c))
 
 
 def _flexibility(case: Case) -> float:

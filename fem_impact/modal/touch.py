@@ -6,6 +6,7 @@ import numpy as np
 
 from fem_impact.arrays import Array
 from fem_impact.fem.kernels import inlined
+from fem_impact.modal.flat import LAW, flat_energy, flat_meets, press_flat
 from fem_impact.modal.groove import AT as IN_GROOVE
 from fem_impact.modal.groove import WORK, Groove, meets, move_apart, slide, stored_energy
 from fem_impact.modal.hertz import grip, press, stored
@@ -13,6 +14,7 @@ from fem_impact.modal.motion import AT, CLOCK, SITE, ModalState, Modes, Sites, S
 from fem_impact.physics.contact_law import ContactLaw
 from fem_impact.physics.flow_law import FlowLaw
 
+OWN, LAID = 1.0, 2.0  # what a site that is known has: a law of its own, or that of a flat part
 LOOK = 8  # most steps between looks at a site while another one touches
 MARGIN = 0.5  # share of its gap that a site may close unseen while another one touches
 
@@ -133,7 +135,7 @@ def look(
             continue
         of[SITE.rate], of[SITE.moved] = (depth - was) / dt, place - before
         gap = -depth - held.state[s, IN_GROOVE.top]
-        if of[SITE.touches] == 0.0 and gap > 0.0:
+        if of[SITE.touches] == 0.0 and of[SITE.known] == OWN and gap > 0.0:
             of[SITE.wake] = steps + rest(now, modes, sites, s, np.hypot(arm_t, arm_n), gap, dt, pressed)
 
 
@@ -147,7 +149,7 @@ def meet(held: Touched, turn: float, dt: float) -> tuple[float, float, float]:
     for s in range(len(held.site)):
         of = held.site[s]
         of[SITE.force_n], of[SITE.force_t] = 0.0, 0.0
-        if of[SITE.known] == 0.0 or of[SITE.awake] == 0.0:
+        if of[SITE.known] != OWN or of[SITE.awake] == 0.0:
             continue
         depth, place = of[SITE.depth], of[SITE.place]
         if held.flow[s, 13] > 0.0:
@@ -159,15 +161,25 @@ def meet(held: Touched, turn: float, dt: float) -> tuple[float, float, float]:
             if F > 0.0:
                 of[SITE.force_n] = F
                 of[SITE.force_t] = -grip(springs_of(held, s), of[SITE.moved], F, a, law)
-        touches = of[SITE.force_n] != 0.0
-        if touches:
-            of[SITE.force] = max(of[SITE.force], of[SITE.force_n])
-            if depth > of[SITE.deepest]:
-                of[SITE.deepest], of[SITE.turned] = depth, turn
-        elif of[SITE.touches] > 0.0:
+        if of[SITE.force_n] == 0.0 and of[SITE.touches] > 0.0:
             held.shift[s, :] = 0.0
             move_apart(groove_of(held, s), depth, place)
-        of[SITE.touches] = 1.0 if touches else 0.0
+    flats = held.flats
+    for f in range(len(flats.law)):
+        if flats.law[f, LAW.known] > 0.0:
+            a, b = held.site[flats.ends[f, 0]], held.site[flats.ends[f, 1]]
+            depths, moved = (a[SITE.depth], b[SITE.depth]), (a[SITE.moved], b[SITE.moved])
+            N_a, N_b, T_a, T_b = press_flat(flats, f, depths, moved)
+            a[SITE.force_n] += N_a
+            b[SITE.force_n] += N_b
+            a[SITE.force_t] += T_a
+            b[SITE.force_t] += T_b
+    for s in range(len(held.site)):
+        of = held.site[s]
+        of[SITE.touches] = 1.0 if of[SITE.force_n] != 0.0 else 0.0
+        of[SITE.force] = max(of[SITE.force], of[SITE.force_n])
+        if of[SITE.force_n] != 0.0 and of[SITE.depth] > of[SITE.deepest]:
+            of[SITE.deepest], of[SITE.turned] = of[SITE.depth], turn
         F_n += of[SITE.force_n]
         F_t += of[SITE.force_t]
     return F_n, F_t, lost
@@ -192,6 +204,9 @@ def strikes(
         if of[SITE.known] == 0.0:
             if depth > 0.0:
                 return True
+        elif of[SITE.known] == LAID:
+            if depth > 0.0 and flat_strikes(now, sites, held, s, c, sn):
+                return True
         elif held.flow[s, 13] > 0.0:
             if meets(groove_of(held, s), depth, place, flow_of(held, s)):
                 return True
@@ -204,6 +219,20 @@ def strikes(
 
 
 @inlined
+def flat_strikes(now: ModalState, sites: Sites, held: Touched, s: int, c: float, sn: float) -> bool:
+    """Return whether a flat part with an end at a site touches in free flight."""
+    flats = held.flats
+    for f in range(len(flats.law)):
+        a, b = flats.ends[f]
+        if flats.law[f, LAW.known] > 0.0 and (s == a or s == b):
+            near = locate(now, sites, a, c, sn)[2] + held.site[a, SITE.sunk_n]
+            far = locate(now, sites, b, c, sn)[2] + held.site[b, SITE.sunk_n]
+            if flat_meets(flats, f, (near, far)):
+                return True
+    return False
+
+
+@inlined
 def spent(held: Touched, work_t: Array) -> tuple[float, float, float, float]:
     """Return plastic work and friction, J, of all sites, and what their contacts hold along n and t, J.
 
@@ -211,7 +240,7 @@ def spent(held: Touched, work_t: Array) -> tuple[float, float, float, float]:
     """
     plastic, friction, held_n, held_t = 0.0, 0.0, 0.0, 0.0
     for s in range(len(held.site)):
-        if held.site[s, SITE.known] == 0.0:
+        if held.site[s, SITE.known] != OWN:
             continue
         if held.flow[s, 13] > 0.0:
             n, t = stored_energy(groove_of(held, s), flow_of(held, s))
@@ -223,6 +252,13 @@ def spent(held: Touched, work_t: Array) -> tuple[float, float, float, float]:
             friction += -work_t[s] - t
         held_n += n
         held_t += t
+    for f in range(len(held.flats.law)):
+        if held.flats.law[f, LAW.known] > 0.0:
+            n, t = flat_energy(held.flats, f)
+            plastic += held.flats.works[f, WORK.flow] + held.flats.works[f, WORK.shear]
+            friction += held.flats.works[f, WORK.friction]
+            held_n += n
+            held_t += t
     return plastic, friction, held_n, held_t
 
 

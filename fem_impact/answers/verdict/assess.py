@@ -27,7 +27,7 @@ from fem_impact.answers.verdict.reliability import known_error
 from fem_impact.answers.verdict.screening import Screening, screening
 from fem_impact.answers.verdict.twins import inclined, twins
 from fem_impact.case.case import Case
-from fem_impact.case.limits import flat_part, not_reduced
+from fem_impact.case.limits import not_reduced
 from fem_impact.errors import RunError, SceneError
 from fem_impact.options import RunOptions
 from fem_impact.progress import Notice, Progress
@@ -140,7 +140,6 @@ def assess(
     bodies = Case(scene).bodies
     lacking = not_reduced(bodies)
     reduced = fidelity == "modal" or not lacking
-    elsewhere = reduced or lacking == flat_part(bodies)  # what lands flat does so at this angle alone
     quick, notes = _quick(scene, tell) if reduced else (None, [LACKING.format(lacking)])
     here, used, more = quick, "modal", "--fidelity solid"
     # where nothing like the scene was computed both ways, the reduced model's error is not known well enough
@@ -155,7 +154,7 @@ def assess(
     if here is None:
         raise RunError(" ".join(notes))
     off = 0.0 if quick is None else abs(quick.value - here.value)
-    others, not_known = _over_angles(scene, off) if elsewhere else (None, ((), ""))
+    others, not_known = _over_angles(scene, off) if reduced else (None, ((), ""))
     return Verdict(
         scene,
         tolerance,

@@ -151,7 +151,7 @@ def test_a_stiff_rod_gives_nothing_and_bounces_as_a_rigid_one(monkeypatch):
 def test_static_give_explains_what_a_short_rod_bounces_more(angle):
     drop = DroppedRod(length_of(10.0), angle, yields=True)
     free, stiff = (solve(Case.of(d.scene(), "modal")) for d in (drop, replace(drop, vibrates=False)))
-    arm = -free.rod.centre_t
+    arm = -free.rod.arm[0]
     e, e_rigid = ((r.V_n + r.Omega * arm) / -drop.scene().impact.v_n for r in (free, stiff))
     assert free.vibration < 1e-3 * free.E_0
     assert static_restitution(drop) == pytest.approx(e, abs=0.01)

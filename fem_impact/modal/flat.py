@@ -1,0 +1,132 @@
+"""A straight part of the outline that lands all at once: a row of cells between the two sites at its ends.
+
+Each cell is an elastic spring (Popov & Hess 2015, doi:10.1007/978-3-642-53876-6) on a bed that flows, with a
+tangential spring that slips. A face of radius a has the stiffness E* a metre of its width, together that of a
+flat punch, 2 a E*; a side that lies down has pi/4 E* a metre (Popov 2010, Contact Mechanics and Friction,
+chapter 5). The cells are those of the rod and take their dents along. What presses a cell is between the
+depths of both sites, by its share of the way; its force acts on them by the same shares, so that force,
+moment and work are those of the cell.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import NamedTuple, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem_impact.arrays import Array
+from fem_impact.fem.kernels import inlined
+
+CELLS = 48
+MOST = 6  # flat parts of one impact
+
+
+class FlatIndex(NamedTuple):
+    """Where each constant of a flat part stands in its row (8,) of `Flats.law`.
+
+    Stiffness of a cell along n and t, N/m; hardness and shear strength of its surface, Pa; friction; width of
+    a cell, m; growth of a cell's squared half width with its dent, m; whether it is there.
+    """
+
+    normal: int = 0
+    shear: int = 1
+    hardness: int = 2
+    skin: int = 3
+    friction: int = 4
+    size: int = 5
+    widens: int = 6
+    known: int = 7
+
+
+LAW = FlatIndex()
+
+
+class Flats(NamedTuple):
+    """Straight parts that have landed, up to `MOST`.
+
+    Attributes
+    ----------
+    ends : (f, 2) sites at both ends
+    law : (f, 8) see `FlatIndex`
+    share : (f, CELLS) of the way from the first site to the second
+    base, inner : (f, CELLS) squared half width of a cell without a dent, m2, and that of a bore, m
+    dent, normal, shift, deepest : (f, CELLS) m, normal force, N, of the tangential spring, m, most depth, m
+    works : (f, 3) normal flow, shear flow, friction, J
+    """
+
+    ends: NDArray[np.int64]
+    law: Array
+    share: Array
+    base: Array
+    inner: Array
+    dent: Array
+    normal: Array
+    shift: Array
+    deepest: Array
+    works: Array
+
+    @classmethod
+    def none(cls) -> Self:
+        """Return room for flat parts."""
+
+        def cells() -> Array:
+            return np.zeros((MOST, CELLS))
+
+        rows = cells(), cells(), cells(), cells(), cells(), cells(), cells()
+        return cls(np.zeros((MOST, 2), np.int64), np.zeros((MOST, len(LAW))), *rows, np.zeros((MOST, 3)))
+
+
+@inlined
+def press_flat(
+    flats: Flats, f: int, depth: tuple[float, float], moved: tuple[float, float]
+) -> tuple[float, float, float, float]:
+    """Press a flat part to the depths of its ends and move them, m; return their forces n, n, t, t, N."""
+    law, works = flats.law[f], flats.works[f]
+    k, k_t, size = law[LAW.normal], law[LAW.shear], law[LAW.size]
+    N_a, N_b, T_a, T_b = 0.0, 0.0, 0.0, 0.0
+    for c in range(CELLS):
+        to = flats.share[f, c]
+        D, way = (1 - to) * depth[0] + to * depth[1], (1 - to) * moved[0] + to * moved[1]
+        before, q_before, shift = flats.dent[f, c], flats.normal[f, c], flats.shift[f, c]
+        if D <= before:
+            works[2] += 0.5 * k_t * shift**2
+            flats.normal[f, c], flats.shift[f, c] = 0.0, 0.0
+            continue
+        sunk = before + 0.5 * (D - before)  # an elastic dent is as wide as one that stays of half its depth
+        wide = 2 * size * (sqrt(flats.base[f, c] + law[LAW.widens] * sunk) - flats.inner[f, c])
+        q = min(k * (D - before), wide * law[LAW.hardness])
+        flats.dent[f, c] = max(before, D - q / k)
+        works[0] += 0.5 * (q_before + q) * (flats.dent[f, c] - before)
+        rubs, sheared = law[LAW.friction] * q, wide * law[LAW.skin]
+        trial, limit = k_t * (shift + way), min(rubs, sheared)
+        T = min(max(trial, -limit), limit)
+        works[2 if rubs <= sheared else 1] += 0.5 * (k_t * shift + T) * (trial - T) / k_t
+        flats.normal[f, c], flats.shift[f, c] = q, T / k_t
+        flats.deepest[f, c] = max(flats.deepest[f, c], D)
+        N_a += (1 - to) * q
+        N_b += to * q
+        T_a -= (1 - to) * T
+        T_b -= to * T
+    return N_a, N_b, T_a, T_b
+
+
+@inlined
+def flat_meets(flats: Flats, f: int, depth: tuple[float, float]) -> bool:
+    """Return whether any cell of a flat part touches at the depths of its ends, m."""
+    for c in range(CELLS):
+        to = flats.share[f, c]
+        if (1 - to) * depth[0] + to * depth[1] > flats.dent[f, c]:
+            return True
+    return False
+
+
+@inlined
+def flat_energy(flats: Flats, f: int) -> tuple[float, float]:
+    """Return the elastic energies, J, of a flat part's normal and tangential springs."""
+    normal, tangential = 0.0, 0.0
+    for c in range(CELLS):
+        normal += flats.normal[f, c] ** 2
+        tangential += flats.shift[f, c] ** 2
+    return 0.5 * normal / flats.law[f, LAW.normal], 0.5 * flats.law[f, LAW.shear] * tangential

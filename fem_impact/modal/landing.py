@@ -1,0 +1,143 @@
+"""Whether a straight part of the rod lands flat as one of its ends touches, and the law that it then gets."""
+
+from __future__ import annotations
+
+from math import cos, pi, sin, sqrt
+
+import numpy as np
+
+from fem_impact.case.case import Case
+from fem_impact.modal.flat import CELLS, LAW
+from fem_impact.modal.motion import AT, SITE, ModalState, Touched
+from fem_impact.modal.rod import ModalRod
+from fem_impact.modal.sites import skin
+from fem_impact.modal.touch import LAID
+from fem_impact.physics.contact import FLAT, ContactPair
+from fem_impact.physics.flow_law import FULLY_PLASTIC, REPRESENTATIVE, FlowLaw, flow_law
+
+ON_SIDE = 0.25 * pi  # stiffness of a side over E* times its length (Popov 2010)
+
+
+def lay_flat(
+    case: Case, rod: ModalRod, now: ModalState, held: Touched, s: int, pair: ContactPair
+) -> tuple[tuple[int, int], float] | None:
+    """Lay a straight part with an end at a site along the barrier, if its other end is as near.
+
+    It is where its middle lies within `FLAT` depths of the contact of its end (``pair``), over a surface that
+    neither end has touched. Returns both sites and the stiffness of the whole, N/m; None where nothing is.
+    """
+    count, free = len(rod.sites.along_t), held.flats.law[:, LAW.known] == 0.0
+    turn, depth = float(now.rigid[AT.turn]), pair.estimate.depth
+    for other in ((s + 1) % count, (s - 1) % count):
+        if other == s or held.site[s, SITE.known] or held.site[other, SITE.known] or not free.any():
+            continue
+        gap = height_of(rod, now, other) - height_of(rod, now, s)
+        ends = [in_body(case, *skin(rod.sites, k, turn)) for k in (s, other)]
+        if gap <= 2 * FLAT * depth and _is_straight(case, ends, depth):
+            f = int(np.argmax(free))
+            held.flats.ends[f] = s, other
+            flow = flow_law(pair, case.slots.rod_law, case.slots.barrier_law)
+            if _is_face(ends):
+                _set_face(case, held, f, ends, pair, flow, _roundness(rod, s, turn))
+            else:
+                _set_side(case, held, f, ends, pair, flow)
+            for k in (s, other):
+                row = held.site[k]
+                row[SITE.known], row[SITE.awake], row[SITE.wake] = LAID, 0.0, 0.0
+            return (s, other), CELLS * float(held.flats.law[f, LAW.normal])
+    return None
+
+
+def in_body(case: Case, t: float, n: float) -> tuple[float, float]:
+    """Return (x, z), m, in the rod of a place (t, n), m, from its mass centre at first contact."""
+    angle, body = case.contact.angle, case.bodies.body
+    return body.x_c + cos(angle) * t - sin(angle) * n, body.z_c + cos(angle) * n + sin(angle) * t
+
+
+def height_of(rod: ModalRod, now: ModalState, s: int) -> float:
+    """Return the height, m, of what is lowest of a site over the mass centre."""
+    turn = float(now.rigid[AT.turn])
+    t, n = skin(rod.sites, s, turn)
+    t, n = t + rod.sites.along_t[s] @ now.q, n + rod.sites.along_n[s] @ now.q
+    return float(cos(turn) * n - sin(turn) * t)
+
+
+def _roundness(rod: ModalRod, s: int, turn: float) -> float:
+    """Return the radius, m, of the edge at a site; 0 of a corner."""
+    begin, end = rod.sites.begin[s], rod.sites.begin[s + 1]
+    return float(rod.sites.radius[begin:end].min())
+
+
+def _is_face(ends: list[tuple[float, float]]) -> bool:
+    """Return whether a straight part between two places (x, z) lies across the rod's axis."""
+    (x, z), (u, w) = ends
+    return abs(w - z) < 1e-6 * abs(u - x)
+
+
+def _is_straight(case: Case, ends: list[tuple[float, float]], depth: float) -> bool:
+    """Return whether the surface between two places (x, z), m, lies within a depth, m, of their line."""
+    if _is_face(ends):
+        return True
+    (x, z), (u, w) = ends
+    if x * u < 0.0:
+        return False
+    share = (np.arange(CELLS) + 0.5) / CELLS
+    radius = np.asarray(case.bodies.body.radius(z + share * (w - z)))
+    return bool((abs(x) + share * (abs(u) - abs(x)) - radius < depth).all())
+
+
+def _set_face(
+    case: Case,
+    held: Touched,
+    f: int,
+    ends: list[tuple[float, float]],
+    pair: ContactPair,
+    flow: FlowLaw,
+    edge: float,
+) -> None:
+    """Enter the law of a face: it is as wide as its round edge lets it be at its depth."""
+    (x, z), _ = ends
+    flat, body = abs(x), case.bodies.body
+    depth = pair.approach * sqrt(body.mass / (2 * flat * pair.modulus))
+    wide = min(flat + sqrt(2 * edge * depth), 0.5 * body.diameter)
+    bore = float(body.inner_radius(np.array(z))) if hasattr(body, "inner_radius") else 0.0
+    place = wide * (2 * np.arange(CELLS) + 1 - CELLS) / CELLS
+    held.flats.share[f] = 0.5 * (1.0 - np.sign(x) * place / flat)
+    held.flats.base[f] = wide**2 - place**2
+    held.flats.inner[f] = np.sqrt(np.maximum(bore**2 - place**2, 0.0))
+    _set_row(held, f, pair, flow, pair.modulus, FULLY_PLASTIC * flow.yield_stress, 2 * wide / CELLS, 0.0)
+
+
+def _set_side(
+    case: Case, held: Touched, f: int, ends: list[tuple[float, float]], pair: ContactPair, flow: FlowLaw
+) -> None:
+    """Enter the law of a side that lies down along its length."""
+    (x, z), (u, w) = ends
+    length, R = (
+        float(np.hypot(u - x, w - z)),
+        0.5 * (abs(x) + abs(u)) * float(np.hypot(u - x, w - z)) / abs(w - z),
+    )
+    held.flats.share[f] = (np.arange(CELLS) + 0.5) / CELLS
+    hardness = FULLY_PLASTIC * flow.yield_stress
+    if np.isfinite(hardness):
+        energy = 0.5 * pair.body.mass * pair.approach**2
+        depth = (energy / (hardness * length * 4 / 3 * sqrt(2 * R))) ** (2 / 3)
+        strain = REPRESENTATIVE * sqrt(2 * depth / R)
+        hardness *= (1.0 + flow.slope * strain) ** flow.exponent
+    _set_row(held, f, pair, flow, ON_SIDE * pair.modulus, hardness, length / CELLS, 2 * R)
+
+
+def _set_row(
+    held: Touched,
+    f: int,
+    pair: ContactPair,
+    flow: FlowLaw,
+    stiffness: float,
+    hardness: float,
+    size: float,
+    widens: float,
+) -> None:
+    """Enter a row of cells of a stiffness a metre, Pa, a hardness, Pa, and a size, m."""
+    sheared = 0.5 * pair.shear_stiffness / pair.modulus  # tangential over normal stiffness
+    cell = stiffness * size
+    held.flats.law[f] = cell, sheared * cell, hardness, flow.skin, flow.friction, size, widens, 1.0
