@@ -17,11 +17,17 @@ __all__ = [
     "block",
     "box_cells",
     "drawn_depths",
+    "drawn_to_ends",
     "thin_skin_rise",
+    "with_columns_at",
     "with_free_bottom",
     "with_rows_at",
     "with_thin_skin",
 ]
+
+# Columns at the ends of a contact: how many times narrower they are, cells to each side of an end in which
+# all are, cells further on in which they widen, and cells beyond the ends over which others are stretched
+NARROW, NEAR, WIDENING, AROUND = 2.0, 1.5, 1.0, 8.0
 
 
 def block(
@@ -106,6 +112,38 @@ def with_rows_at(mesh: HexMesh, rows: FloatArray, depths: FloatArray) -> HexMesh
     points = mesh.points.copy()
     points[:, 2] = -np.interp(-points[:, 2], rows, depths)
     return replace(mesh, points=np.asarray(mesh.tie @ points))
+
+
+def with_columns_at(mesh: HexMesh, columns: FloatArray, places: FloatArray) -> HexMesh:
+    """Move columns of a block to other places along t; between them widths change evenly.
+
+    Parameters
+    ----------
+    mesh : HexMesh
+        As `block` gives it.
+    columns, places : (k,) float64, m
+        Growing places along t, and where they are to lie.
+    """
+    points = mesh.points.copy()
+    points[:, 0] = np.interp(points[:, 0], columns, places)
+    return replace(mesh, points=np.asarray(mesh.tie @ points))
+
+
+def drawn_to_ends(
+    ends: tuple[float, float], cell: float, sides: tuple[float, float]
+) -> tuple[FloatArray, FloatArray]:
+    """Return places (k,), m, along t before and after columns of cells are drawn to two ends of a contact.
+
+    Columns at the ends become `NARROW` times narrower, the others a little wider; the ``sides`` of the block,
+    m, stay. ``cell``, m, is the edge of the cells.
+    """
+    low, high = max(ends[0] - AROUND * cell, sides[0]), min(ends[1] + AROUND * cell, sides[1])
+    after = np.linspace(low, high, 1 + round(20 * (high - low) / cell))
+    away = np.abs(after[:, None] - np.array(ends)).min(axis=1) / cell
+    density = 1.0 + (NARROW - 1.0) * np.clip(1.0 - (away - NEAR) / WIDENING, 0.0, 1.0)
+    count = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]))])
+    before = low + count / count[-1] * (high - low)
+    return np.array([sides[0], *before[1:-1], sides[1]]), np.array([sides[0], *after[1:-1], sides[1]])
 
 
 def with_free_bottom(mesh: HexMesh) -> HexMesh:

@@ -70,6 +70,14 @@ class RecordedZones:
         return 0.5 * float(touched.min() + touched.max())
 
     @property
+    def ends(self) -> tuple[float, float] | None:
+        """Return the places along t, m, at which a contact that was found ends on a barrier that flows."""
+        if not (self.conforming and self.record.sites):
+            return None
+        touched = self._of_barrier.touched[:, 0]
+        return float(touched.min()), float(touched.max())
+
+    @property
     def _of_barrier(self) -> BodyRecord:
         barrier = self.record.barrier
         assert barrier is not None, "a rigid barrier has no zones"

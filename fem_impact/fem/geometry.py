@@ -181,13 +181,32 @@ def _block(bodies: Bodies, zones: AnyZones) -> HexMesh:
             value=f"{margin * 1e3:g} mm",
             remedy="Give less: a third of the diameter does.",
         )
+    ends = zones.ends if isinstance(zones, RecordedZones) else None
+    columns = None if ends is None else meshes.drawn_to_ends(ends, h, (float(low[0]), float(high[0])))
+    if columns is not None:
+        boxes = [_before_columns(zone, *columns) for zone in boxes]
     coarse = meshes.block(low, high, base, boxes, buffer=BUFFER)
+    if columns is not None:
+        coarse = meshes.with_columns_at(coarse, *columns)
     if zones.edges:
         coarse = meshes.with_free_bottom(coarse)
     block = meshes.with_thin_skin(coarse, h, zones.skin_rows)
     if bodies.barrier.layers or zones.edges:
         block = meshes.with_rows_at(block, rows, depths)
     return replace(block, points=block.points + np.array([bodies.scene.accuracy.grid_shift * h, 0.0, 0.0]))
+
+
+def _before_columns(zone: Zone | Cloud, columns: Array, places: Array) -> Cloud:
+    """Return the zone whose cells fill another one once columns have moved."""
+    assert isinstance(zone, Cloud), "zones from a record are clouds"
+
+    def before(t: Array) -> Array:
+        return np.asarray(np.interp(t, places, columns))
+
+    t, beside = zone.points[:, 0], zone.points[:, 1:]
+    shifted = (before(t + way * zone.radii) - way * zone.radii for way in (-1.0, 0.0, 1.0))
+    points = np.vstack([np.column_stack([at, beside]) for at in shifted])
+    return Cloud(points, np.tile(zone.radii, 3))
 
 
 def _before_moving(zone: Zone | Cloud, zones: AnyZones, rows: Array, depths: Array) -> Zone | Cloud:

@@ -79,3 +79,27 @@ def test_thin_skin_keeps_the_ties(fine):
 def test_impossible_blocks_are_refused(low, high, size, words):
     with pytest.raises(meshes.MeshError, match=words):
         meshes.block(low, high, size)
+
+
+def test_columns_are_half_as_wide_at_the_ends_of_a_contact_and_sides_stay(fine):
+    cell, ends = 0.25e-3, (-0.9e-3, 1.1e-3)
+    columns, places = meshes.drawn_to_ends(ends, cell, (LOW[0], HIGH[0]))
+    drawn = meshes.with_columns_at(fine, columns, places)
+    assert drawn.points[:, 1:] == pytest.approx(fine.points[:, 1:], abs=1e-15)
+    assert drawn.points[:, 0].min() == pytest.approx(LOW[0]) and drawn.points[:, 0].max() == HIGH[0]
+    line = (fine.points[:, 1:] == 0.0).all(axis=1) & (np.abs(fine.points[:, 0]) < 2e-3)
+    t = np.sort(drawn.points[line, 0])
+    width, middle = np.diff(t) / cell, 0.5 * (t[1:] + t[:-1])
+    away = np.abs(middle[:, None] - ends).min(axis=1) / cell
+    stretch = width[away > 3.0]
+    assert len(stretch) and stretch == pytest.approx(stretch[0])
+    assert width[away < 1.0] == pytest.approx(0.5 * stretch[0], rel=0.02)
+    assert 1.0 < stretch[0] < 1.5
+    assert meshes.quality(drawn).min_scaled_jacobian > 0.7
+    assert np.abs(drawn.tie @ drawn.points - drawn.points).max() < 1e-15
+
+
+def test_columns_drawn_to_ends_near_a_side_stay_in_the_block():
+    columns, places = meshes.drawn_to_ends((-0.7e-3, 0.3e-3), 0.25e-3, (-1e-3, 1e-3))
+    for along in (columns, places):
+        assert along[[0, -1]] == pytest.approx([-1e-3, 1e-3]) and (np.diff(along) > 0.0).all()

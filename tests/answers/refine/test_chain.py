@@ -75,6 +75,20 @@ def test_thin_rows_lie_under_the_skin_that_was_pressed(quick):
     assert thick[2][-10:] == pytest.approx(thick[0][-10:])
 
 
+def test_columns_of_the_barrier_are_narrow_where_the_contact_ended(quick):
+    levels, _ = quick
+    assert levels.done[0].case.zones.ends is None  # nothing is known yet
+    case = levels.done[-1].case
+    (low, high), h = case.zones.ends, case.zones.barrier_size
+    assert low == levels.done[-2].record.barrier.touched[:, 0].min() < 0 < high
+    mesh = build_geometry(case.bodies, case.zones, 0.0, True).barrier
+    line = np.isclose(mesh.points[:, 1:], 0.0, atol=1e-12).all(axis=1)
+    t = np.sort(mesh.points[line, 0])
+    for end in (low, high):
+        assert np.diff(t)[np.searchsorted(t, end) - 1] < 0.75 * h
+        assert mesh.finest[(np.abs(mesh.points[mesh.cells, 0] - end) < 0.3 * h).any(axis=1)].any()
+
+
 def test_rods_that_do_not_yield_have_no_thin_rows():
     elastic = replace_all(QUICK, {"effects": ["auto", "-rod-plasticity"]})
     assert LevelChain(Case(elastic)).pilot().zones.rod_rows == 0
