@@ -3,9 +3,9 @@
     python tests/benchmarks/thin_rows.py OUT [SCENE ...]
 
 The levels of each scene find the contact once. Meshes from that record then run at four places of the
-barrier's grid: with cells all alike, with thin rows, and with both; and at two places with cells half as large, all
-alike, which takes up to two minutes a run. What lies in OUT is not run again. Prints a table of means and draws
-``thin-rows.svg`` in OUT.
+barrier's grid: with cells all alike, with thin rows, and with both; and at two places with cells half as
+large, all alike, which takes up to two minutes a run. What lies in OUT is not run again. Prints a table of
+means and draws ``thin-rows.svg`` in OUT.
 """
 
 import json

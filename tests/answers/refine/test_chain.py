@@ -77,8 +77,8 @@ def test_thin_rows_lie_under_the_skin_that_was_pressed(quick):
 
 def test_columns_of_the_barrier_are_narrow_where_the_contact_ended(quick):
     levels, _ = quick
-    assert levels.done[0].case.zones.ends is None  # nothing is known yet
-    case = levels.done[-1].case
+    assert levels.done[0].cases[0].zones.ends is None  # nothing is known yet
+    case = levels.done[-1].cases[0]
     (low, high), h = case.zones.ends, case.zones.barrier_size
     assert low == levels.done[-2].record.barrier.touched[:, 0].min() < 0 < high
     mesh = build_geometry(case.bodies, case.zones, 0.0, True).barrier
