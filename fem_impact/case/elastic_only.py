@@ -34,7 +34,7 @@ UNSORTED = (
 )
 VISCOUS = ("plastic", "rubber", "wood")
 NOT_TAKEN = f" What it loses inside is left out, {UPPER}."
-NOT_STATED = NOT_TAKEN + " State loss_factor, which the rigid and the reduced model take."
+NOT_STATED = NOT_TAKEN + " State loss_factor, which says it."
 TAKEN = " Its loss_factor says what it loses inside; nothing else of this is followed."
 CRUSHED = (
     "crushes and cracks under a contact, and no law of that is known here. An elastic answer leaves out "

@@ -184,16 +184,20 @@ def _energy(result: SolidResult, moved: RodMotion) -> Energy:
         plate=share(a["plate"] + held * bending) if result.case.slots.plate or bending else UNBENT,
         barrier=share(given) if barrier.mass else MASSIVE,
         closing=share(a["closing"]),
-        damping=_if_on("material-damping", result, share(a["damping"])),
+        damping=_if_on(("material-damping", "contact-loss"), result, share(a["damping"])),
         contact=Unknown("what a contact holds is strain energy of the meshed bodies"),
-        gravity=_if_on("gravity", result, share(kinetic - result.motion.kinetic - a["gravity"])),
+        gravity=_if_on(("gravity",), result, share(kinetic - result.motion.kinetic - a["gravity"])),
         residual=share(a["residual"]),
         added_mass=share(result.added_energy),
     )
 
 
-def _if_on(effect: str, result: SolidResult, share: float) -> Num:
-    return share if effect in result.case.active else Unknown(f"the {effect} effect is off")
+def _if_on(effects: tuple[str, ...], result: SolidResult, share: float) -> Num:
+    """Return a share that one of the effects makes, the reason where all are off."""
+    if set(effects) & set(result.case.active):
+        return share
+    are = "effect is" if len(effects) == 1 else "effects are"
+    return Unknown(f"the {' and '.join(effects)} {are} off")
 
 
 def _heat(result: SolidResult, E_lt: Num, vibration: Num) -> Heat:

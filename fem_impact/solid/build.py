@@ -6,6 +6,7 @@ Modules that only some effects need are imported where they are used.
 from __future__ import annotations
 
 from functools import cached_property
+from math import sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -24,6 +25,7 @@ from fem_impact.fem.layout import DofLayout
 from fem_impact.fem.sparse import Hanging, NodeProduct
 from fem_impact.fem.stable import stable_step
 from fem_impact.physics.hardening import HardeningLaw
+from fem_impact.physics.viscous import LinearSolid, linear_solid
 from fem_impact.solid.contact.moving_plane import MovingPlane
 from fem_impact.solid.contact.patch import STEEP, make_patch
 from fem_impact.solid.contact.plane import PlaneContact
@@ -33,6 +35,7 @@ from fem_impact.solid.frame import FixedFrame, TurningFrame, mass_centre
 from fem_impact.solid.ground import Ground
 from fem_impact.solid.items import Force, Impulse
 from fem_impact.solid.model import Model
+from fem_impact.solid.viscous import MaxwellCells
 from meshes import SKIN, owners
 from rigid import Faceted
 
@@ -215,7 +218,16 @@ class Builder:
         _, _, steps = self.block
         _, stiffness = self.elastic_rod
         inverse = self.meshed.inverse_mass[: self.meshed.layout.rod_size]
-        return steps | {"rod": stable_step(stiffness, inverse, self.scene.accuracy.step)}
+        step = stable_step(stiffness, inverse, self.scene.accuracy.step)
+        return steps | {"rod": step / sqrt(max((law.stiffest for law in self.viscous), default=1.0))}
+
+    @cached_property
+    def viscous(self) -> list[LinearSolid]:
+        """Return the law of a rod that is viscous, none of one that is not."""
+        loss = self.scene.projectile.material.loss_factor
+        if self.spec.contact_loss is None or not loss:
+            return []
+        return [linear_solid(loss, self.case.estimate.duration)]
 
     @cached_property
     def zones(self) -> list[YieldingZone]:
@@ -309,13 +321,14 @@ class Builder:
         """Return the items that add forces, in their order."""
         (linear, _), (block, _, _), gravity = self.elastic_rod, self.block, self.spec.gravity
         weight = [] if gravity is None else [self.weight(gravity)]
-        return [linear, *weight, *block, *self.foundation, *self.zones]
+        viscous = [MaxwellCells.of(linear, law) for law in self.viscous]
+        return [linear, *viscous, *weight, *block, *self.foundation, *self.zones]
 
     def impulses(self) -> list[Impulse]:
         """Return the items that change velocities, in their order, which ends with the contact."""
         (_, pots, _), loss = self.block, self.spec.loss_factor
         rest = [] if self.spec.vibrating else [self.rigid_rest()]
-        damping = [] if loss is None else [self.damping(loss)]
+        damping = [] if loss is None or self.viscous else [self.damping(loss)]
         return [*rest, *damping, *pots, *self.contacts()]
 
     def contacts(self) -> list[Impulse]:

@@ -36,15 +36,19 @@ class ElasticRod:
         """Add the elastic forces."""
         n = len(self.d)
         self.frame.localise(state.x[:n], self.d)
-        self.y[:] = 0.0
-        d, y = self.layout.slices_of(self.d), self.layout.slices_of(self.y)
-        self.drawn.expand(d)
-        self.slices.apply(d, y)
-        self.nose.multiply(self.d)
-        self.nose.add_to(self.y)
-        self.drawn.condense(d)
-        self.drawn.gather(y)
+        self.apply(self.d, self.y)
         self.frame.add_force(self.d, self.y, state.force[:n])
+
+    def apply(self, d: Array, y: Array) -> None:
+        """Set ``y`` (n,), N, to the stiffness times displacements ``d`` (n,), m, in the frame."""
+        y[:] = 0.0
+        drawn, forces = self.layout.slices_of(d), self.layout.slices_of(y)
+        self.drawn.expand(drawn)
+        self.slices.apply(drawn, forces)
+        self.nose.multiply(d)
+        self.nose.add_to(y)
+        self.drawn.condense(drawn)
+        self.drawn.gather(forces)
 
     def energies(self, state: State) -> tuple[float, ...]:
         """Return the strain energy at the last force evaluation."""

@@ -35,10 +35,14 @@ class ElasticNose:
         """Add the elastic forces."""
         n = len(self.d)
         self.frame.localise(state.x[:n], self.d)
-        self.y[:] = 0.0
-        self.nose.multiply(self.d)
-        self.nose.add_to(self.y)
+        self.apply(self.d, self.y)
         self.frame.add_force(self.d, self.y, state.force[:n])
+
+    def apply(self, d: Array, y: Array) -> None:
+        """Set ``y`` (n,), N, to the stiffness times displacements ``d`` (n,), m, in the frame."""
+        y[:] = 0.0
+        self.nose.multiply(d)
+        self.nose.add_to(y)
 
     def energies(self, state: State) -> tuple[float, ...]:
         """Return the strain energy at the last force evaluation."""

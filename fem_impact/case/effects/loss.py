@@ -1,7 +1,8 @@
 """Viscous loss of the contact: bodies of rubber, plastic or wood give back less than they take up.
 
 A rod that vibrates loses by the same factor in its modes (see `damping`); here it is what the contact itself
-takes, which the closed forms of the rigid and the reduced model know. Finite elements have no viscous cells.
+takes, which the closed forms of the rigid and the reduced model know. In finite elements all cells of the
+rod are a standard linear solid with that loss factor at the pace of the contact, which damps its modes, too.
 """
 
 from __future__ import annotations
@@ -39,18 +40,37 @@ def fill(bodies: Bodies, spec: ModelSpec) -> None:
 
 
 def require_closed_form(bodies: Bodies, spec: ModelSpec, fidelity: str) -> None:
-    """Refuse a viscous contact of finite elements, or one that flows in the reduced model (SceneError)."""
-    flows = fidelity == "modal" and bool(spec.rod_law or spec.barrier_law)
-    if spec.contact_loss is None or not (fidelity == "solid" or flows):
+    """Refuse a viscous contact where the fidelity has it not (SceneError).
+
+    Finite elements have viscous cells of a rod of one material that does not yield, on a barrier that is not
+    viscous; the reduced model has no contact that is viscous and flows.
+    """
+    flows = bool(spec.rod_law or spec.barrier_law)
+    if spec.contact_loss is None or fidelity == "rigid":
         return
-    where = "a contact that yields in the reduced model" if flows else "finite elements"
+    if fidelity == "modal":
+        where = "a contact that yields in the reduced model" if flows else ""
+    else:
+        where = _unheld(bodies, spec)
+    if not where:
+        return
+    other = " or modal" * (fidelity == "solid" and not flows)
     raise SceneError(
-        f"calls for contact-loss, which {where} do{'es' * flows} not have: an answer without it has e too "
-        f"high by about {number(bodies):.2g}.",
+        f"calls for contact-loss, which {where} does not have: an answer without it has e too high by about "
+        f"{number(bodies):.2g}.",
         key="loss_factor",
         value=f"{bodies.contact.loss_factor:.3g}",
-        remedy="Use --fidelity rigid" + (" or modal" * (not flows)) + ', or add "-contact-loss" to effects.',
+        remedy=f'Use --fidelity rigid{other}, or add "-contact-loss" to effects.',
     )
+
+
+def _unheld(bodies: Bodies, spec: ModelSpec) -> str:
+    """Return what of a viscous contact finite elements do not hold, empty where they hold it."""
+    if any(metal.loss_factor for _, metal in bodies.barrier.strata) and bodies.contact.compliant:
+        return "a barrier of finite elements"
+    if spec.rod_law is not None:
+        return "a rod of finite elements that yields"
+    return "a rod of several materials of finite elements" if len(bodies.rod.materials) > 1 else ""
 
 
 EFFECT = Effect(

@@ -11,6 +11,7 @@ from fem_impact.physics.viscous import viscous_restitution
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load, replace
+from fem_impact.scene.write import to_dict
 
 STEEL = {"name": "elastic steel", "E": "210 GPa", "nu": 0.3, "rho": "7850 kg/m3"}
 CLOSED = ("rigid", "modal")
@@ -87,9 +88,33 @@ def test_a_body_that_flows_loses_by_both_in_the_rigid_theory():
     assert abs(both.energy.residual) < 1e-9
 
 
-def test_finite_elements_are_refused_and_each_remedy_works():
-    with pytest.raises(SceneError, match=r"loss_factor.*finite elements do not have.*0\.16.*rigid or modal"):
-        Case.of(ball(0.1))
+@pytest.mark.parametrize(
+    ("key", "value", "reason"),
+    [
+        ("barrier.material", "soft", "a barrier of finite elements"),
+        ("projectile.segments", "two", "a rod of several materials"),
+        ("projectile.material", "yields", "a rod of finite elements that yields"),
+    ],
+)
+def test_finite_elements_say_what_they_do_not_hold_and_each_remedy_works(key, value, reason):
+    rubber = {"name": "a rubber", "E": "4 MPa", "nu": 0.4, "rho": "1150 kg/m3", "loss_factor": 0.1}
+    values = {
+        "two": [{"to": "30 mm", "material": rubber}, {"material": rubber | {"name": "b rubber"}}],
+        "soft": rubber,
+        "yields": rubber | {"E": "3 GPa", "yield_stress": "5 MPa", "hardening": "0 MPa"},
+    }
+    tree = to_dict(ball(0.1))
+    if key == "projectile.segments":
+        tree["projectile"].pop("material")
+    section, name = key.split(".")
+    tree[section][name] = values[value]
+    with pytest.raises(SceneError, match=rf"contact-loss, which {reason}.* does not have.*--fidelity rigid"):
+        Case.of(read_dict(tree))
+    assert Case.of(read_dict(tree), "rigid")
+    assert Case.of(read_dict(tree | {"effects": ["auto", "-contact-loss"]}))
+
+
+def test_what_the_scene_leaves_out_is_told():
     off = ball(0.1, effects=("auto", "-gravity", "-contact-loss"))
     case = Case.of(off)
     assert any("contact-loss" in words for words in neglected(case.choices))
