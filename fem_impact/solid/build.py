@@ -35,7 +35,6 @@ from fem_impact.solid.frame import FixedFrame, TurningFrame, mass_centre
 from fem_impact.solid.ground import Ground
 from fem_impact.solid.items import Force, Impulse
 from fem_impact.solid.model import Model
-from fem_impact.solid.viscous import MaxwellCells
 from meshes import SKIN, owners
 from rigid import Faceted
 
@@ -44,6 +43,7 @@ if TYPE_CHECKING:
     from fem_impact.solid.elastic import ModalDamping
     from fem_impact.solid.foundation import FoundationSprings
     from fem_impact.solid.rigid_rest import ElasticNose, RigidRest
+    from fem_impact.solid.viscous import MaxwellCells
     from fem_impact.solid.yielding import YieldingZone
 
 
@@ -309,6 +309,14 @@ class Builder:
         modes = rod_modes(K, self.meshed.mass[: K.shape[0]], inverse == 0)
         return ModalDamping.of(modes, self.frame, inverse, self.meshed.free_nodes, loss, self.steps["rod"])
 
+    def maxwell(self, rod: ElasticRod | ElasticNose) -> list[MaxwellCells]:
+        """Return the Maxwell elements of a viscous rod beside its elastic item."""
+        if not self.viscous:
+            return []
+        from fem_impact.solid.viscous import MaxwellCells
+
+        return [MaxwellCells.of(rod, law) for law in self.viscous]
+
     def rigid_rest(self) -> RigidRest:
         """Return the rigid body behind the nose: the nose's last section and the points behind it."""
         from fem_impact.solid.rigid_rest import RigidRest
@@ -321,8 +329,7 @@ class Builder:
         """Return the items that add forces, in their order."""
         (linear, _), (block, _, _), gravity = self.elastic_rod, self.block, self.spec.gravity
         weight = [] if gravity is None else [self.weight(gravity)]
-        viscous = [MaxwellCells.of(linear, law) for law in self.viscous]
-        return [linear, *viscous, *weight, *block, *self.foundation, *self.zones]
+        return [linear, *self.maxwell(linear), *weight, *block, *self.foundation, *self.zones]
 
     def impulses(self) -> list[Impulse]:
         """Return the items that change velocities, in their order, which ends with the contact."""
