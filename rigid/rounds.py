@@ -44,7 +44,7 @@ def around(side: list[Round]) -> list[Round]:
     if on_axis:
         side = [first._replace(x=0.0, low=-first.high), *side[1:]]
     mirror = [
-        Round(-one.x, one.z, one.radius, -one.high, -one.low, -one.curve - (0 if on_axis else 1))
+        Round(0.0 - one.x, one.z, one.radius, 0.0 - one.high, 0.0 - one.low, -one.curve - int(not on_axis))
         for one in side[:0:-1] + ([] if on_axis else [first])
     ]
     last = mirror[0].curve if mirror else 0

@@ -68,6 +68,7 @@ class ModalResult:
     contacts : (m, 4) start, end, s, impulses along n and t, N s
     force : largest normal force, N
     sites : what touched, in the order of its first touch
+    laid : whether a straight part landed flat
     finished, reason : whether the impact is over, and why the march ended
     last, time : motion and modes at the end, gravity in them, and its time, s
     record : (m, 16) what moved over time, see `fem_impact.modal.motion`; no rows where none was wanted
@@ -96,6 +97,7 @@ class ModalResult:
     fallen: float
     contacts: Array
     sites: tuple[PressedSite, ...]
+    laid: bool
     force: float
     finished: bool
     reason: str
@@ -304,6 +306,7 @@ def _result(
         fallen=tally[SUM.gravity] + kinetic - _kinetic(rod, *motion),
         contacts=contacts,
         sites=pressed_sites(case, rod, course.held),
+        laid=bool((course.held.flats.deepest > 0.0).any()),
         force=tally[SUM.force],
         finished=over,
         reason=_reason(over, bounds),

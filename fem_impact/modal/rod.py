@@ -82,20 +82,19 @@ def _moved(bodies: Bodies, places: Array) -> tuple[Array, Array]:
     """Return omega (k,), and what each mode moves places (m, 2) by, (m, 2, k), kg^-1/2; all (x, z)."""
     points, shape, omega = _modes(_elastic(bodies.rod), bodies.scene.across)
     near = AROUND * bodies.rod.diameter
-    low = omega < section_frequency(bodies.rod.material, bodies.rod.diameter)
-    return omega[low], np.array([_moved_place(points, shape[:, :, low], near, *place) for place in places])
+    return omega, np.array([_moved_place(points, shape, near, *place) for place in places])
 
 
 def _moved_place(points: Array, shape: Array, around: float, x: float, z: float) -> Array:
-    """Return what modes (n, 3, k) with nodes at points (n, 3) move a place by, (2, k).
+    """Return what modes (n, 2, k) with nodes at points (n, 3) move a place by, (2, k).
 
-    They are taken as affine ``around`` it, m.
+    They are taken as affine ``around`` it, m, by least squares.
     """
-    away = points - np.array([x, 0.0, z])
-    near = np.linalg.norm(away, axis=1) < around
-    affine = np.column_stack([np.ones(near.sum()), away[near][:, [0, 2]]])
-    moved = np.einsum("n,ncm->cm", np.linalg.pinv(affine)[0], shape[near])
-    return np.asarray(moved[[0, 2]])
+    away = (points - np.array([x, 0.0, z])) / around
+    near = np.flatnonzero((away**2).sum(axis=1) < 1.0)
+    affine = np.column_stack([np.ones(len(near)), away[near][:, [0, 2]]])
+    weights = affine @ np.linalg.solve(affine.T @ affine, np.array([1.0, 0.0, 0.0]))
+    return np.asarray(np.tensordot(weights, shape[near], axes=1))
 
 
 def _elastic(rod: ProjectileSpec) -> ProjectileSpec:
@@ -110,7 +109,10 @@ def _elastic(rod: ProjectileSpec) -> ProjectileSpec:
 
 @lru_cache(maxsize=32)
 def _modes(rod: ProjectileSpec, across: int) -> tuple[Array, Array, Array]:
-    """Return nodes (n, 3) in the rod frame, mode shapes (n, 3, k) of the whole rod, and omega (k,)."""
+    """Return nodes (n, 3) in the rod frame, mode shapes x, z (n, 2, k) of the whole rod, and omega (k,).
+
+    Modes above the section's own frequency are left out: their compliance is part of the contact law.
+    """
     scene = Scene(
         id="modes",
         title="modes of a rod on the coarse mesh",
@@ -123,6 +125,7 @@ def _modes(rod: ProjectileSpec, across: int) -> tuple[Array, Array, Array]:
     )
     meshed = MeshedBodies(Case.of(scene))
     modes, mesh = meshed.rod_modes(), meshed.geometry.rod.mesh
+    low = modes.omega < section_frequency(rod.material, rod.diameter)
     # modes are normalised with the mass of the half rod
-    shape = modes.shape[meshed.free_nodes] / sqrt(2)
-    return mesh.points[~mesh.is_hanging], shape, modes.omega
+    shape = modes.shape[meshed.free_nodes][:, ::2, low] / sqrt(2)
+    return mesh.points[~mesh.is_hanging], np.ascontiguousarray(shape), modes.omega[low]

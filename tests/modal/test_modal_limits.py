@@ -225,7 +225,7 @@ def test_an_open_ledger_is_closed_by_smaller_steps(monkeypatch):
     """The first march is spoiled; the next, with half the step, is not."""
     steps = []
 
-    def spoiled_once(planned, progress, recorded, step):
+    def spoiled_once(planned, progress, recorded, step, *_):
         steps.append(step)
         result = solve(planned, step=step)
         return replace(result, residual=2e-4 * result.E_0) if step == 1 else result
