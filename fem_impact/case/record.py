@@ -94,6 +94,17 @@ class ContactRecord:
     resolved: bool = False
     crushed: bool = False
 
+    @property
+    def rows(self) -> int:
+        """Rows of nodes across the narrow side of the site with the largest impulse; 0 without a site."""
+        if not self.sites:
+            return 0
+        site = max(self.sites, key=lambda one: one.impulse_n)
+        along = site.high[0] - site.low[0]
+        # a patch that reaches the plane of symmetry goes on behind it
+        across = site.high[1] - site.low[1] if site.low[1] > self.rod.edge else 2 * site.high[1]
+        return 1 + round(min(along, across) / self.rod.edge)
+
     def digest(self) -> str:
         """Return the SHA-256 of all its numbers."""
         return sha256(self._packed()).hexdigest()

@@ -23,6 +23,7 @@ from fem_impact.answers.refine.budget import LONGER, about_s, in_turns, longest_
 from fem_impact.answers.refine.level import (
     GRID_OFFSETS,
     STAMP,
+    UNRESOLVED,
     LevelRun,
     limits_of,
     relative_errors,
@@ -54,14 +55,13 @@ MOST_REPEATS = 2  # of a level, each with twice the room
 # levels beyond those asked for, where the last has not resolved the contact: it would have no numbers
 MORE = 1
 JUMP = 2  # splits between two levels at most: a record holds the places of cells four times as large
-# how much longer a level takes than one with cells twice as large, where only one has run: the most of 24
-# pairs of levels of the 13 measured sets, whose median was 1.9
-SLOWER = 2.8
+# how much longer a level takes than one with cells twice as large, at least: 4 to 7 of twelve bodies whose
+# contact is a line or an edge, less of round tips
+SLOWER = 4.0
 BUDGET = 600.0  # s of wall time for all levels, unless stated
 LATE = 1.3  # of the budget, beyond which a level that has begun is given up
 MOST_FINER = 3  # splits beyond those that resolve the contact, where a band decides
 SLICES = 1 / 3  # of the diameter: height over the tip at which the slices of a body may begin
-UNRESOLVED = Unknown("the last level did not resolve the contact; accuracy.levels = 4 adds a finer one")
 
 
 Decides = Callable[[Sequence[LevelRun]], bool]
@@ -179,9 +179,9 @@ class LevelChain:
             wanted = self._usual
         else:  # levels that were asked for are run, however well the pilot resolves its contact
             wanted = max(self._wanted(patch_radius(self.done[-1].record.rod)), self.done[0].splits + 1)
-        least = self.first + (0 if self._is_sized else min(levels, LEVELS) - 1)
+        least = self.first + (0 if self._is_sized else LEVELS - 1)
         more = max(levels - LEVELS, 0) if self._is_sized else levels - LEVELS
-        return min(max(wanted + more, least), self.first + JUMP * max(levels - 2, 0) + 1)
+        return min(max(wanted, least) + more, self.first + JUMP * max(levels - 2, 0) + 1)
 
     @property
     def following(self) -> int | None:
@@ -289,7 +289,7 @@ class LevelChain:
         times = [level.wall_s / (1 + level.repeats) / self._turns(len(level.outcomes)) for level in self.done]
         steps = [level.splits for level in self.done]
         slower = (times[-1] / times[-2]) ** (1 / (steps[-1] - steps[-2])) if len(times) > 1 else SLOWER
-        of_one = times[-1] * max(slower, 1.0) ** (splits - steps[-1])
+        of_one = times[-1] * max(slower, SLOWER) ** (splits - steps[-1])
         return float(of_one * self._turns(1 if self.twin is None else 2) * self._turns(len(self._offsets)))
 
     def _wanted(self, radius: float) -> int:
@@ -337,13 +337,13 @@ class LevelChain:
 
     def _run_level(self, splits: int) -> None:
         """Run a level, again with more room where it needs that, and add it to what is done."""
-        begun = perf_counter()
         last = bool(self.done) and splits >= self.finest
         scene = self._at(splits)
         before = known = self.done[-1].record if self.done else self._expected(splits)
-        if not last:  # a coarse level tells all it finds
-            accuracy = replace(scene.accuracy, unresolved="report")
-            scene = replace(scene, accuracy=accuracy, save=replace(scene.save, frames=0, strain_samples=0))
+        # each level tells all it finds: the next one may have to be compared with it
+        scene = replace(scene, accuracy=replace(scene.accuracy, unresolved="report"))
+        if not last:
+            scene = replace(scene, save=replace(scene.save, frames=0, strain_samples=0))
         scenes = self._sharing(scene)
         for repeats in range(MOST_REPEATS + 1):
             cases = [Case.of(one, "solid", before) for one in scenes]
@@ -362,10 +362,8 @@ class LevelChain:
             before = known.wider(2.0 ** (repeats + 1))  # a record has the room of a first run
         size = contact_edge(cases[0].bodies)  # as it came out, which is not always as asked for
         outcomes = tuple(outcome for outcome, _ in runs)
-        took_s = perf_counter() - begun
-        if self.options.resume:  # what was computed before an interruption took its time, too
-            walls = [outcome.cost.whole_wall for outcome in outcomes]
-            took_s = max(took_s, (1 + repeats) * longest_s(walls, self.workers))
+        # without a first compilation of the kernels, and with what ran before an interruption
+        took_s = (1 + repeats) * longest_s([one.cost.whole_wall for one in outcomes], self.workers)
         self.done.append(LevelRun(splits, size, tuple(cases), outcomes, record, took_s, repeats))
 
     def _place(self, number: int, repeats: int, run: int = 0) -> Path:
@@ -410,8 +408,7 @@ class LevelChain:
         """Return the outcome of the level that counts, of the scene as stated, with limits and bands."""
         upto = self.done[: self.counted]
         counted, beyond = upto[-1], self.done[self.counted :]
-        banded = len(upto) > 1 and counted.record.resolved
-        limits, bands = limits_of(upto) if banded else (UNRESOLVED, UNRESOLVED)
+        limits, bands = limits_of(upto)
         left = (
             f"Contact or flow left the zones held ready, after {counted.repeats} repeats with more room."
             if counted.record.left

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import product
+from itertools import pairwise, product
 from math import sqrt
 from operator import attrgetter, itemgetter
 from statistics import fmean, stdev
@@ -44,9 +44,10 @@ LOWEST = 0.75
 # and 44 (e) cases, three times as wide ones in 91 and 81. So wide, bands of one offset contain the limit of
 # all meshes of the 13 sets in 91 %, that of the finer two in 85 %.
 ONE_RUN = 3.0
-# share of a change between two levels by which the next one changes at least, for a band: that of a method of
-# first order. t5c: e .281, .307, .304 on three levels, .312 on a fourth
+# share of a change between two levels that a band holds at least; all of it where both resolve the contact
+# and ran once. t5c: e .281, .307, .304 on three levels, .312 on a fourth
 HALVED = 0.5
+LONE = 1.5  # of the change from a level that did not resolve its contact: that has no order, as a pair's has
 # Standard error of a mean over evenly spaced offsets, over that of offsets taken at random. Even ones cancel
 # the first harmonics of the grid. Root mean squares over nine quantities of the 13 sets: means of two offsets
 # lay .40 and .50 of the latter from those of four on 0.59 and 0.30 mm (medians .31 and .35; on rods with
@@ -150,7 +151,7 @@ def mesh_limits(meshes: Sequence[MeshRuns]) -> tuple[MeshNumbers, MeshNumbers]:
     )
 
 
-def level_limits(meshes: Sequence[MeshRuns], resolved: bool = True) -> tuple[MeshNumbers, MeshNumbers]:
+def level_limits(meshes: Sequence[MeshRuns], resolved: Sequence[bool]) -> tuple[MeshNumbers, MeshNumbers]:
     """Return limits and half-widths, by key, of two or more levels from coarse to fine, as `level_limit`.
 
     They are of every banded number that all runs of the finest two know. Bands hold what the cells of the
@@ -163,7 +164,7 @@ def level_limits(meshes: Sequence[MeshRuns], resolved: bool = True) -> tuple[Mes
             continue
         # a number that a coarser level does not know changes by itself
         values = [mesh.values([key]) or [0.0] for mesh in meshes[-3:]]
-        limits[key.name], bands[key.name] = level_limit(sizes, values, resolved)
+        limits[key.name], bands[key.name] = level_limit(sizes, values, resolved[-3:])
         if key in VIBRATION:
             bands[key.name] = floored(bands[key.name], meshes[-1].runs)
     for name, change in held_back(meshes[-1].runs[0]).items():
@@ -174,21 +175,25 @@ def level_limits(meshes: Sequence[MeshRuns], resolved: bool = True) -> tuple[Mes
 
 
 def level_limit(
-    sizes: Sequence[float], values: Sequence[Sequence[float]], resolved: bool = True
+    sizes: Sequence[float], values: Sequence[Sequence[float]], resolved: Sequence[bool]
 ) -> tuple[float, float]:
     """Return limit and half-width of one number from its values on two or three levels from coarse to fine.
 
-    They are those of the finest two, but no half-width is less than `HALVED` of the change between the two
-    levels before: two levels may agree by chance. Where only the finest ``resolved`` its contact, nothing is
-    extrapolated: its own value stands, with what order `LOWEST` leaves of the change to it.
+    They are those of the finest two, but two levels may agree by chance: no half-width is less than the
+    change from one level to the next where both ``resolved`` the contact and ran once each, and than `HALVED`
+    of any other. Where the last but one did not, nothing is extrapolated: the finest value stands, with
+    `LONE` times the change to it.
     """
     means = [fmean(on_level) for on_level in values]
-    if resolved:
+    changes = [abs(fine - coarse) for coarse, fine in pairwise(means)]
+    if resolved[-2]:
         limit = limit_of(sizes[-2:], values[-2:])
         value, band = limit.value, limit.uncertainty
     else:
-        value, band = means[-1], abs(means[-1] - means[-2]) / ((sizes[-2] / sizes[-1]) ** LOWEST - 1)
-    return value, max(band, HALVED * abs(means[-2] - means[-3])) if len(means) > 2 else band
+        value, band = means[-1], LONE * changes[-1]
+    once = min(map(len, values[-2:])) == 1
+    shares = [1.0 if once and all(pair) else HALVED for pair in pairwise(resolved)]
+    return value, max(band, *(share * change for share, change in zip(shares, changes, strict=True)))
 
 
 def extrapolated(meshes: Sequence[MeshRuns], keys: Sequence[Key]) -> ExtrapolatedValue | None:

@@ -17,8 +17,10 @@ from fem_impact.outcome.record import Outcome
 from fem_impact.run.program import stamp
 from fem_impact.run.simulate import simulate_recorded
 
+ROWS = 4  # of nodes across the narrow side of a contact, on two levels whose values are extrapolated
 # shifts of a meshed barrier's grid along t, in cells at the contact, at which a level runs
 GRID_OFFSETS = (0.0, 0.5)
+UNRESOLVED = Unknown("the last level did not resolve the contact; accuracy.levels = 4 adds a finer one")
 STAMP = "level.stamp"
 """File of a level's directory that says what was computed there."""
 
@@ -51,14 +53,31 @@ class LevelRun:
         return self.outcomes[0]
 
     @property
+    def is_wide(self) -> bool:
+        """Whether it resolves its contact, also across its narrow side."""
+        return self.record.resolved and self.record.rows >= ROWS
+
+    @property
     def runs(self) -> MeshRuns:
         """Its runs beside the size of its cells."""
         return MeshRuns(self.size, list(self.outcomes))
 
 
 def limits_of(levels: Sequence[LevelRun]) -> tuple[MeshNumbers, MeshNumbers]:
-    """Return limits and half-widths, by key, of two levels or more from coarse to fine."""
-    return level_limits([level.runs for level in levels], levels[-2].record.resolved)
+    """Return limits and half-widths, by key, of levels from coarse to fine, or why there are none.
+
+    They need two levels, of which the last resolves the contact, also across its narrow side: a line of
+    contact one cell wide is pressed as hard as its cells are large, whatever it does on the level before.
+    """
+    if len(levels) < 2 or not levels[-1].record.resolved:
+        return UNRESOLVED, UNRESOLVED
+    if (rows := levels[-1].record.rows) < ROWS:
+        narrow = Unknown(
+            f"the contact is {rows} nodes wide on the last level, and bands need {ROWS}; a larger "
+            "accuracy.levels adds finer ones"
+        )
+        return narrow, narrow
+    return level_limits([level.runs for level in levels], [level.is_wide for level in levels])
 
 
 def relative_errors(levels: Sequence[LevelRun]) -> dict[str, float]:
@@ -67,9 +86,7 @@ def relative_errors(levels: Sequence[LevelRun]) -> dict[str, float]:
     What has no band is left out: all where the last level does not resolve its contact, and the vibration of
     a rod that is rigid.
     """
-    limits, bands = (
-        limits_of(levels) if len(levels) > 1 and levels[-1].record.resolved else (Unknown(""), Unknown(""))
-    )
+    limits, bands = limits_of(levels)
     if isinstance(limits, Unknown) or isinstance(bands, Unknown):
         return {}
     errors = {}

@@ -15,12 +15,12 @@ from fem_impact.answers.refine.extrapolate import (
     level_limits,
     vibration_floor,
 )
-from fem_impact.answers.refine.level import LevelRun
+from fem_impact.answers.refine.level import LevelRun, limits_of
 from fem_impact.answers.verdict.reliability import known_error
 from fem_impact.answers.verdict.twins import twins
 from fem_impact.case.case import Case
 from fem_impact.case.plates import half_space_error, is_thin
-from fem_impact.outcome.keys import known, or_none
+from fem_impact.outcome.keys import Unknown, known, or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.outcome.shares import SHARES
 from fem_impact.run.simulate import simulate
@@ -139,14 +139,14 @@ def solid_effect(levels: Sequence[LevelRun]) -> VibrationEffect | None:
     contact.
     """
     useful = [level for level in levels if not unfinished(pair_of(level))]
-    if len(useful) < 2 or not useful[-1].record.resolved:
+    if isinstance(limits_of(useful)[0], Unknown):
         return None
     coarse, fine = useful[-2:]
     (free, stiff), used = pair_of(fine), useful[-3:]
-    changes = [[_difference(pair_of(level))] for level in used]
-    value, band = level_limit([level.size for level in used], changes, coarse.record.resolved)
+    changes, wide = [[_difference(pair_of(level))] for level in used], [level.is_wide for level in used]
+    value, band = level_limit([level.size for level in used], changes, wide)
     with_vibration = [MeshRuns(level.size, [pair_of(level)[0]]) for level in used]
-    limits, bands = (known(of) for of in level_limits(with_vibration, coarse.record.resolved))
+    limits, bands = (known(of) for of in level_limits(with_vibration, wide))
     E_vib, E_vib_band = (of[VIBRATION[0].name] for of in (limits, bands))
     errors = {
         key.path[-1]: abs(limits[key.name] - known(key.of(free))) + bands[key.name]

@@ -8,6 +8,7 @@ import pytest
 from fem_impact.answers.refine import level as level_module
 from fem_impact.answers.refine.chain import LevelChain
 from fem_impact.answers.refine.extrapolate import MeshRuns, level_limits, mesh_limits
+from fem_impact.answers.refine.level import limits_of
 from fem_impact.answers.wanted_error import compiled, simulate
 from fem_impact.case.case import Case
 from fem_impact.case.record import ContactRecord
@@ -134,7 +135,7 @@ def test_two_levels_that_resolve_the_contact_give_bands():
     assert limits["e_edge"] == pytest.approx(known(outcome.restitution.edge.e), abs=bands["e_edge"])
 
 
-def test_no_band_is_narrower_than_half_of_the_change_before():
+def test_no_band_is_narrower_than_the_changes_from_level_to_level():
     """Two levels that agree by chance say nothing; a steady fall keeps the band of its last two."""
     outcome = simulate(QUICK, "rigid")
 
@@ -143,13 +144,36 @@ def test_no_band_is_narrower_than_half_of_the_change_before():
         runs = (replace(outcome, restitution=replace(outcome.restitution, edge=edge)) for edge in edges)
         return [MeshRuns(2.0**-at, [run]) for at, run in enumerate(runs)]
 
-    _, bands = level_limits(levels(0.4, 0.3, 0.3001))
-    assert known(bands)["e_edge"] == pytest.approx(0.05)
-    limits, bands = level_limits(levels(0.4, 0.3, 0.25), resolved=False)
+    def band(meshes, *resolved):
+        return known(level_limits(meshes, resolved)[1])["e_edge"]
+
+    chance = levels(0.4, 0.3, 0.3001)
+    assert band(chance, True, True, True) == pytest.approx(0.1)
+    assert band(chance, False, True, True) == pytest.approx(0.05)  # what a pilot gives is far off by itself
+    twice = [MeshRuns(mesh.size, mesh.runs * 2) for mesh in chance]
+    assert band(twice, True, True, True) == pytest.approx(0.05)
+    falling = levels(0.4, 0.3, 0.25)
+    limits, bands = level_limits(falling, (False, False, True))
     assert known(limits)["e_edge"] == 0.25  # nothing is extrapolated from a level that resolves nothing
-    assert known(bands)["e_edge"] == pytest.approx(0.05 / (2**0.75 - 1))
-    steady = levels(0.4, 0.3, 0.25)
-    assert known(level_limits(steady)[1])["e_edge"] == known(mesh_limits(steady[-2:])[1])["e_edge"] > 0.05
+    assert known(bands)["e_edge"] == pytest.approx(1.5 * 0.05)
+    assert band(falling, False, True, True) == known(mesh_limits(falling[-2:])[1])["e_edge"] > 0.05
+
+
+def test_a_contact_a_few_nodes_wide_gives_no_band(quick):
+    """A line of contact one cell wide is pressed as hard as its cells are large, and agrees with itself."""
+    *_, before, last = quick[0].done
+    assert last.record.rows >= 4
+    (site,) = last.record.sites
+    h = last.record.rod.edge
+    line = replace(site, low=(0.0, 0.0), high=(h, 20 * h))
+    narrow = replace(last, record=replace(last.record, sites=(line,)))
+    assert narrow.record.rows == 2
+    _, why = limits_of([before, narrow])
+    assert "2 nodes wide on the last level, and bands need 4" in why.reason
+    coarse = replace(before, record=replace(before.record, sites=(line,)))
+    wide = replace(before, record=last.record)
+    limits = [known(limits_of([one, last])[0])["mu"] for one in (coarse, wide)]
+    assert limits[0] == last.outcome.restitution.mu != limits[1]
 
 
 def test_a_chamfered_tube_runs_which_one_mesh_refuses():

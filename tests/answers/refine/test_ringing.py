@@ -62,7 +62,7 @@ def test_band_of_the_levels_alone_would_miss_it(bar, monkeypatch):
     chain, outcome = bar
     monkeypatch.setattr("fem_impact.answers.refine.extrapolate.held_back", lambda run: {})
     meshes = [MeshRuns(level.size, [level.outcome]) for level in chain.done]
-    limits, bands = level_limits(meshes, False)
+    limits, bands = level_limits(meshes, [level.is_wide for level in chain.done])
     assert limits["e_edge"] + bands["e_edge"] < 0.99
     assert bands["e_edge"] < outcome.estimate("e_edge")[1]
 
