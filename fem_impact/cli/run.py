@@ -27,7 +27,7 @@ from fem_impact.scene.impact import FIRST
 from fem_impact.scene.types import OWN, Scene
 from fem_impact.scene.write import digest
 from fem_impact.tables.table import Table
-from fem_impact.tables.text import wrapped
+from fem_impact.tables.text import with_band, wrapped
 
 if TYPE_CHECKING:
     from fem_impact.case.case import Case
@@ -203,6 +203,8 @@ _BARRIER = (
 )
 HEATING = "friction + top 0.1 mm of both"
 """Label of the work that can heat the contact."""
+LEAST_SHOWN = 1e-3
+"""Half-width of a share in per cent, below which it is shown as so much."""
 _IF_ON = ("damping", "contact", "plate", "barrier")
 """Shares that are left out where they are not known: their effects are off."""
 
@@ -215,22 +217,24 @@ def print_outcome(outcome: Outcome, out: Path, own_tests: bool = False) -> None:
     lines = [headed(outcome.provenance.scene_id, outcome.provenance.scene_title), ""]
     rows = _motion_rows(outcome, own_tests)
     lines += [_motion_line(outcome, *row) for row in rows]
-    of = "" if isinstance(outcome.validity.mesh_limit, Unknown) else ", on the finest mesh"
+    of = "" if isinstance(outcome.validity.mesh_limit, Unknown) else ", extrapolated from the levels"
     if not outcome.validity.finished:
         of = ", at the stop of this unfinished run"
     gravity = or_none(ADDED.of(outcome.energy))
     added = "" if gravity is None else f", to which gravity added {100 * gravity:.3f} %"
     lines += ["", *wrapped(f"of the initial energy, E_0 = {_number(outcome.energy.E_0)} J{added}{of}:")]
     listed = _listed_shares(outcome)
-    lines += [_share_line(label, value) for label, value in listed.items()]
+    lines += [_share_line(label, *share) for label, share in listed.items()]
     lines += [_share_line("not accounted for", outcome.energy.residual)]
-    lines += ["", _share_line(HEATING, outcome.energy.skin)]
+    heating = outcome.estimate(KEY_TABLE["W_skin_over_E_0"])
+    lines += ["", _share_line(HEATING, *heating)]
     if or_none(outcome.energy.below_floor):
         floor = _value(outcome.energy.vibration_floor)
         lines += [f"  vibration is below its numerical floor (fraction {floor})"]
     lines += _accuracy_lines(outcome)
     motion = {label: KEY_TABLE[name].of(outcome) for label, name, _ in rows}
-    lines += _unknown_lines({**motion, **listed, HEATING: outcome.energy.skin})
+    known_or_not = {label: value for label, (value, _) in {**listed, HEATING: heating}.items()}
+    lines += _unknown_lines({**motion, **known_or_not})
     lines += ["", *limitation_lines(outcome.validity.limitations)]
     sys.stdout.write("\n".join([*lines, f"results: {out}"]) + "\n")
 
@@ -248,15 +252,15 @@ def _motion_rows(outcome: Outcome, own_tests: bool) -> list[tuple[str, str, str]
     return rows
 
 
-def _listed_shares(outcome: Outcome) -> dict[str, Num]:
-    """Return the shares of E_0 in this run by their labels."""
-    energy, listed = outcome.energy, dict[str, Num]()
+def _listed_shares(outcome: Outcome) -> dict[str, tuple[Num, float | None]]:
+    """Return the shares of E_0 in this run by their labels, with their half-widths where they have one."""
+    energy, listed = outcome.energy, dict[str, tuple[Num, float | None]]()
     for share in shares("terminal"):
-        name, value = share.key.path[-1], share.of(energy)
+        name, (value, band) = share.key.path[-1], outcome.estimate(share.key)
         if not (isinstance(value, Unknown) and name in _IF_ON):
-            listed[_label(share, energy)] = value
+            listed[_label(share, energy)] = value, band
         if name == "vibration" and (above := above_modes(energy)):
-            listed[ABOVE] = above
+            listed[ABOVE] = above, None
     return listed
 
 
@@ -295,14 +299,21 @@ def _percent(value: Num) -> str:
 
 def _motion_line(outcome: Outcome, label: str, name: str, unit: str) -> str:
     value, band = outcome.estimate(KEY_TABLE[name])
-    spread = f" +- {_number(band)}" if band is not None else ""
-    text = "not known" if isinstance(value, Unknown) else f"{_number(value)}{spread} {unit}"
-    return f"  {label:<30} {text}".rstrip()
+    if isinstance(value, Unknown):
+        return f"  {label:<30} not known"
+    text = _number(value) if band is None else with_band(value, band)
+    return f"  {label:<30} {text} {unit}".rstrip()
 
 
-def _share_line(label: str, share: Num) -> str:
-    text = f"{'not known':>11}" if isinstance(share, Unknown) else f"{100 * share:9.3f} %"
-    return f"  {label:<30} {text.replace('-0.000', ' 0.000')}"
+def _share_line(label: str, share: Num, band: float | None = None) -> str:
+    """Return a line with a share of E_0 in per cent, and its half-width where it has one."""
+    if isinstance(share, Unknown):
+        text = f"{'not known':>11}"
+    elif band is None:
+        text = f"{100 * share:9.3f} %".replace("-0.000", " 0.000")
+    else:
+        text = f"{with_band(100 * share, max(100 * band, LEAST_SHOWN)):>19} %"
+    return f"  {label:<30} {text}"
 
 
 def _unknown_lines(listed: Mapping[str, Num]) -> list[str]:

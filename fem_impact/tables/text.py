@@ -7,7 +7,7 @@ import textwrap
 from collections.abc import Callable
 from decimal import Decimal
 from html import escape
-from math import ceil
+from math import ceil, floor, log10
 
 WIDTH = 79
 
@@ -48,6 +48,20 @@ def rounded_up(value: float, places: int) -> str:
     ('0.01', '0.03')
     """
     return f"{ceil(round(value * 10**places, 6)) / 10**places:.{places}f}"
+
+
+def with_band(value: float, band: float) -> str:
+    """Return a number with its half-width, both to the second digit of that.
+
+    Examples
+    --------
+    >>> with_band(0.36787, 0.01801), with_band(16.54, 14.38), with_band(0.25, 0.0)
+    ('0.368 +- 0.019', '17 +- 15', '0.25 +- 0')
+    """
+    if band <= 0.0:
+        return f"{value:.4g} +- 0"
+    places = max(0, 1 - floor(log10(band)))
+    return f"{value:.{places}f} +- {rounded_up(band, places)}"
 
 
 GREEK = {"gamma": "γ", "mu": "µ", "Omega": "Ω", "alpha": "α", "tau": "τ"}
