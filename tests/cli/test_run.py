@@ -238,7 +238,8 @@ def test_every_limitation_is_printed_after_its_kind(cli, stand):
 
 def test_vibration_above_the_modes_is_listed_so_that_the_shares_add_up(cli):
     """A blunt end on a rigid plane excites shapes that the modes do not hold."""
-    flat = ("--set", "impact.angle=0 deg", "--set", "effects=auto,barrier-rigid", "--set", "accuracy.levels=1")
+    changes = ("impact.angle=0 deg", "effects=auto,barrier-rigid", "accuracy.levels=1")
+    flat = [word for change in changes for word in ("--set", change)]
     said = cli("run", "quick", *flat, "--out", "flat")[1]
     listed = said.split("E_0 = ")[1].split("not accounted")[0]
     shares = [float(part) for part in re.findall(r"([\d.]+) %", listed)]
