@@ -101,6 +101,8 @@ def draw(scenes, path):
     size = 2.3 * len(scenes), 7.5
     panels = plt.subplots(len(SHOWN), len(scenes), figsize=size, sharex="col", layout="constrained")[1]
     for column, (name, grouped) in zip(panels.T, scenes.items(), strict=True):
+        times = [run["cpu"] for runs in grouped.values() for run in runs]
+        least, most = min(times), max(times)
         for ax, key in zip(column, SHOWN, strict=True):
             for kind, style in STYLES.items():
                 found = [runs for (_, of), runs in grouped.items() if of == kind]
@@ -110,7 +112,9 @@ def draw(scenes, path):
                 below = [m - min(of) for m, of in zip(middle, values, strict=True)]
                 above = [max(of) - m for m, of in zip(middle, values, strict=True)]
                 ax.errorbar(cpu, middle, [below, above], fmt=style, label=kind, ms=5, lw=1, capsize=2)
-            ax.set(xscale="log", ylabel=key if ax in panels[:, 0] else None)
+            ax.set(xscale="log", xticks=(2, 5, 10, 20, 50, 100), xticklabels=(2, 5, 10, 20, 50, 100))
+            ax.minorticks_off()
+            ax.set(xlim=(0.8 * least, 1.25 * most), ylabel=key if ax in panels[:, 0] else None)
         column[0].set_title(name)
         column[-1].set_xlabel("processor time, s")
     panels[0, 0].legend(fontsize="x-small")
