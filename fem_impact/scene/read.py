@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from functools import partial
 from math import inf, isclose
 from pathlib import Path
@@ -33,6 +32,7 @@ from fem_impact.scene.shapes import (
     stated_points,
 )
 from fem_impact.scene.surface import Surface
+from fem_impact.scene.surface_table import of_known, read_surface
 from fem_impact.scene.tables import UNKNOWN_KEY, Table, check_keys, listed, needed, numbers_of, within
 from fem_impact.scene.types import (
     OWN,
@@ -149,7 +149,7 @@ def read_scene(data: Table) -> Scene:
         "id": lambda: needed(data, "id", '"my-rod", a name for the scene'),
         "projectile": lambda: within(data, "projectile", _projectile),
         "barrier": lambda: within(data, "barrier", _barrier),
-        "surface": lambda: within(data, "surface", _surface) if "surface" in data else None,
+        "surface": lambda: within(data, "surface", read_surface) if "surface" in data else None,
         "impact": lambda: within(data, "impact", _impact),
         "accuracy": lambda: within(data, "accuracy", _accuracy, {}),
         "save": lambda: within(data, "save", lambda t: Save(**numbers_of(t, fields.SAVE)), {}),
@@ -158,7 +158,7 @@ def read_scene(data: Table) -> Scene:
     read = _all_read(parts)
     if read["surface"] is None:
         pair = read["projectile"].material, read["barrier"].struck
-        of_pair = partial(_of_known, lambda: pair_surface(*pair))
+        of_pair = partial(of_known, lambda: pair_surface(*pair))
         read["surface"] = within(data, "surface", of_pair, {}) if rubs or "surface" in data else SMOOTH
     scene = Scene(
         **read,
@@ -286,7 +286,7 @@ def _of_mesh(table: Table, own: dict[str, Any]) -> ProjectileSpec:
 
 def _faces(table: Table) -> tuple[Face, ...]:
     """Read the surface of each set whose outer faces have a state of their own."""
-    found = tuple(Face(name, surface) for name in table if (surface := within(table, name, _surface)))
+    found = tuple(Face(name, surface) for name in table if (surface := within(table, name, read_surface)))
     for name in set(table) - {face.name for face in found}:
         remedy = "Leave it out, or name another state, such as custom."
         raise SceneError("is the state of the scene's surface.", key=f"{name}.state", remedy=remedy)
@@ -376,38 +376,3 @@ def _accuracy(table: Table | str) -> Accuracy:
                 "stands beside a target, which chooses the mesh.", key=key, remedy="Keep one of the two."
             )
     return Accuracy(**numbers, target=parse_share(table["target"], "target"))
-
-
-def _surface(table: Table) -> Surface | None:
-    """Read a surface; that of the pair, which is None, follows from both materials."""
-    skin = [key for f in fields.SKIN for key in (f.key, f.si_key) if key]
-    check_keys(table, ("state", "source", *(f.key for f in fields.SURFACE), *skin))
-    state = needed(table, "state")
-    if state == "custom":
-        return _custom_surface(table)
-    return None if state == "pair" else _of_known(partial(library.surface, state), table)
-
-
-def _of_known(surface: Callable[[], Surface], table: Table) -> Surface:
-    """Return a surface of known friction with the layer of its table, which may repeat what is known."""
-    known, skin = surface(), [key for f in fields.SKIN for key in (f.key, f.si_key)]
-    for key, value in table.items():
-        if key in skin:
-            continue
-        if value != getattr(known, key):
-            raise SceneError(
-                f"is not the value of a {known.state} surface ({getattr(known, key)}).",
-                key=key,
-                value=value,
-                remedy='Leave it out, or write state = "custom" with your own friction and its source.',
-            )
-    layer = numbers_of({key: value for key, value in table.items() if key in skin}, fields.SKIN)
-    return replace(known, **layer)
-
-
-def _custom_surface(table: Table) -> Surface:
-    f = needed(table, "friction", "0.3, Coulomb's coefficient")
-    wanted = (*fields.SURFACE, *fields.SKIN)
-    numbers = numbers_of(table, wanted, ("state", "source"), {"friction_low": f, "friction_high": f})
-    source = needed(table, "source", '"our own tests", where the friction is known from')
-    return Surface(state="custom", source=source, **numbers)

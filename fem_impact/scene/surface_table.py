@@ -1,0 +1,47 @@
+"""From the table of a surface to the surface: a known state, one of the user's own, or that of the pair."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+
+from fem_impact.errors import SceneError
+from fem_impact.scene import fields, library
+from fem_impact.scene.surface import Surface
+from fem_impact.scene.tables import Table, check_keys, needed, numbers_of
+
+
+def read_surface(table: Table) -> Surface | None:
+    """Read a surface; that of the pair, which is None, follows from both materials."""
+    skin = [key for f in fields.SKIN for key in (f.key, f.si_key) if key]
+    check_keys(table, ("state", "source", *(f.key for f in fields.SURFACE), *skin))
+    state = needed(table, "state")
+    if state == "custom":
+        return _custom_surface(table)
+    return None if state == "pair" else of_known(partial(library.surface, state), table)
+
+
+def of_known(surface: Callable[[], Surface], table: Table) -> Surface:
+    """Return a surface of known friction with the layer of its table, which may repeat what is known."""
+    known, skin = surface(), [key for f in fields.SKIN for key in (f.key, f.si_key)]
+    for key, value in table.items():
+        if key in skin:
+            continue
+        if value != getattr(known, key):
+            raise SceneError(
+                f"is not the value of a {known.state} surface ({getattr(known, key)}).",
+                key=key,
+                value=value,
+                remedy='Leave it out, or write state = "custom" with your own friction and its source.',
+            )
+    layer = numbers_of({key: value for key, value in table.items() if key in skin}, fields.SKIN)
+    return replace(known, **layer)
+
+
+def _custom_surface(table: Table) -> Surface:
+    f = needed(table, "friction", "0.3, Coulomb's coefficient")
+    wanted = (*fields.SURFACE, *fields.SKIN)
+    numbers = numbers_of(table, wanted, ("state", "source"), {"friction_low": f, "friction_high": f})
+    source = needed(table, "source", '"our own tests", where the friction is known from')
+    return Surface(state="custom", source=source, **numbers)
