@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import hypot
+from math import hypot, inf
 from typing import Self
 
 import numpy as np
@@ -214,7 +214,8 @@ def solve(
     for s in _touching(rod, course.now):
         if not course.held.site[s, SITE.known]:
             rate = hypot(rate, give_law(case, rod, course.now, course.held, s, E_0, slowest, arrival is None))
-    dt = step * min(case.estimate.duration / STEPS, FASTEST / max([*rod.omega, rate]))
+    fastest = max([*rod.omega, rate])  # 0 of a rigid rod before it touches
+    dt = step * min(case.estimate.duration / STEPS, FASTEST / fastest if fastest else inf)
     latest = case.max_time if case.scene.accuracy.max_time else LATER * case.max_time
     bounds = Bounds(dt, horizon(case.scene.projectile) if ahead is None else ahead, latest)
     # compiles, or fetches what was compiled before, so that times are times of the impact

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import floor, sqrt
+from math import sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -27,7 +27,9 @@ if TYPE_CHECKING:
 
 MOST = 40
 """Strikes that modes compute at most."""
-LOOK = 0.5  # rad of the fastest mode between looks at a rod that nearly touches
+LOOK, LOOKS = 0.5, 1000  # rad of the fastest mode between looks at a rod that nearly touches, and most looks
+MARGIN = 1.2  # over the amplitudes of the modes together, about which a touch is looked for
+SLOWEST = 1e-9  # m/s, of a rod that comes down
 TOLD = (
     "{} strikes are computed with modes, each on a surface that nothing has dented; what touches again "
     "within a bending period belongs to the strike before. In flight the modes swing on, damped by the loss "
@@ -76,7 +78,7 @@ class _ModalCourse:
 
         It ends sooner than a first impact that stands by itself, which counts what touches much later to it.
         """
-        first = closed(case, ahead=case.bodies.bending_period)
+        first = closed(case, ahead=_ahead(case))
         followed = Followed.of(case)
         seen = case.scene.relative
         begin = followed.touching(seen.angle, seen.v_n, seen.v_t, seen.omega)
@@ -99,18 +101,25 @@ class _ModalCourse:
                 if finish is not Finish.STRONG:
                     return finish
                 touch = state
+            if self.followed.tumbles(touch):
+                break
             self._strike(touch)
         end, finish = self.followed.go_on(self.state)
         self._swing_on(end)
         return finish
 
+    def _comes(self, state: State) -> tuple[float, float]:
+        """Return the speed, m/s, at which a rigid rod comes down on what is lowest, and its arm d_c, m."""
+        corner = self.followed.shape.corners[self.followed.shape.lowest(state.alpha, state.Omega)]
+        d_c = corner.arms(state.alpha)[0]
+        return max(SLOWEST, -state.V_n - d_c * state.Omega), d_c
+
     def _hard(self, state: State) -> bool:
         """Return whether modes compute a strike."""
         k2, mass = self.followed.pull.k2, self.case.contact.body.mass
-        corner = self.followed.shape.corners[self.followed.shape.lowest(state.alpha, state.Omega)]
-        d_c = corner.arms(state.alpha)[0]
-        comes = min(0.0, state.V_n + d_c * state.Omega)
-        return 0.5 * mass * comes**2 / (1.0 + d_c**2 / k2) >= LEAST_BY_LAW * self.followed.each[0].before
+        comes, d_c = self._comes(state)
+        least = LEAST_BY_LAW * self.followed.each[0].before
+        return 0.5 * mass * comes**2 / (1.0 + d_c**2 / k2) >= least
 
     def _swing_on(self, state: State) -> None:
         """Take over a later state of the rigid body; what the modes lose meanwhile is damping."""
@@ -125,34 +134,33 @@ class _ModalCourse:
         self._swing_on(before)
         turn = before.alpha - self.case.scene.impact.angle
         arrival = Arrival(before.V_n, before.V_t, before.Omega, turn, self.q, self.rate)
-        ahead = self.case.bodies.bending_period
-        self._enter(before, closed(self.case, arrival=arrival, ahead=ahead), self.vibration)
+        self._enter(before, closed(self.case, arrival=arrival, ahead=_ahead(self.case)), self.vibration)
 
     def _touch(self) -> State | None:
-        """Return the rigid motion in which the vibrating rod touches next."""
-        pull, shape, rod = self.followed.pull, self.followed.shape, self.result.rod
-        swing = np.sqrt(self.q**2 + (self.rate / rod.omega) ** 2) if len(rod.omega) else np.zeros(0)
-        reach = max(
-            float(np.hypot(t, n) @ swing)
-            for t, n in zip(abs(rod.sites.along_t), abs(rod.sites.along_n), strict=True)
-        )
-        rigid = next_touch(shape, self.state, pull.g_n)
-        if rigid is None or reach == 0.0:
-            return None if rigid is None else self.state.flown(rigid[0], pull.g_n, pull.g_t)
-        early = next_touch(shape, self.state._replace(height=self.state.height - reach), pull.g_n)
-        start = 0.0 if early is None else early[0]
-        step = LOOK / float(rod.omega[-1])
-        low, opened = start, self._gap(start) > 0.0
-        for k in range(1, 2 + floor((rigid[0] - start) / step + reach / step)):
-            high = start + k * step
-            gap = self._gap(high)
-            if opened and gap <= 0.0:
+        """Return the rigid motion in which the vibrating rod touches next.
+
+        It is looked for about the touch of the rigid rod, as long as that takes to come by the amplitudes. A
+        weak touch is that of the rigid rod.
+        """
+        pull, rod = self.followed.pull, self.result.rod
+        rigid = next_touch(self.followed.shape, self.state, pull.g_n)
+        if rigid is None:
+            return None
+        touch = self.state.flown(rigid[0], pull.g_n, pull.g_t)
+        q, rate = self._swung(rigid[0])
+        swing = np.hypot(q, rate / rod.omega) if len(q) else q
+        along = np.hypot(rod.sites.along_t, rod.sites.along_n)
+        early = MARGIN * float((along @ swing).max(initial=0.0)) / self._comes(touch)[0]
+        if early == 0.0 or not self._hard(touch):
+            return touch
+        step = max(LOOK / float(rod.omega[-1]), 2.0 * early / LOOKS)
+        looks = np.arange(max(0.0, rigid[0] - early), rigid[0] + early, step).tolist()
+        gaps = [self._gap(dt) for dt in looks]
+        for low, high, open_, closed_ in zip(looks, looks[1:], gaps, gaps[1:], strict=False):
+            if open_ > 0.0 >= closed_:
                 dt = float(brentq(self._gap, low, high, xtol=1e-15))
                 return self.state.flown(dt, pull.g_n, pull.g_t)
-            low, opened = high, opened or gap > 0.0
-            if high > rigid[0] + step and not opened:
-                break
-        return self.state.flown(rigid[0], pull.g_n, pull.g_t)
+        return touch
 
     def _gap(self, dt: float) -> float:
         """Return the height, m, of what is lowest of the vibrating rod, ``dt``, s, from now."""
@@ -234,6 +242,11 @@ class _ModalCourse:
         )
         self.result, self.state, self.q, self.rate = result, after, last.q, last.rate
         self.strikes, self.damped = self.strikes + 1, 0.0
+
+
+def _ahead(case: Case) -> float:
+    """Return the time, s, within which what touches again belongs to the same strike."""
+    return max(case.bodies.bending_period, 2.0 * case.estimate.duration)
 
 
 def _energy(result: ModalResult, q: Array, rate: Array) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
-from math import copysign, cos, inf, pi, remainder, sin
+from math import copysign, cos, hypot, inf, pi, remainder, sin
 from typing import TYPE_CHECKING
 
 from fem_impact.case.effects.registry import AUTO
@@ -17,6 +17,7 @@ from fem_impact.run.rigid import NormalLoss, normal_loss
 from rigid import GRAVITY, kinetic_energy
 from rigid.strikes import (
     LEAST,
+    RUNAWAY,
     Approach,
     Corner,
     Finish,
@@ -41,7 +42,7 @@ FINISHED = {
     Finish.SLIDES: "It slides on.",
     Finish.LEAVES: "It leaves the barrier and does not come back.",
     Finish.COUNTED: "As many strikes as asked for are done.",
-    Finish.BOUNCES: "Its strikes lose so little that they do not end; what is left is told.",
+    Finish.BOUNCES: "A thousand strikes do not end it: they lose too little, or a slope gives it back.",
     Finish.TUMBLES: "It tumbles down the slope faster and faster.",
     Finish.JAMS: "Friction drives it into the barrier as it slides, which rigid theory does not follow.",
 }
@@ -170,6 +171,12 @@ class Followed:
         """Return the kinetic energy of the rigid motion, J."""
         body = self.case.contact.body
         return float(kinetic_energy(state.V_n, state.V_t, state.Omega, mass=body.mass, k2=body.k2))
+
+    def tumbles(self, state: State) -> bool:
+        """Return whether the body has become far faster than at first, down a slope; see `sequence`."""
+        g = hypot(self.pull.g_n, self.pull.g_t)
+        fall = 2.0 * self.case.contact.body.mass * g * self.shape.widest
+        return self.kinetic(state) > RUNAWAY * (self.each[0].before + fall)
 
     def work(self, start: State, end: State) -> float:
         """Return the work of gravity, J, on the way from one state to another."""

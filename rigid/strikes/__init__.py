@@ -1,6 +1,6 @@
 """Strikes of a rigid body from the first to rest: outline, flight, contacts that are held, and records."""
 
-from .course import LEAST, MOST, sequence
+from .course import LEAST, MOST, RUNAWAY, sequence
 from .flight import State, next_touch
 from .held import Ending, Held, Pull, hold
 from .outline import Corner, Outline, outline
@@ -9,6 +9,7 @@ from .record import Approach, Finish, Phase, Sequence, Strike
 __all__ = [
     "LEAST",
     "MOST",
+    "RUNAWAY",
     "Approach",
     "Corner",
     "Ending",

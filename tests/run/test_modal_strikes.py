@@ -104,3 +104,25 @@ def test_a_vibrating_rod_touches_where_its_lowest_place_meets_the_barrier():
     # and not before: looked at ten times as closely
     look = np.arange(dt - 1e-4, dt - 1e-8, 2e-8)
     assert min(course._gap(float(t)) for t in look) > -1e-9
+
+
+@pytest.mark.parametrize("effects", [["auto", "-vibration"], ["auto", "-friction"], ["auto", "-gravity"]])
+def test_effects_that_are_left_out_leave_a_sequence(effects):
+    s = simulate(replace_all(load("quick"), FLOOR | {"effects": effects}), "modal").strikes
+    assert (len(s.each) > 1) == ("-gravity" not in effects)
+    assert abs(s.residual) < 1e-10
+    assert s.end == (
+        "leaves" if "-gravity" in effects else "slides on" if "-friction" in effects else "rests"
+    )
+
+
+def test_a_low_rattle_down_a_slope_is_followed_at_once():
+    """A rod that hardly leaves the barrier is not looked for over its whole flight."""
+    changes = {
+        "impact.until": "rest",
+        "impact.slope": "60 deg",
+        "impact.v_n": "-3 m/s",
+        "impact.v_t": "0 m/s",
+    }
+    s = simulate(replace_all(load("quick"), changes), "modal").strikes
+    assert s.end in ("slides on", "tumbles on")
