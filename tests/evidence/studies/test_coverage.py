@@ -290,6 +290,7 @@ def test_the_report_counts_and_shows(tmp_path):
     results[lost] = Failure(lost, "killed")
     found = published(study.conclude, request, results)
     assert "mu 9 of 9" in found.text and "1 fault" in found.text
+    assert len((tmp_path / "misses.csv").read_text().splitlines()) == 1
     assert (tmp_path / "errors.csv").is_file() and (tmp_path / "figures" / "coverage.svg").is_file()
 
 
@@ -303,3 +304,18 @@ def test_a_run_that_takes_too_long_is_broken_off(monkeypatch):
     job = CoverageRun(drawn(1, 0)[0], DEFAULT)
     kept = job.read(job.run())
     assert kept.end == "too dear" and "level 2 of 3" in kept.why and 0.05 < kept.cpu_s < 5
+
+
+def test_misses_stand_the_worst_first(tmp_path):
+    request, results = Request(tmp_path, quick=True), {}
+    for job in study.plan(request, {}):
+        results[job.name] = CoverageResult(banded({"mu": 0.3}, {"mu": 0.02}))
+    for at, job in enumerate(job for job in study.plan(request, results) if job.model == FINER):
+        results[job.name] = CoverageResult(finer(mu=0.3 + 0.015 * at))
+    sure = study.plan(request, {})[-1].name
+    results[sure] = CoverageResult(banded({"mu": 0.3}, {"mu": 0.0}))
+    published(study.conclude, request, results)
+    misses = pandas.read_csv(tmp_path / "misses.csv")
+    ratios = misses["error over half-width"]
+    assert len(misses) == 8 and np.isnan(ratios[0]) and ratios[1:].is_monotonic_decreasing
+    assert ratios[1] == pytest.approx(8 * 0.015 / 0.02)

@@ -24,7 +24,7 @@ from fem_impact.evidence.studies.coverage.judge import (
 from fem_impact.evidence.studies.coverage.run import DEFAULT, FINER, FINEST, MODAL, MOST, NEXT
 from fem_impact.evidence.studies.coverage.scenes import SEED, DrawnScene
 from fem_impact.figures.panels import Mark, Panel, Picture, Series
-from fem_impact.tables.table import Column, Table
+from fem_impact.tables.table import Cell, Column, Table
 from fem_impact.tables.text import plain
 
 if TYPE_CHECKING:
@@ -49,6 +49,7 @@ HEAD = (
     Column("needed", f"factor for {AIM:.0%}", digits=2),
 )
 NUMBERS = ("finished", "strikes again")  # ends of runs that gave numbers
+WORST = 30  # misses that the page shows
 LONGEST = 160  # letters of a reason
 
 
@@ -75,6 +76,7 @@ def report_of(scenes: Sequence[DrawnScene], results: Results) -> StudyReport:
                 ("told", "family", "quantity"),
                 shown=False,
             ),
+            _misses(errors),
             _ends(ended),
             _reasons(ended),
             _all("errors", "Every told error beside the truth", errors),
@@ -134,8 +136,20 @@ def _sheet(
 ) -> Sheet:
     """Return a table of `coverage`."""
     head = (*(Column(one, left=True) for one in by), *HEAD)
-    rows = tuple(tuple(row) for row in table.reindex(columns=[*by, *SHOWN]).astype(object).to_numpy())
-    return Sheet(name, caption, Table(head, rows), shown)
+    rows = _cells(table.reindex(columns=[*by, *SHOWN]))
+    return Sheet(name, caption, Table(head, tuple(rows)), shown)
+
+
+def _misses(errors: pandas.DataFrame) -> Sheet:
+    """Return the numbers of bands that do not hold their truth, the worst first."""
+    missed = errors[~errors["inside"] & (errors["told"] != REDUCED)]
+    missed = missed.assign(ratio=missed["error"] / missed["half"]).sort_values("ratio", ascending=False)
+    shown = missed[["scene", "told", "quantity", "value", "half", "truth", "ratio"]]
+    rows = _cells(shown)
+    head = ("scene", "told", "quantity", "value", "half-width", "truth", "error over half-width")
+    table = Table.of(head, rows, left=(0, 1, 2))
+    caption = "Bands that do not hold a finer run, the worst first"
+    return Sheet("misses", caption, table, brief=Table.of(head, rows[:WORST], left=(0, 1, 2)))
 
 
 def _ends(table: pandas.DataFrame) -> Sheet:
@@ -159,8 +173,13 @@ def _reasons(table: pandas.DataFrame) -> Sheet:
 
 def _all(name: str, caption: str, table: pandas.DataFrame) -> Sheet:
     """Return a table that is written and not shown."""
-    rows = [tuple(row) for row in table.astype(object).to_numpy()]
-    return Sheet(name, caption, Table.of(tuple(map(str, table.columns)), rows), shown=False)
+    return Sheet(name, caption, Table.of(tuple(map(str, table.columns)), _cells(table)), shown=False)
+
+
+def _cells(table: pandas.DataFrame) -> list[tuple[Cell, ...]]:
+    """Return the rows of a table; over a half-width of zero there is no ratio."""
+    finite = table.replace([np.inf, -np.inf], np.nan).astype(object)
+    return [tuple(row) for row in finite.where(finite.notna(), None).to_numpy()]
 
 
 def _shares(by_quantity: pandas.DataFrame, by_family: pandas.DataFrame) -> Picture:
