@@ -16,6 +16,7 @@ import numpy as np
 from fem_impact.answers.report import Request, Sheet, StudyReport, StudyResult, publish
 from fem_impact.answers.sweep_results import COLUMNS, SHORT, Results, SweepRow, row_of
 from fem_impact.answers.vary import cases, in_unit, measure
+from fem_impact.answers.wanted_error import simulate
 from fem_impact.errors import UsageError, did_you_mean
 from fem_impact.figures.panels import Panel, Picture, Series
 from fem_impact.files.atomic import make_directory
@@ -62,7 +63,7 @@ def sweep(
     progress: ProgressMeter | None = None,
     executor: Executor | None = None,
 ) -> Results:
-    """Compute a scene with values varied in all combinations.
+    """Compute a scene with values varied in all combinations, each case as a run of its own would.
 
     Parameters
     ----------
@@ -77,7 +78,8 @@ def sweep(
     Returns
     -------
     Results
-        One row a case; a case that cannot run is a row with its reason.
+        One row a case; a case that cannot run is a row with its reason. Finite elements run on levels, and
+        their numbers have half-widths.
 
     Raises
     ------
@@ -90,7 +92,7 @@ def sweep(
         hint = did_you_mean(fidelity, FIDELITIES, f"Use one of {', '.join(FIDELITIES)}.")
         raise UsageError("is not a fidelity.", key="fidelity", value=fidelity, remedy=hint)
     every = cases(scene, vary)
-    jobs = [Job(case.name, case.scene, fidelity) for case in every if case.scene is not None]
+    jobs = [Job(case.name, case.scene, fidelity, way=simulate) for case in every if case.scene is not None]
     with tempfile.TemporaryDirectory() as spare:
         place = Path(out) if out is not None else Path(spare)
         make_directory(place)

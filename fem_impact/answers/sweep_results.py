@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from fem_impact.answers.vary import Variation, in_unit, measure
 from fem_impact.errors import UsageError, did_you_mean
 from fem_impact.jobs.job import Failure
+from fem_impact.outcome.keys import or_none
 from fem_impact.outcome.record import KEYS, Outcome
 from fem_impact.tables.table import Cell, Table
 
@@ -35,6 +36,15 @@ SHORT = (
     *("flash_temperature_K", "contacts", "strikes_again"),
 )
 """Columns that are shown unless others are chosen."""
+
+
+BAND = "_band"
+"""End of the name of a column with the half-widths of the column before it."""
+
+
+def known_bands(outcome: Outcome) -> dict[str, float]:
+    """Return the half-widths of an outcome by key; none where it has none."""
+    return dict(or_none(outcome.validity.mesh_band) or {})
 
 
 def require_columns(names: Sequence[str]) -> None:
@@ -132,7 +142,8 @@ class Results(Sequence[SweepRow]):
         """
         import numpy as np
 
-        table = self.table((name,) if name in COLUMNS else ())
+        plain = name.removesuffix(BAND)
+        table = self.table((plain,) if plain in COLUMNS else ())
         if name not in table.names:
             names = (*table.names, *COLUMNS)
             raise UsageError("is no column.", key=name, remedy=did_you_mean(name, names, f"{names}."))
@@ -142,23 +153,28 @@ class Results(Sequence[SweepRow]):
     def table(self, columns: Sequence[str] = COLUMNS) -> Table:
         """Return one row a case: values, unit in the header, how it ended, and columns of its outcome.
 
+        A number with a band is the limit of its levels, and its half-width stands in a column after it, named
+        with `BAND` at the end; None where it has none. Without any band there is no such column.
+
         Raises
         ------
         UsageError
             A name is no column of an outcome.
         """
         require_columns(columns)
+        bands = {name for row in self.rows if row.outcome for name in known_bands(row.outcome)}
+        listed = [one for name in columns for one in (name, name + BAND) if one == name or name in bands]
         units = {key: measure(values[0])[1] for key, values in self.vary.items()}
         heads = [f"{key} [{unit}]" if unit else key for key, unit in units.items()]
         rows = [
             [
                 row.case.name,
                 *(in_unit(row.case.values[key], unit) for key, unit in units.items()),
-                *_ended(row, columns),
+                *_ended(row, listed),
             ]
             for row in self.rows
         ]
-        return Table.of(("case", *heads, *STATE, *columns), rows)
+        return Table.of(("case", *heads, *STATE, *listed), rows)
 
     def to_dataframe(self, columns: Sequence[str] = COLUMNS) -> pandas.DataFrame:
         """Return the table as a data frame of pandas, of every column of an outcome or of chosen ones.
@@ -186,9 +202,11 @@ def _same(stated: Any, wanted: Any) -> bool:
 def _ended(row: SweepRow, columns: Sequence[str]) -> list[Cell]:
     if row.outcome is None:
         return [False, row.reason, *([None] * len(columns))]
-    values, validity = row.outcome.to_dict(), row.outcome.validity
+    values, validity, bands = row.outcome.to_dict(), row.outcome.validity, known_bands(row.outcome)
+    values |= {name: or_none(row.outcome.estimate(name)[0]) for name in bands}
+    values |= {name + BAND: band for name, band in bands.items()}
     reason = row.outcome.reasons.get("e_edge", "") if validity.finished else validity.stopped_because
-    cells = (values[name] for name in columns)
+    cells = (values.get(name) for name in columns)
     return [validity.finished, reason, *(len(cell) if isinstance(cell, list) else cell for cell in cells)]
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
@@ -90,12 +91,16 @@ class Job:
     out : Path or None
         Directory for the files of the run (on a cluster one that all workers share); None keeps the
         outcome only.
+    way : callable or None
+        What computes the outcome from scene, fidelity and `RunOptions`, a function of a module; None takes
+        `fem_impact.run.simulate.simulate`, which runs on the mesh that the scene gives.
     """
 
     name: str
     scene: Scene
     fidelity: str = "solid"
     out: Path | None = None
+    way: Callable[[Scene, str, RunOptions], Outcome] | None = None
 
     def __post_init__(self) -> None:
         if self.out:  # a worker may stand in another directory than this process
@@ -104,7 +109,8 @@ class Job:
     @property
     def key(self) -> str:
         """Content address of the result: scene, fidelity, sources and library versions."""
-        text = f"{digest(self.scene)} {self.fidelity} {source_digest()}"
+        way = f" {self.way.__module__}.{self.way.__qualname__}" if self.way else ""
+        text = f"{digest(self.scene)} {self.fidelity} {source_digest()}{way}"
         return hashlib.sha256(text.encode()).hexdigest()
 
     @property
@@ -119,11 +125,11 @@ class Job:
 
     def run(self) -> str:
         """Return the outcome as JSON; a run with files goes on from its checkpoint."""
-        options = RunOptions(out=self.out, resume=True)
+        options, way = RunOptions(out=self.out, resume=True), self.way or run.simulate
         try:
-            return run.simulate(self.scene, self.fidelity, options).to_json()
+            return way(self.scene, self.fidelity, options).to_json()
         except ResultError:  # a checkpoint of another scene or program
-            return run.simulate(self.scene, self.fidelity, replace(options, resume=False)).to_json()
+            return way(self.scene, self.fidelity, replace(options, resume=False)).to_json()
 
     def read(self, text: str) -> Outcome:
         """Return the outcome from its JSON text.

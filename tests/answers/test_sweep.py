@@ -501,3 +501,16 @@ def test_the_summary_names_the_column_of_e_and_explains_it(tmp_path):
     text = publish_sweep(results, "t", "fem-impact sweep", tmp_path).text
     assert "Coefficient of restitution e (`e_edge`): from" in text
     assert "`e_edge` is e at the point of the tip that touches first" in text
+
+
+def test_finite_elements_of_a_sweep_run_on_levels_and_have_bands(monkeypatch, tmp_path):
+    """A wanted error holds for each case, and the half-width stands beside each number."""
+    scene = replace_all(load("quick"), {"save.frames": 0, "accuracy.levels": 2})
+    found = sweep(scene, {"surface.friction": [0.2, 0.57]}, "solid", out=tmp_path)
+    table = found.to_dataframe(["e_edge", "mu", "contacts"])
+    assert list(table.columns[4:]) == ["e_edge", "e_edge_band", "mu", "mu_band", "contacts"]
+    for row, e, band in zip(found, table["e_edge"], table["e_edge_band"], strict=True):
+        assert row.outcome.estimate("e_edge") == (e, band)
+        assert band > 0
+    assert found.numbers("mu_band") == pytest.approx(table["mu_band"])
+    assert "e_edge_band" not in sweep(scene, {"surface.friction": [0.2]}, "rigid").to_dataframe().columns
