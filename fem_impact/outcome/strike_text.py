@@ -19,6 +19,7 @@ def told(strikes: Strikes) -> list[str]:
     count = len(strikes.each)
     return [
         f"{count} strike{'s' * (count > 1)}. {strikes.because} {_other_end(strikes)}",
+        *_certain(strikes),
         _hardest(strikes),
         _totals(strikes),
     ]
@@ -42,6 +43,19 @@ def _other_end(strikes: Strikes) -> str:
     if isinstance(ratio, Unknown):
         return f"{ratio.reason[0].upper()}{ratio.reason[1:]}."
     return f"The other end strikes {ratio:.3g} times as fast as the first strike came."
+
+
+def _certain(strikes: Strikes) -> list[str]:
+    """Return how many strikes hold for the whole interval of friction, nothing where that is not known."""
+    certain, ends = strikes.certain, (strikes.other_end_low, strikes.other_end_high)
+    if isinstance(certain, Unknown):
+        return []
+    known = [f"{end:.3g}" for end in ends if not isinstance(end, Unknown)]
+    between = f" That ratio lies between {' and '.join(known)} there." if len(known) == 2 else ""
+    return [
+        f"Over the stated interval of friction the order of the first {certain} is certain; later strikes "
+        f"are one path of many.{between}"
+    ]
 
 
 def _hardest(strikes: Strikes) -> str:

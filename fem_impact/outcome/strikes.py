@@ -81,6 +81,17 @@ class Strikes:
         "-",
         "Largest speed at which the other end strikes over that of the first strike.",
     )
+    certain: int | Unknown = key(
+        "strikes_certain",
+        "-",
+        "First strikes whose order is the same at the ends of the stated interval of friction.",
+    )
+    other_end_low: Num = key(
+        "strikes_other_end_over_first_low", "-", "Least strikes_other_end_over_first over that interval."
+    )
+    other_end_high: Num = key(
+        "strikes_other_end_over_first_high", "-", "Largest strikes_other_end_over_first over that interval."
+    )
     gravity: Num = key("strikes_W_gravity_J", "J", "Work of gravity, all flights and contacts.")
     friction: Num = key("strikes_W_friction_J", "J", "Friction of all strikes, and of sliding between them.")
     plastic: Num = key("strikes_E_plastic_J", "J", "Plastic work of all strikes.")

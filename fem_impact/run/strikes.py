@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
 
 BESIDE = 1e-6  # rad from the end of a corner's inclinations, at which it touches alone
+ONE_FRICTION = Unknown("only one friction was computed: the scene states no interval, or finite elements")
 NO_FORCE = Unknown("a rigid impact without duration has no force")
 FINISHED = {
     Finish.RESTS: "It rests.",
@@ -245,6 +246,9 @@ class Followed:
             hardest_force=_hardest([one.force for one in each]),
             hardest_heat=_hardest([one.friction for one in each]),
             other_end=_other_end(each, case.contact.body.length),
+            certain=ONE_FRICTION,
+            other_end_low=ONE_FRICTION,
+            other_end_high=ONE_FRICTION,
             gravity=self.gravity,
             **sums,
             settled=self.settled,

@@ -331,7 +331,7 @@ def test_study_without_runs_or_comparison_still_reports(study):
         ({"rows": [{"schema_version": 9}]}, r"rows\[0\]: key .* is missing"),
         (
             {"rows": [{"schema_version": 3}]},
-            r"rows\[0\]: .* is not the version 10 .*; compute the run again",
+            r"rows\[0\]: .* is not the version 11 .*; compute the run again",
         ),
         ({"comparison": [{"set": "t2"}]}, r"comparison\[0\] must contain .*quantity"),
     ],

@@ -176,3 +176,25 @@ def test_a_body_of_segments_takes_the_material_of_the_part_that_strikes():
     tail = next(one for one in simulate(read_dict(data), "rigid").strikes.each if one.part == "tail")
     plain = next(one for one in simulate(scene, "rigid").strikes.each if one.part == "tail")
     assert tail.e != pytest.approx(plain.e, abs=1e-3)
+
+
+# what is certain of it
+
+
+def test_strikes_are_compared_over_the_interval_of_friction(floor):
+    s = floor.strikes
+    assert 1 <= s.certain < len(s.each)
+    assert s.other_end_low <= s.other_end <= s.other_end_high
+    assert s.other_end_low < s.other_end_high
+    parts = []
+    surface = rattling().surface
+    for f in (surface.friction_low, surface.friction, surface.friction_high):
+        scene = rattling(surface__friction=f)
+        parts.append([one.part for one in simulate(scene, "rigid").strikes.each])
+    assert len({tuple(one[: s.certain]) for one in parts}) == 1
+    assert len({tuple(one[: s.certain + 1]) for one in parts}) > 1
+
+
+def test_without_an_interval_nothing_is_compared():
+    strikes = simulate(rattling(surface__friction=0.5), "rigid").strikes
+    assert isinstance(strikes.certain, Unknown)
