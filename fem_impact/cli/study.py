@@ -127,8 +127,8 @@ STUDIES = {
         "counts how often the finer run lies inside the told band, by quantity and family, how often told "
         "times held, and how runs ended that gave no numbers.",
         "404 runs, 220 of them finite elements, some 75 min; a finer one follows where they give numbers, "
-        "and a second some of those: some 6 h in all",
-        "one scene a family: 19 runs, and a finer one each, some 10 min",
+        "and a second some of those: some 3 h in all",
+        "one scene a family: 19 runs, and finer ones of some, some 7 min",
         404,
         19,
         draws=True,
