@@ -181,67 +181,68 @@ class _ModalCourse:
 
     def _enter(self, before: State, result: ModalResult, taken: float) -> None:
         """Enter a strike, and go on from the state after it."""
-        case, last = self.case, result.last
-        corner = self.followed.shape.corners[self.followed.shape.lowest(before.alpha, before.Omega)]
-        d_c, d_d = corner.arms(before.alpha)
-        x, z = (
-            a + b
-            for a, b in zip(
-                corner.place(before.alpha), (case.contact.body.x_c, case.contact.body.z_c), strict=True
-            )
-        )
+        last, angle = result.last, self.case.scene.impact.angle
         V_n, V_t, Omega = (float(v) for v in last.rigid[:3])
         after = before._replace(
             time=before.time + result.time,
+            height=float(last.rigid[AT.height]),
             along=before.along + float(last.rigid[AT.along]),
-            alpha=case.scene.impact.angle + float(last.rigid[AT.turn]),
+            alpha=angle + float(last.rigid[AT.turn]),
             V_n=V_n,
             V_t=V_t,
             Omega=Omega,
         )
-        outline = self.followed.touching(after.alpha, V_n, V_t, Omega).height
-        after = after._replace(height=max(float(last.rigid[AT.height]), outline))
-        fell = self.followed.work(before, after._replace(height=float(last.rigid[AT.height])))
+        fell = self.followed.work(before, after)
         self.followed.gravity += fell
-        p, q = (float(one) for one in result.contacts[:, 2:].sum(axis=0))
-        comes = before.V_n + d_c * before.Omega
-        kinetic = [self.followed.kinetic(one) for one in (before, after)]
-        vibration = _energy(result, last.q, last.rate)
-        spent = result.friction + result.plastic + result.viscous
-        self.followed.each.append(
-            StrikeRecord(
-                time=before.time,
-                fidelity="modal",
-                part=part_of((x, z), 0.0, before.alpha, self.followed.shape, case.contact.body.length),
-                x=x,
-                z=z,
-                along=before.along - d_c + case.contact.arms[0],
-                alpha=before.alpha,
-                approach=-comes,
-                sliding=before.V_t - d_d * before.Omega,
-                v_n=before.V_n,
-                v_t=before.V_t,
-                omega=before.Omega,
-                V_n=V_n,
-                V_t=V_t,
-                Omega=Omega,
-                e=-(V_n + d_c * Omega) / comes,
-                mu=q / p,
-                impulse_n=p,
-                impulse_t=q,
-                force=result.force,
-                before=kinetic[0],
-                after=kinetic[1],
-                friction=result.friction,
-                plastic=result.plastic,
-                damping=result.viscous + self.damped,
-                vibration=vibration,
-                taken=taken,
-                other=kinetic[0] + taken + fell - kinetic[1] - vibration - spent,
-            )
-        )
-        self.result, self.state, self.q, self.rate = result, after, last.q, last.rate
+        self.followed.each.append(self._record(before, after, result, taken, fell))
+        outside = self.followed.touching(after.alpha, V_n, V_t, Omega).height  # beside its dent
+        self.state = after._replace(height=max(after.height, outside))
+        self.result, self.q, self.rate = result, last.q, last.rate
         self.strikes, self.damped = self.strikes + 1, 0.0
+
+    def _record(
+        self, before: State, after: State, result: ModalResult, taken: float, fell: float
+    ) -> StrikeRecord:
+        """Return the record of a strike that began with a vibration ``taken``; gravity gave ``fell``, J."""
+        case, body, shape = self.case, self.case.contact.body, self.followed.shape
+        corner = shape.corners[shape.lowest(before.alpha, before.Omega)]
+        (d_c, d_d), (x, z) = corner.arms(before.alpha), corner.place(before.alpha)
+        place = x + body.x_c, z + body.z_c
+        p, q = (float(one) for one in result.contacts[:, 2:].sum(axis=0))
+        comes, leaves = (one.V_n + d_c * one.Omega for one in (before, after))
+        held, kept = (self.followed.kinetic(one) for one in (before, after))
+        vibration = _energy(result, result.last.q, result.last.rate)
+        spent = result.friction + result.plastic + result.viscous
+        return StrikeRecord(
+            time=before.time,
+            fidelity="modal",
+            part=part_of(place, 0.0, before.alpha, shape, body.length),
+            x=place[0],
+            z=place[1],
+            along=before.along - d_c + case.contact.arms[0],
+            alpha=before.alpha,
+            approach=-comes,
+            sliding=before.V_t - d_d * before.Omega,
+            v_n=before.V_n,
+            v_t=before.V_t,
+            omega=before.Omega,
+            V_n=after.V_n,
+            V_t=after.V_t,
+            Omega=after.Omega,
+            e=-leaves / comes,
+            mu=q / p,
+            impulse_n=p,
+            impulse_t=q,
+            force=result.force,
+            before=held,
+            after=kept,
+            friction=result.friction,
+            plastic=result.plastic,
+            damping=result.viscous + self.damped,
+            vibration=vibration,
+            taken=taken,
+            other=held + taken + fell - kept - vibration - spent,
+        )
 
 
 def _ahead(case: Case) -> float:
