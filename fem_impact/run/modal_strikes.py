@@ -230,7 +230,7 @@ class _ModalCourse:
             V_t=after.V_t,
             Omega=after.Omega,
             e=-leaves / comes,
-            mu=q / p,
+            mu=q / p if p else 0.0,  # a touch that presses nothing has no friction
             impulse_n=p,
             impulse_t=q,
             force=result.force,
