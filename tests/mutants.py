@@ -285,8 +285,8 @@ MUTANTS = (
     Mutant(
         "steps of the reduced model by its modes alone",
         "fem_impact/modal/impact.py",
-        "FASTEST / max([*rod.omega, rate]))",
-        "FASTEST / max([*rod.omega, 1.0]))",
+        "fastest = max([*rod.omega, rate])  # 0 of a rigid rod before it touches",
+        "fastest = max([*rod.omega, 1.0])",
         "tests/modal/test_modal_limits.py::test_the_step_follows_the_contact_of_a_thin_rod_too",
     ),
     Mutant(

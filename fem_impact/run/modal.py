@@ -156,8 +156,8 @@ TILT_TOLD = 0.01  # rad, as for the rod's own rotation
 LEVEL = "A barrier that turns moves the struck point with it, but the surface there keeps its direction."
 LAID = (
     "A face or side that lands flat is a row of springs between its ends, with the stiffness of a flat punch "
-    "or of a lying cylinder. Waves that it sends into the barrier are left out: e was .06 to .11 too high "
-    "beside finite elements on four pins."
+    "or of a lying cylinder. Waves that it sends into the barrier are left out: e was .06 to .07 too high "
+    "beside finite elements on three pins."
 )
 ASSUMPTIONS = (
     "Contact force by Hertz' law; where a body yields, by Tabor's hardness of the softer body over the "
