@@ -20,8 +20,10 @@ from pathlib import Path
 from time import perf_counter
 
 from fem_impact.answers.refine.budget import LONGER, about_s, in_turns, longest_s
+from fem_impact.answers.refine.extrapolate import NARROW
 from fem_impact.answers.refine.level import (
     GRID_OFFSETS,
+    ROWS,
     STAMP,
     UNRESOLVED,
     LevelRun,
@@ -422,6 +424,14 @@ class LevelChain:
             if wanted > 0 and (counted.splits < self.finest or not self._is_sized)
             else ""
         )
+        rows = counted.record.rows
+        narrow = (
+            f"The contact is {rows} node{'s' * (rows > 1)} wide across its narrow side, and {ROWS} resolve "
+            f"it: half-widths are {NARROW:g} times the largest change from level to level. A "
+            "larger accuracy.levels or --budget adds finer levels."
+            if counted.record.resolved and rows < ROWS and len(upto) > 1
+            else ""
+        )
         cut = _stop_of(beyond[0]) if beyond else self.failed
         ended = f"The numbers are those of level {len(upto)}: level {len(upto) + 1} was cut off. {cut}"
         outcome = self._without_unresolved(counted)
@@ -442,7 +452,7 @@ class LevelChain:
             limitations=(
                 *outcome.validity.limitations,
                 *limitations("run", ended if cut else "", missed),
-                *limitations("resolution", left, short),
+                *limitations("resolution", left, narrow, short),
             ),
         )
         return replace(

@@ -47,6 +47,8 @@ ONE_RUN = 3.0
 # share of a change between two levels that a band holds at least; all of it where both resolve the contact
 # and ran once. t5c: e .281, .307, .304 on three levels, .312 on a fourth
 HALVED = 0.5
+# of the largest change, where the last level does not resolve a contact's narrow side: Roache's of two grids
+NARROW = 3.0
 LONE = 1.5  # of the change from a level that did not resolve its contact: that has no order, as a pair's has
 # Standard error of a mean over evenly spaced offsets, over that of offsets taken at random. Even ones cancel
 # the first harmonics of the grid. Root mean squares over nine quantities of the 13 sets: means of two offsets
@@ -157,14 +159,14 @@ def level_limits(meshes: Sequence[MeshRuns], resolved: Sequence[bool]) -> tuple[
     They are of every banded number that all runs of the finest two know. Bands hold what the cells of the
     finest held back, see `fem_impact.answers.refine.ringing`; the vibration energy's is `floored`.
     """
-    sizes, limits, bands = [mesh.size for mesh in meshes[-3:]], dict[str, float](), dict[str, float]()
+    sizes, limits, bands = [mesh.size for mesh in meshes], dict[str, float](), dict[str, float]()
     for key in KEYS:
-        means = [mesh.mean([key]) for mesh in meshes[-3:]] if key.banded else [None, None]
+        means = [mesh.mean([key]) for mesh in meshes] if key.banded else [None, None]
         if None in means[-2:]:
             continue
         # a number that a coarser level does not know changes by itself
-        values = [mesh.values([key]) or [0.0] for mesh in meshes[-3:]]
-        limits[key.name], bands[key.name] = level_limit(sizes, values, resolved[-3:])
+        values = [mesh.values([key]) or [0.0] for mesh in meshes]
+        limits[key.name], bands[key.name] = level_limit(sizes, values, resolved)
         if key in VIBRATION:
             bands[key.name] = floored(bands[key.name], meshes[-1].runs)
     for name, change in held_back(meshes[-1].runs[0]).items():
@@ -177,15 +179,19 @@ def level_limits(meshes: Sequence[MeshRuns], resolved: Sequence[bool]) -> tuple[
 def level_limit(
     sizes: Sequence[float], values: Sequence[Sequence[float]], resolved: Sequence[bool]
 ) -> tuple[float, float]:
-    """Return limit and half-width of one number from its values on two or three levels from coarse to fine.
+    """Return limit and half-width of one number from its values on two or more levels from coarse to fine.
 
     They are those of the finest two, but two levels may agree by chance: no half-width is less than the
     change from one level to the next where both ``resolved`` the contact and ran once each, and than `HALVED`
-    of any other. Where the last but one did not, nothing is extrapolated: the finest value stands, with
-    `LONE` times the change to it.
+    of any other of the last three. Where the last but one did not, nothing is extrapolated: the finest value
+    stands, with `LONE` times the change to it; where the last did not, with `NARROW` times the largest change
+    of all levels. Of 113 bands of levels that resolve the contact 104 held the value of one level finer, of
+    131 others 120 (22 drawn scenes, seven quantities).
     """
     means = [fmean(on_level) for on_level in values]
     changes = [abs(fine - coarse) for coarse, fine in pairwise(means)]
+    if not resolved[-1]:
+        return means[-1], NARROW * max(changes)
     if resolved[-2]:
         limit = limit_of(sizes[-2:], values[-2:])
         value, band = limit.value, limit.uncertainty
@@ -193,7 +199,8 @@ def level_limit(
         value, band = means[-1], LONE * changes[-1]
     once = min(map(len, values[-2:])) == 1
     shares = [1.0 if once and all(pair) else HALVED for pair in pairwise(resolved)]
-    return value, max(band, *(share * change for share, change in zip(shares, changes, strict=True)))
+    least = [share * change for share, change in zip(shares, changes, strict=True)]
+    return value, max(band, *least[-2:])
 
 
 def extrapolated(meshes: Sequence[MeshRuns], keys: Sequence[Key]) -> ExtrapolatedValue | None:

@@ -17,7 +17,9 @@ from fem_impact.outcome.record import Outcome
 from fem_impact.run.program import stamp
 from fem_impact.run.simulate import simulate_recorded
 
-ROWS = 4  # of nodes across the narrow side of a contact, on two levels whose values are extrapolated
+# of nodes across the narrow side of a contact, on levels whose values are extrapolated: a line of contact one
+# cell wide is pressed as hard as its cells are large, and two levels of it may agree and be wrong together
+ROWS = 4
 # shifts of a meshed barrier's grid along t, in cells at the contact, at which a level runs
 GRID_OFFSETS = (0.0, 0.5)
 UNRESOLVED = Unknown("the last level did not resolve the contact; accuracy.levels = 4 adds a finer one")
@@ -66,17 +68,10 @@ class LevelRun:
 def limits_of(levels: Sequence[LevelRun]) -> tuple[MeshNumbers, MeshNumbers]:
     """Return limits and half-widths, by key, of levels from coarse to fine, or why there are none.
 
-    They need two levels, of which the last resolves the contact, also across its narrow side: a line of
-    contact one cell wide is pressed as hard as its cells are large, whatever it does on the level before.
+    They need two levels, of which the last resolves the contact.
     """
     if len(levels) < 2 or not levels[-1].record.resolved:
         return UNRESOLVED, UNRESOLVED
-    if (rows := levels[-1].record.rows) < ROWS:
-        narrow = Unknown(
-            f"the contact is {rows} nodes wide on the last level, and bands need {ROWS}; a larger "
-            "accuracy.levels adds finer ones"
-        )
-        return narrow, narrow
     return level_limits([level.runs for level in levels], [level.is_wide for level in levels])
 
 
