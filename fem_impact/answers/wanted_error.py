@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fem_impact.answers.refine.chain import BUDGET, LevelChain
+from fem_impact.answers.refine.level_meshes import LevelMeshes
 from fem_impact.case.case import Case
 from fem_impact.errors import SceneError
 from fem_impact.options import RunOptions
@@ -23,7 +24,7 @@ def compiled(scene: Scene, fidelity: str) -> Case:
         _require_mesh(scene, fidelity)
         return Case.of(scene, fidelity)
     case = Case(scene)
-    LevelChain(case).pilot()
+    LevelMeshes(case).pilot()
     if scene.accuracy.tip_size is not None:
         case.require_memory()  # of the last level, whose cells are stated
     return case

@@ -49,7 +49,7 @@ def record_of(name, out):
 
 def run(chain, record, splits, kind, place):
     """Return numbers of a run on cells that are split so often, at a place of the barrier's grid."""
-    scene = chain._at(splits)
+    scene = chain.meshes.at(splits)
     accuracy = replace(scene.accuracy, grid_shift=place, unresolved="report")
     scene = replace(scene, accuracy=accuracy, save=replace(scene.save, frames=0))
     if kind != BOTH:

@@ -15,15 +15,13 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
-from math import ceil, log2
+from math import ceil
 from pathlib import Path
 from time import perf_counter
 
 from fem_impact.answers.refine.budget import LONGER, about_s, in_turns, longest_s
-from fem_impact.answers.refine.extrapolate import NARROW
 from fem_impact.answers.refine.level import (
     GRID_OFFSETS,
-    ROWS,
     STAMP,
     UNRESOLVED,
     LevelRun,
@@ -31,10 +29,10 @@ from fem_impact.answers.refine.level import (
     relative_errors,
     simulate_level,
 )
-from fem_impact.case.bodies import Bodies
+from fem_impact.answers.refine.level_meshes import LevelMeshes, steps_between
 from fem_impact.case.case import Case
-from fem_impact.case.cells import body_cell, contact_edge, level_size, levels_of, rod_cell
-from fem_impact.case.record import ContactRecord, expected_record, together
+from fem_impact.case.cells import contact_edge
+from fem_impact.case.record import together
 from fem_impact.case.recorded import patch_radius
 from fem_impact.errors import ResultError, RunError, SceneError
 from fem_impact.files.atomic import read_text
@@ -48,7 +46,6 @@ from fem_impact.outcome.record import Outcome
 from fem_impact.progress import Notice, Progress
 from fem_impact.run.resolution import NOT_RESOLVED, without
 from fem_impact.run.simulate import begin
-from fem_impact.scene.fields import LEVELS
 from fem_impact.scene.types import Scene
 from fem_impact.scene.write import digest, to_toml
 from fem_impact.tables.text import plain
@@ -56,14 +53,12 @@ from fem_impact.tables.text import plain
 MOST_REPEATS = 2  # of a level, each with twice the room
 # levels beyond those asked for, where the last has not resolved the contact: it would have no numbers
 MORE = 1
-JUMP = 2  # splits between two levels at most: a record holds the places of cells four times as large
 # how much longer a level takes than one with cells twice as large, at least: 4 to 7 of twelve bodies whose
 # contact is a line or an edge, less of round tips
 SLOWER = 4.0
 BUDGET = 600.0  # s of wall time for all levels, unless stated
 LATE = 1.3  # of the budget, beyond which a level that has begun is given up
 MOST_FINER = 3  # splits beyond those that resolve the contact, where a band decides
-SLICES = 1 / 3  # of the diameter: height over the tip at which the slices of a body may begin
 
 
 Decides = Callable[[Sequence[LevelRun]], bool]
@@ -134,7 +129,7 @@ class LevelChain:
         SceneError, RunError, ResultError, OutputPathError
             As `run`.
         """
-        splits: int | None = self.first
+        splits: int | None = self.meshes.first
         while splits is not None and self._ran(splits):
             splits = self._next
 
@@ -148,42 +143,15 @@ class LevelChain:
                 "or leave out --resume: the older run is kept beside the new one."
             )
 
-    def pilot(self) -> Case:
-        """Return the case of the first level.
-
-        Raises
-        ------
-        SceneError
-            Finite elements cannot compute the scene.
-        """
-        return Case.of(self._at(self.first), "solid", self._expected(self.first))
-
     @cached_property
-    def first(self) -> int:
-        """Splits of the pilot: two fewer than those of a stated size, of two levels one; else none or one."""
-        expected, rod = self._expected(0).rod, self._bodies.rod
-        # a side that lands is a polygon of slices where its cells are not split, and slices cannot touch
-        of_side = rod.own_mesh is None and expected.touched[:, 2].max() > SLICES * rod.diameter
-        least = int(of_side and not rod.is_ball)
-        if self._is_sized:
-            return max(least, self._usual - (JUMP if self.scene.accuracy.levels > JUMP else 1))
-        return max(least, min(1, self._wanted(patch_radius(expected)) - 1))
+    def meshes(self) -> LevelMeshes:
+        """The meshes of the levels."""
+        return LevelMeshes(self.case)
 
     @property
     def finest(self) -> int:
-        """Splits of the last level: as stated, or those that resolve the contact that the levels found.
-
-        As many levels as wanted reach it, or it is not reached: the contact of a sharp edge is narrower on
-        each finer mesh.
-        """
-        levels = self.scene.accuracy.levels
-        if self._is_sized or not self.done:
-            wanted = self._usual
-        else:  # levels that were asked for are run, however well the pilot resolves its contact
-            wanted = max(self._wanted(patch_radius(self.done[-1].record.rod)), self.done[0].splits + 1)
-        least = self.first + (0 if self._is_sized else LEVELS - 1)
-        more = max(levels - LEVELS, 0) if self._is_sized else levels - LEVELS
-        return min(max(wanted, least) + more, self.first + JUMP * max(levels - 2, 0) + 1)
+        """Splits of the last level, as far as the levels so far tell."""
+        return self.meshes.last(self.done[-1].record if self.done else None)
 
     @property
     def following(self) -> int | None:
@@ -191,18 +159,17 @@ class LevelChain:
         ran, finest, record = self.done[-1].splits, self.finest, self.done[-1].record
         if record.crushed:  # smaller cells are crushed sooner
             return None
-        if self.decides or self._target:
+        if self.decides or self.scene.accuracy.target:
             cut = 1 < len(self.done) > self.counted
             if self._decided or cut or ran >= finest + MOST_FINER:
                 return None
             finest = max(finest, ran + 1)
-        if not (record.resolved or self._is_sized) and len(self.done) < self.scene.accuracy.levels + MORE:
+        if (
+            not (record.resolved or self.meshes.is_sized)
+            and len(self.done) < self.scene.accuracy.levels + MORE
+        ):
             finest = max(finest, ran + 1)
-        return next(iter(_steps(ran, finest)), None)
-
-    @property
-    def _target(self) -> float | None:
-        return self.scene.accuracy.target
+        return next(iter(steps_between(ran, finest)), None)
 
     @property
     def _decided(self) -> bool:
@@ -212,7 +179,7 @@ class LevelChain:
         if self.decides is not None:
             return self.decides(self.done)
         errors = relative_errors(self.done)
-        return bool(errors) and max(errors.values()) <= (self._target or 0.0)
+        return bool(errors) and max(errors.values()) <= (self.scene.accuracy.target or 0.0)
 
     @property
     def _next(self) -> int | None:
@@ -250,28 +217,6 @@ class LevelChain:
         return self.case.scene
 
     @property
-    def _bodies(self) -> Bodies:
-        return self.case.bodies
-
-    @cached_property
-    def _cells(self) -> tuple[float, float]:
-        """Edges, m, of the unsplit cells of rod and barrier where they touch."""
-        return rod_cell(self._bodies), body_cell(self._bodies)
-
-    @cached_property
-    def _splits(self) -> tuple[int, int]:
-        """Splits of rod and barrier that resolve the contact estimated, or that the stated size asks for."""
-        return levels_of(self._bodies)
-
-    @property
-    def _usual(self) -> int:
-        return self._splits[1] if self._bodies.contact.compliant else self._splits[0]
-
-    @property
-    def _is_sized(self) -> bool:
-        return self.scene.accuracy.tip_size is not None
-
-    @property
     def spent_s(self) -> float:
         """Wall time, s, of all levels so far."""
         return sum(level.wall_s for level in self.done)
@@ -279,8 +224,10 @@ class LevelChain:
     @property
     def _offsets(self) -> tuple[float, ...]:
         """Places of the barrier's grid at which the next level runs; a rigid barrier has none."""
-        pilot = not self.done or self.twin is not None or not self._bodies.contact.compliant
-        return GRID_OFFSETS[: 1 if pilot else self.scene.accuracy.offsets or 1 + bool(self._target)]
+        pilot = not self.done or self.twin is not None or not self.case.bodies.contact.compliant
+        return GRID_OFFSETS[
+            : 1 if pilot else self.scene.accuracy.offsets or 1 + bool(self.scene.accuracy.target)
+        ]
 
     def _turns(self, runs: int) -> int:
         """Return how many of so many runs the busier of the workers does."""
@@ -294,22 +241,6 @@ class LevelChain:
         of_one = times[-1] * max(slower, SLOWER) ** (splits - steps[-1])
         return float(of_one * self._turns(1 if self.twin is None else 2) * self._turns(len(self._offsets)))
 
-    def _wanted(self, radius: float) -> int:
-        """Return the splits with which so many cells as advised lie over a contact's radius, m."""
-        base = self._cells[1] if self._bodies.contact.compliant else self._cells[0]
-        return max(0, round(log2(base / level_size(self._bodies, radius))))
-
-    def _at(self, splits: int) -> Scene:
-        """Return the scene on cells that are split so often; rod and barrier are split alike."""
-        sizes = zip(self._cells, self._splits, strict=True)
-        rod, barrier = (cell / 2 ** (usual + splits - self._usual) for cell, usual in sizes)
-        # a user's cells may be larger than a scene may state: they are left as they are
-        rod = min(rod, self.scene.projectile.diameter / 4)
-        accuracy = replace(self.scene.accuracy, tip_size=rod, target=None)
-        if self._bodies.contact.compliant:
-            accuracy = replace(accuracy, barrier_size=barrier)
-        return replace(self.scene, accuracy=accuracy)
-
     def _sharing(self, scene: Scene) -> list[Scene]:
         """Return the scenes that run on one mesh: a scene at places of the grid, or beside its twin."""
         accuracy = scene.accuracy
@@ -319,12 +250,6 @@ class LevelChain:
         first, *others = (replace(scene, accuracy=replace(accuracy, grid_shift=shift)) for shift in shifts)
         # a film is made of the first alone: storing frames takes a tenth of a quick run
         return [first, *(replace(one, save=replace(one.save, frames=0, strain_samples=0)) for one in others)]
-
-    def _expected(self, splits: int) -> ContactRecord:
-        """Return what may touch on cells that are split so often."""
-        more = splits - self._usual
-        sizes = zip(self._cells, self._splits, strict=True)
-        return expected_record(self._bodies, *(cell / 2 ** max(0, usual + more) for cell, usual in sizes))
 
     def _ran(self, splits: int) -> bool:
         """Run a level; return whether it has an outcome, which the first must have."""
@@ -340,8 +265,8 @@ class LevelChain:
     def _run_level(self, splits: int) -> None:
         """Run a level, again with more room where it needs that, and add it to what is done."""
         last = bool(self.done) and splits >= self.finest
-        scene = self._at(splits)
-        before = known = self.done[-1].record if self.done else self._expected(splits)
+        scene = self.meshes.at(splits)
+        before = known = self.done[-1].record if self.done else self.meshes.expected(splits)
         # each level tells all it finds: the next one may have to be compared with it
         scene = replace(scene, accuracy=replace(scene.accuracy, unresolved="report"))
         if not last:
@@ -384,7 +309,7 @@ class LevelChain:
         out = self.options.out and self._place(number, repeats, run)
         if run:  # it may be another process that does it
             return replace(self.options, out=out, progress=None)
-        later = _steps(splits, max(self.finest, splits))
+        later = steps_between(splits, max(self.finest, splits))
         name = f"{self.scene.id}, level {number}" + f" of {number + len(later)}" * bool(self.done)
         limit_s = LATE * self.budget_s - self.spent_s
         begun = perf_counter()
@@ -411,37 +336,24 @@ class LevelChain:
         upto = self.done[: self.counted]
         counted, beyond = upto[-1], self.done[self.counted :]
         limits, bands = limits_of(upto)
-        left = (
-            f"Contact or flow left the zones held ready, after {counted.repeats} repeats with more room."
-            if counted.record.left
-            else ""
-        )
         radius = patch_radius(counted.record.rod)
-        wanted = self._wanted(radius) - counted.splits
+        wanted = self.meshes.wanted(radius) - counted.splits
         short = (
             f"The contact, {2e3 * radius:.2g} mm wide, would be resolved as advised by cells halved "
             f"{wanted} times more: give a larger accuracy.levels or --budget."
-            if wanted > 0 and (counted.splits < self.finest or not self._is_sized)
+            if wanted > 0 and (counted.splits < self.finest or not self.meshes.is_sized)
             else ""
         )
-        rows = counted.record.rows
-        narrow = (
-            f"The contact is {rows} node{'s' * (rows > 1)} wide across its narrow side, and {ROWS} resolve "
-            f"it: half-widths are {NARROW:g} times the largest change from level to level. A "
-            "larger accuracy.levels or --budget adds finer levels."
-            if counted.record.resolved and rows < ROWS and len(upto) > 1
-            else ""
-        )
-        cut = _stop_of(beyond[0]) if beyond else self.failed
+        cut = beyond[0].stopped if beyond else self.failed
         ended = f"The numbers are those of level {len(upto)}: level {len(upto) + 1} was cut off. {cut}"
         outcome = self._without_unresolved(counted)
         said, missed = outcome.validity, ""
-        if self._target:
+        if self.scene.accuracy.target:
             errors = relative_errors(upto)
             missed = self._missed(errors)
             said = replace(
                 said,
-                accuracy_target=self._target,
+                accuracy_target=self.scene.accuracy.target,
                 achieved_error=max(errors.values()) if errors else UNRESOLVED,
                 achieved_wall=self.spent_s,
             )
@@ -452,7 +364,7 @@ class LevelChain:
             limitations=(
                 *outcome.validity.limitations,
                 *limitations("run", ended if cut else "", missed),
-                *limitations("resolution", left, narrow, short),
+                *limitations("resolution", counted.left, counted.narrow if len(upto) > 1 else "", short),
             ),
         )
         return replace(
@@ -463,11 +375,12 @@ class LevelChain:
 
     def _missed(self, errors: Mapping[str, float]) -> str:
         """Say why the wanted error is not reached, and what more would cost; empty where it is."""
-        if errors and max(errors.values()) <= (self._target or 0.0):
+        if errors and max(errors.values()) <= (self.scene.accuracy.target or 0.0):
             return ""
         reached = [f"{name} is known to {plain(100 * error, 2)} %" for name, error in errors.items()]
         told = " and ".join(reached) or UNRESOLVED.reason
-        return f"The wanted {100 * (self._target or 0.0):.3g} % is not reached: {told}. {self._advice}"
+        wanted = 100 * (self.scene.accuracy.target or 0.0)
+        return f"The wanted {wanted:.3g} % is not reached: {told}. {self._advice}"
 
     @property
     def _advice(self) -> str:
@@ -490,18 +403,3 @@ class LevelChain:
             return outcome
         reasons = [one.text for one in outcome.validity.limitations if one.text.startswith(NOT_RESOLVED)]
         return without(outcome, Unknown(reasons[0])) if reasons else outcome
-
-
-def _stop_of(level: LevelRun) -> str:
-    """Return why a level did not come to its end."""
-    cut = (one.validity.stopped_because for one in level.outcomes if isinstance(one.motion.V_n, Unknown))
-    return next(cut, "")
-
-
-def _steps(ran: int, finest: int) -> list[int]:
-    """Return the splits of the levels from one that ran to the finest, which is one split after another."""
-    steps = []
-    while ran < finest:
-        ran = finest if finest - ran == 1 else min(ran + JUMP, finest - 1)
-        steps.append(ran)
-    return steps

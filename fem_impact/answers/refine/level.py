@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from fem_impact.answers.refine.extrapolate import MeshNumbers, MeshRuns, level_limits
+from fem_impact.answers.refine.extrapolate import NARROW, MeshNumbers, MeshRuns, level_limits
 from fem_impact.answers.refine.quantities import QUANTITIES, TARGETED
 from fem_impact.case.case import Case
 from fem_impact.case.record import ContactRecord
@@ -58,6 +58,31 @@ class LevelRun:
     def is_wide(self) -> bool:
         """Whether it resolves its contact, also across its narrow side."""
         return self.record.resolved and self.record.rows >= ROWS
+
+    @property
+    def left(self) -> str:
+        """Say that contact or flow left its zones, empty where they did not."""
+        if not self.record.left:
+            return ""
+        return f"Contact or flow left the zones held ready, after {self.repeats} repeats with more room."
+
+    @property
+    def narrow(self) -> str:
+        """Say how narrow the contact is that it resolves, and what that means; empty where it is wide."""
+        rows = self.record.rows
+        if rows >= ROWS or not self.record.resolved:
+            return ""
+        return (
+            f"The contact is {rows} node{'s' * (rows > 1)} wide across its narrow side, and {ROWS} resolve "
+            f"it: half-widths are {NARROW:g} times the largest change from level to level. A larger "
+            "accuracy.levels or --budget adds finer levels."
+        )
+
+    @property
+    def stopped(self) -> str:
+        """Why a run of it did not see the bodies part, empty where all did."""
+        cut = (one.validity.stopped_because for one in self.outcomes if isinstance(one.motion.V_n, Unknown))
+        return next(cut, "")
 
     @property
     def runs(self) -> MeshRuns:

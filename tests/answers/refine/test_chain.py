@@ -54,7 +54,7 @@ def test_a_pilot_and_two_finer_levels_end_on_the_stated_size(quick):
 @pytest.mark.parametrize(("levels", "splits"), [(2, [1, 2]), (3, [0, 1, 2]), (4, [0, 2, 3])])
 def test_a_stated_size_is_that_of_the_last_level_unless_more_are_asked_for(levels, splits):
     chained = LevelChain(Case(replace(QUICK, accuracy=replace(QUICK.accuracy, levels=levels))))
-    assert chained.first == splits[0] and chained.finest == splits[-1]
+    assert chained.meshes.first == splits[0] and chained.finest == splits[-1]
 
 
 def test_every_level_closes_its_ledger(quick):
@@ -92,7 +92,7 @@ def test_columns_of_the_barrier_are_narrow_where_the_contact_ended(quick):
 
 def test_rods_that_do_not_yield_have_no_thin_rows():
     elastic = replace_all(QUICK, {"effects": ["auto", "-rod-plasticity"]})
-    assert LevelChain(Case(elastic)).pilot().zones.rod_rows == 0
+    assert LevelChain(Case(elastic)).meshes.pilot().zones.rod_rows == 0
 
 
 def test_flow_and_contact_stay_in_the_zones_of_the_last_level(quick):

@@ -1,0 +1,123 @@
+"""The meshes of the levels of a scene: how often the cells at the contact are split on each."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import log2
+
+from fem_impact.case.bodies import Bodies
+from fem_impact.case.case import Case
+from fem_impact.case.cells import body_cell, level_size, levels_of, rod_cell
+from fem_impact.case.record import ContactRecord, expected_record
+from fem_impact.case.recorded import patch_radius
+from fem_impact.scene.fields import LEVELS
+from fem_impact.scene.types import Scene
+
+JUMP = 2  # splits between two levels at most: a record holds the places of cells four times as large
+SLICES = 1 / 3  # of the diameter: height over the tip at which the slices of a body may begin
+
+
+@dataclass(frozen=True)
+class LevelMeshes:
+    """The meshes of a scene from coarse to fine, each named by how often its cells at the contact are split.
+
+    Attributes
+    ----------
+    case : of the scene as stated
+    """
+
+    case: Case
+
+    def pilot(self) -> Case:
+        """Return the case of the first level.
+
+        Raises
+        ------
+        SceneError
+            Finite elements cannot compute the scene.
+        """
+        return Case.of(self.at(self.first), "solid", self.expected(self.first))
+
+    @cached_property
+    def first(self) -> int:
+        """Splits of the pilot: two fewer than those of a stated size, of two levels one; else none or one."""
+        expected, rod = self.expected(0).rod, self._bodies.rod
+        # a side that lands is a polygon of slices where its cells are not split, and slices cannot touch
+        of_side = rod.own_mesh is None and expected.touched[:, 2].max() > SLICES * rod.diameter
+        least = int(of_side and not rod.is_ball)
+        if self.is_sized:
+            return max(least, self._usual - (JUMP if self._levels > JUMP else 1))
+        return max(least, min(1, self.wanted(patch_radius(expected)) - 1))
+
+    def last(self, found: ContactRecord | None) -> int:
+        """Return the splits of the last level: as stated, or those that resolve the contact that was found.
+
+        As many levels as wanted reach it, or it is not reached: the contact of a sharp edge is narrower on
+        each finer mesh. ``found`` is what the finest level so far recorded, None before the first.
+        """
+        if self.is_sized or found is None:
+            wanted = self._usual
+        else:  # levels that were asked for are run, however well the pilot resolves its contact
+            wanted = max(self.wanted(patch_radius(found.rod)), self.first + 1)
+        least = self.first + (0 if self.is_sized else LEVELS - 1)
+        more = max(self._levels - LEVELS, 0) if self.is_sized else self._levels - LEVELS
+        return min(max(wanted, least) + more, self.first + JUMP * max(self._levels - 2, 0) + 1)
+
+    @property
+    def is_sized(self) -> bool:
+        """Whether the scene states the size of the last level's cells."""
+        return self.case.scene.accuracy.tip_size is not None
+
+    def wanted(self, radius: float) -> int:
+        """Return the splits with which so many cells as advised lie over a contact's radius, m."""
+        base = self._cells[1] if self._bodies.contact.compliant else self._cells[0]
+        return max(0, round(log2(base / level_size(self._bodies, radius))))
+
+    def at(self, splits: int) -> Scene:
+        """Return the scene on cells that are split so often; rod and barrier are split alike."""
+        sizes = zip(self._cells, self._splits, strict=True)
+        rod, barrier = (cell / 2 ** (usual + splits - self._usual) for cell, usual in sizes)
+        # a user's cells may be larger than a scene may state: they are left as they are
+        rod = min(rod, self.case.scene.projectile.diameter / 4)
+        accuracy = replace(self.case.scene.accuracy, tip_size=rod, target=None)
+        if self._bodies.contact.compliant:
+            accuracy = replace(accuracy, barrier_size=barrier)
+        return replace(self.case.scene, accuracy=accuracy)
+
+    def expected(self, splits: int) -> ContactRecord:
+        """Return what may touch on cells that are split so often."""
+        more = splits - self._usual
+        sizes = zip(self._cells, self._splits, strict=True)
+        return expected_record(self._bodies, *(cell / 2 ** max(0, usual + more) for cell, usual in sizes))
+
+    @property
+    def _levels(self) -> int:
+        return self.case.scene.accuracy.levels
+
+    @property
+    def _bodies(self) -> Bodies:
+        return self.case.bodies
+
+    @cached_property
+    def _cells(self) -> tuple[float, float]:
+        """Edges, m, of the unsplit cells of rod and barrier where they touch."""
+        return rod_cell(self._bodies), body_cell(self._bodies)
+
+    @cached_property
+    def _splits(self) -> tuple[int, int]:
+        """Splits of rod and barrier that resolve the contact estimated, or that the stated size asks for."""
+        return levels_of(self._bodies)
+
+    @property
+    def _usual(self) -> int:
+        return self._splits[1] if self._bodies.contact.compliant else self._splits[0]
+
+
+def steps_between(ran: int, finest: int) -> list[int]:
+    """Return the splits of the levels from one that ran to the finest, which is one split after another."""
+    steps = []
+    while ran < finest:
+        ran = finest if finest - ran == 1 else min(ran + JUMP, finest - 1)
+        steps.append(ran)
+    return steps
