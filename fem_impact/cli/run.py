@@ -139,7 +139,7 @@ def _say_comparison(scene: Scene, outcome: Outcome, options: Options) -> None:
     numbers = "model", "measured_mean", "measured_sd"
     rows = [
         (row["quantity"], *(f"{row[key]:.4g}" for key in numbers), row["verdict"])
-        for row in compare(outcome, tests)
+        for row in (compare(outcome, tests) if outcome.validity.finished else [])
         if row["measured_mean"] is not None and row["model"] is not None
     ]
     measured = f"beside {count(tests)} measured tests ({shown_path(str(scene.measured))})"

@@ -23,6 +23,8 @@ CHANGED = " (changed)"
 """End of the name of a shipped material of which a scene changes a value."""
 BESIDE = ("melting", "intervals", "sources", "aliases", "about")
 """Keys of a shipped material that are no values of it."""
+MISSPELT = 0.9
+"""Likeness of a name to a shipped material's from which it is taken for that, misspelt."""
 _DATA = files("fem_impact.scene").joinpath("data")
 
 
@@ -112,6 +114,11 @@ def _nearest_material(name: str, known: Collection[str]) -> str:
         for one in known
         if part in one or grades & set(one.split("-")) or (family and family == of[one].get("family"))
     ]
+    from difflib import get_close_matches
+
+    near = get_close_matches(part, known, 1, MISSPELT)
+    if near:
+        return f"Did you mean {near[0]}?"
     if len(found) > 1 and part:
         return f"Some that are: {', '.join(found)}. {ALL_MATERIALS}"
     return f"Did you mean {found[0]}?" if len(found) == 1 else did_you_mean(part, known, ALL_MATERIALS)

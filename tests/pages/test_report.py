@@ -328,7 +328,7 @@ def test_study_without_runs_or_comparison_still_reports(study):
     [
         ({"schema": "other/2"}, '"schema" = "other/2" is not'),
         ({"rows": "none"}, "rows must be array"),
-        ({"rows": [{"schema_version": 9}]}, r"rows\[0\]: key .* is missing"),
+        ({"rows": [{"schema_version": 11}]}, r"rows\[0\]: key .* is missing"),
         (
             {"rows": [{"schema_version": 3}]},
             r"rows\[0\]: .* is not the version 11 .*; compute the run again",

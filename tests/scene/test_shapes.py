@@ -205,8 +205,8 @@ def test_another_word_for_a_bore_is_answered_with_the_bore(key):
 def test_a_flank_that_lies_on_the_barrier_is_refused():
     chamfer = {"profile": [["0 mm", "5 mm"], ["2 mm", "7 mm"], ["80 mm", "8 mm"]]}
     with pytest.raises(SceneError, match=r"flank of 2\.83 mm along the barrier"):
-        Case.of(read_dict(scene(chamfer)), "modal")
-    assert Case.of(read_dict(scene(chamfer, "30 deg")), "modal")
+        Case.of(read_dict(scene(chamfer)), "solid")
+    assert Case.of(read_dict(scene(chamfer, "30 deg")), "solid")
 
 
 @pytest.mark.parametrize("angle", [45.0, 41.0])
@@ -214,11 +214,11 @@ def test_an_angle_that_is_changed_by_about_what_the_refusal_says_is_accepted(ang
     """About, as the arm and so the depth of the contact change with the angle."""
     chamfer = {"profile": [["0 mm", "5 mm"], ["2 mm", "7 mm"], ["80 mm", "8 mm"]]}
     with pytest.raises(SceneError) as refused:
-        Case.of(read_dict(scene(chamfer, f"{angle} deg")), "modal")
+        Case.of(read_dict(scene(chamfer, f"{angle} deg")), "solid")
     told = float(re.search(r"Change it by (\S+) deg", refused.value.remedy).group(1))
-    assert Case.of(read_dict(scene(chamfer, f"{angle - 1.3 * told} deg")), "modal")
+    assert Case.of(read_dict(scene(chamfer, f"{angle - 1.3 * told} deg")), "solid")
     with pytest.raises(SceneError, match="flank"):
-        Case.of(read_dict(scene(chamfer, f"{angle - 0.85 * told} deg")), "modal")
+        Case.of(read_dict(scene(chamfer, f"{angle - 0.85 * told} deg")), "solid")
 
 
 def test_a_flank_that_is_pressed_in_whole_asks_for_a_lower_speed():
@@ -227,7 +227,7 @@ def test_a_flank_that_is_pressed_in_whole_asks_for_a_lower_speed():
     fast = scene(cone | {"face_diameter": "1.3 mm"}, "5 deg")
     fast["impact"] = fast["impact"] | {"v_n": "-14 m/s", "v_t": "-1 m/s"}
     with pytest.raises(SceneError, match="flank") as refused:
-        Case.of(read_dict(fast), "modal")
+        Case.of(read_dict(fast), "solid")
     assert "lower speed" in refused.value.remedy and "deg" not in refused.value.remedy
 
 
@@ -238,10 +238,10 @@ def test_a_point_that_is_pressed_in_to_its_flanks_is_to_be_rounded(angle):
     fast = scene({"profile": spike, "material": "copper"}, f"{angle} deg")
     fast["impact"] |= {"v_n": "-3 m/s", "v_t": "-2 m/s"}
     with pytest.raises(SceneError, match="ends in a point") as refused:
-        Case.of(read_dict(fast), "modal")
+        Case.of(read_dict(fast), "solid")
     assert "Round the point" in refused.value.remedy
     fast["projectile"]["profile"] = [["0 mm", "1 mm"], *spike[1:]]
-    assert Case.of(read_dict(fast), "modal")
+    assert Case.of(read_dict(fast), "solid")
 
 
 def test_the_radius_at_the_contact_is_that_of_the_point_that_touches():

@@ -135,6 +135,7 @@ DERIVED = {
     "accuracy.tip_size": "5 elements over the estimated radius of a yielding contact, "
     "4 over that of an elastic one",
     "accuracy.barrier_size": "accuracy.tip_size",
+    "accuracy.offsets": "1; 2 where an error is wanted",
     "accuracy.across": "8; 16 of a hollow body whose wall is on average an eighth of its diameter or thinner",
     **{
         f"heating.{body}_{key}": f"that of the {body}'s material"

@@ -140,6 +140,8 @@ WORK_SPACE = {
         "ElasticRod.y",
         "ElasticNose.d",
         "ElasticNose.y",
+        "MaxwellCells.w",
+        "MaxwellCells.y",
     ),
     *(
         "Blocks.pressure",
@@ -148,7 +150,7 @@ WORK_SPACE = {
         "YieldingZone.room",
         "MassPoints.room",
     ),
-    *(f"Points.{name}" for name in ("nodes", "weights", "normal", "target", "before", "p", "owner")),
+    *(f"Points.{name}" for name in ("nodes", "weights", "normal", "target", "before", "p", "owner", "f")),
     *(
         "SurfaceContact.normals",
         "SurfaceContact.rod_normals",
