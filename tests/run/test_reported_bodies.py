@@ -1,8 +1,11 @@
 """Bodies that were reported as refused or as ending in a traceback: each has an outcome that is right."""
 
+from dataclasses import replace
+
 import pytest
 from own_bodies import box, write
 
+from fem_impact.answers.wanted_error import simulate as by_levels
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.read import read_dict
 
@@ -43,3 +46,36 @@ def test_a_coin_lands_on_its_rim():
     assert outcome.validity.finished
     assert outcome.restitution.edge.e == pytest.approx(0.415, abs=0.08)
     assert outcome.restitution.mu == pytest.approx(-0.165, abs=0.017)
+
+
+def test_yield_and_a_hardening_modulus_need_no_ultimate_stress():
+    """Three levels of meshes give e .297 +- .072; cells twice as large, .240 +- .052 on two."""
+    cu = {"name": "cu", "E": "117 GPa", "nu": 0.35, "rho": "8930 kg/m3", "yield_stress": "400 MPa"}
+    rod = {"length": "40 mm", "diameter": "10 mm", "shape": "hemisphere"}
+    stated = {
+        "id": "bilinear",
+        "projectile": rod | {"material": cu | {"hardening": "100 MPa"}},
+        "barrier": {"material": "plate-steel"},
+        "effects": ["auto", "barrier-rigid"],
+        "surface": {"state": "custom", "friction": 0.0, "source": "frictionless"},
+        "impact": {"angle": "0 deg", "speed": "10 m/s"},
+        "save": {"frames": 0},
+    }
+    fine, coarse = (
+        by_levels(read_dict(stated | {"accuracy": {"tip_size": size}})) for size in ("0.4 mm", "0.8 mm")
+    )
+    values, bands = zip(*(run.estimate("e_edge") for run in (fine, coarse)), strict=True)
+    assert abs(values[0] - values[1]) <= sum(bands) < 0.2
+    assert values[0] == pytest.approx(0.297, abs=0.03)
+    assert fine.energy.plastic_rod > 0.5
+
+
+@pytest.mark.slow  # 20 s of processor time
+def test_bands_of_a_flat_pin_hold_what_single_finer_meshes_gave():
+    """One mesh of .06 mm gave e .322 and mu .0273, one of .1 mm .341 and .0354."""
+    pin = {"shape": "flat", "length": "32.4 mm", "diameter": "6.4 mm", "material": "rod-steel"}
+    stated = scene(pin, 0.2, {"angle": "10 deg", "speed": "5 m/s"}, "0.1 mm")
+    run = by_levels(replace(stated, accuracy=replace(stated.accuracy, levels=3)))
+    for key, finer in (("e_edge", 0.322), ("mu", 0.0273)):
+        value, band = run.estimate(key)
+        assert abs(value - finer) < band

@@ -27,7 +27,8 @@ LEAST_SHARE = 0.005
 """Shares of E_0 below it are not named among those of the rest."""
 
 FIRST_ONLY = (
-    "The first impact only: the rod keeps the rest of its energy and may strike again.",
+    "The first impact only: the rod keeps the rest of its energy and may strike again, which a run with "
+    "--until rest follows.",
     "Fracture, chipping and wear of rod and barrier; chemical heat.",
     "Supports and other bodies that the rod or the barrier may touch.",
 )
