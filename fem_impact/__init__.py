@@ -20,10 +20,10 @@ from typing import TYPE_CHECKING
 from fem_impact.version import __version__ as __version__
 
 if TYPE_CHECKING:
+    from fem_impact.answers.simulate import simulate
     from fem_impact.answers.sweep import sweep
     from fem_impact.answers.sweep_results import Results
     from fem_impact.answers.verdict.assess import Verdict, assess
-    from fem_impact.answers.wanted_error import simulate
     from fem_impact.case.case import Case
     from fem_impact.files.fields import read_fields
     from fem_impact.options import RunOptions
@@ -74,7 +74,7 @@ _PLACES = {
     "read_history": "tables.history:read_history",
     "replace": "scene.shipped:replace",
     "replace_all": "scene.shipped:replace_all",
-    "simulate": "answers.wanted_error:simulate",
+    "simulate": "answers.simulate:simulate",
     "sweep": "answers.sweep:sweep",
     "units": "scene.units:",  # the module itself
 }

@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fem_impact.answers.report import Request, Sheet, StudyReport, StudyResult, publish
+from fem_impact.answers.simulate import simulate
 from fem_impact.answers.sweep_results import COLUMNS, SHORT, Results, SweepRow, row_of
 from fem_impact.answers.vary import cases, in_unit, measure
-from fem_impact.answers.wanted_error import simulate
 from fem_impact.errors import UsageError, did_you_mean
 from fem_impact.figures.panels import Panel, Picture, Series
 from fem_impact.files.atomic import make_directory

@@ -68,7 +68,7 @@ def check(options: Options) -> int:
     SceneError, ResultError
         The scene is refused, or the file of its tests cannot be read.
     """
-    from fem_impact.answers.wanted_error import compiled
+    from fem_impact.answers.simulate import compiled
 
     drawing = _drawing_path(options)
     case = compiled(changed_scene(options.scene, options.changes), "solid")

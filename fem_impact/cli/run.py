@@ -85,7 +85,7 @@ def run(options: Options) -> int:
     if options.resume and options.fidelity in ("rigid", "modal"):
         problem = f"is for finite elements only: a {options.fidelity} run takes seconds."
         raise UsageError(problem, key="--resume", remedy="Leave it out.")
-    from fem_impact.answers.wanted_error import compiled, on_levels, simulate
+    from fem_impact.answers.simulate import compiled, on_levels, simulate
 
     say_kept(scene, options)
     budget = stated_budget(options)

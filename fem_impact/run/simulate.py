@@ -42,7 +42,7 @@ def simulate(
         If the fidelity is unknown.
     SceneError
         If the fidelity cannot compute the scene, or the scene states an error instead of a mesh, which is the
-        business of `fem_impact.answers.wanted_error.simulate`.
+        business of `fem_impact.answers.simulate.simulate`.
     ResultError
         If the checkpoint is damaged, or of another scene or program.
     OutputPathError
@@ -68,7 +68,7 @@ def simulate_recorded(
     from fem_impact.run.tests import tests_of
 
     if scene.accuracy.target is not None:
-        remedy = "Give a mesh, or call fem_impact.answers.wanted_error.simulate, which chooses one."
+        remedy = "Give a mesh, or call fem_impact.answers.simulate.simulate, which chooses one."
         raise SceneError(
             "is an error, not a mesh.", key="accuracy", value=scene.accuracy.target, remedy=remedy
         )

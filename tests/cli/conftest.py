@@ -52,7 +52,7 @@ def stand(monkeypatch):
     table = types.SimpleNamespace(document=document, text="the table", runs=("sets/t4",))
     film = types.SimpleNamespace(path=None, notes=["install libegl1"])
     for place, result in {
-        "fem_impact.answers.wanted_error.simulate": lambda: stand.outcome or an_outcome(),
+        "fem_impact.answers.simulate.simulate": lambda: stand.outcome or an_outcome(),
         "fem_impact.evidence.runner.run_study": lambda: table,
         "fem_impact.films.film.render": lambda: film,
         "fem_impact.films.film.render_side_by_side": lambda: film,

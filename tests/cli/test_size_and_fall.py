@@ -28,7 +28,7 @@ def test_check_refuses_a_mesh_that_no_machine_holds(cli):
 
 @pytest.mark.parametrize("words, said", [(("--set", "accuracy.tip_size=0.05 mm"), True), ((), False)])
 def test_a_run_over_ten_minutes_says_so_before_it_starts(cli, monkeypatch, words, said):
-    monkeypatch.setattr("fem_impact.answers.wanted_error.simulate", stop)
+    monkeypatch.setattr("fem_impact.answers.simulate.simulate", stop)
     _, _, err = cli("run", "t5b", *words)
     assert ("This run takes about" in err) is said and "stopped here" in err
     assert "This run takes" not in cli("run", "t5b", *words, "--fidelity", "rigid")[2]

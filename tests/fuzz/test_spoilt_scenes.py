@@ -10,7 +10,7 @@ from census import run
 from random_trees import spoilt_tree
 from remedies import followed, kind
 
-from fem_impact.answers.wanted_error import compiled
+from fem_impact.answers.simulate import compiled
 from fem_impact.case.case import Case
 from fem_impact.errors import SceneError
 from fem_impact.scene.read import read_dict

@@ -30,7 +30,7 @@ def test_an_unknown_name_is_an_attribute_error():
 
 
 def test_simulate_of_the_menu_takes_a_target_error_too():
-    from fem_impact.answers.wanted_error import simulate
+    from fem_impact.answers.simulate import simulate
 
     assert fem_impact.simulate is simulate
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 from own_bodies import box, write
 
-from fem_impact.answers.wanted_error import simulate as by_levels
+from fem_impact.answers.simulate import simulate as by_levels
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.read import read_dict
 

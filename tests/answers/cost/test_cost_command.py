@@ -94,7 +94,7 @@ def test_a_scene_with_a_target_says_what_it_reached(cli, monkeypatch):
     stated = {"accuracy_target": 0.2, "achieved_error": 0.15, "achieved_wall_s": 0.02}
     stated |= {"mesh_limit": {"e_edge": 0.31, "E_vib_over_E_0": 0.02}}
     monkeypatch.setattr(
-        "fem_impact.answers.wanted_error.simulate", lambda scene, *_: altered(run(scene), **stated)
+        "fem_impact.answers.simulate.simulate", lambda scene, *_: altered(run(scene), **stated)
     )
     code, out, _ = cli("run", "t5b", "--set", "accuracy=20 %")
     assert code == 0

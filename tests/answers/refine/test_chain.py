@@ -9,7 +9,7 @@ from fem_impact.answers.refine import level as level_module
 from fem_impact.answers.refine.chain import LevelChain
 from fem_impact.answers.refine.extrapolate import MeshRuns, level_limits, mesh_limits
 from fem_impact.answers.refine.level import limits_of
-from fem_impact.answers.wanted_error import compiled, simulate
+from fem_impact.answers.simulate import compiled, simulate
 from fem_impact.case.case import Case
 from fem_impact.case.record import ContactRecord
 from fem_impact.errors import ResultError, SceneError

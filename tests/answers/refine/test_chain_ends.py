@@ -6,7 +6,7 @@ import pytest
 
 from fem_impact.answers.refine import level as level_module
 from fem_impact.answers.refine.chain import LevelChain
-from fem_impact.answers.wanted_error import simulate
+from fem_impact.answers.simulate import simulate
 from fem_impact.case.case import Case
 from fem_impact.errors import ResultError, RunError
 from fem_impact.options import RunOptions

@@ -10,7 +10,7 @@ from cost_fakes import pressed, run
 from fem_impact.answers.refine import chain
 from fem_impact.answers.refine import level as level_module
 from fem_impact.answers.refine.chain import LevelChain
-from fem_impact.answers.wanted_error import simulate
+from fem_impact.answers.simulate import simulate
 from fem_impact.case.case import Case
 from fem_impact.cli.run import print_outcome
 from fem_impact.errors import RunError, SceneError

@@ -39,7 +39,7 @@ MOST: Mapping[str, float] = {DEFAULT: 60.0, FINER: 90.0, FINEST: 180.0, MODAL: 6
 """Processor time, s, after which a run of each model is broken off: it is too dear for the study."""
 NEXT: Mapping[str, tuple[str, float]] = {FINER: (DEFAULT, 11.0), FINEST: (FINER, 10.0)}
 """After which run a finer one follows, and the processor time, s, that this may have taken at most."""
-ENGINE = ("answers/refine", "answers/wanted_error.py")
+ENGINE = ("answers/refine", "answers/simulate.py")
 """Sources that run the levels; `source_digest` holds those of each level."""
 
 
