@@ -103,7 +103,7 @@ def test_the_help_of_a_study_tells_what_is_its_own(cli, name):
     assert ("ID" in text) == bool(STUDIES[name].sets)
 
 
-@pytest.mark.parametrize("quick", [True, False])
+@pytest.mark.parametrize("quick", [True, pytest.param(False, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", STUDIES)
 def test_the_help_of_a_study_counts_its_runs(tmp_path, name, quick):
     told = STUDIES[name].quick_runs if quick else STUDIES[name].runs
