@@ -54,7 +54,7 @@ MOST_REPEATS = 2  # of a level, each with twice the room
 # levels beyond those asked for, where the last has not resolved the contact: it would have no numbers
 MORE = 1
 # how much longer a level takes than one with cells twice as large, where only one has run: the most of 24
-# pairs of levels of the measured sets. Contacts along a line or an edge take 4 to 7 times: a level that proves
+# pairs of levels of the measured sets. Contacts along a line or an edge take 4 to 7 times: a level that is
 # too long for the budget is given up (`LATE`), one that is not begun says nothing
 SLOWER = 2.8
 BUDGET = 600.0  # s of wall time for all levels, unless stated
