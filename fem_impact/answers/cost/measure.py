@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Any
 
 from fem_impact.answers.cost.judge import Judged, front, judge
 from fem_impact.answers.cost.settings import Setting, settings_of
-from fem_impact.answers.refine.budget import planned_s
 from fem_impact.answers.refine.extrapolate import ExtrapolatedValue, MeshRuns, target_limits
 from fem_impact.answers.refine.levels import MeshLevel, family, on_mesh
 from fem_impact.answers.refine.quantities import QUANTITIES
+from fem_impact.case.case import Case
 from fem_impact.errors import RunError, UsageError
 from fem_impact.fem.kernels import compiled_before
 from fem_impact.files.lock import directory_lock
@@ -139,7 +139,7 @@ def affordable(settings: Sequence[Setting], budget_s: float) -> list[Setting]:
 
 def _planned_s(job: Job) -> float:
     """Return the processor time, s, that a run is expected to take; 0 of a reduced model."""
-    return planned_s([job.scene], 1) if job.fidelity == "solid" else 0.0
+    return Case.of(job.scene).size.time if job.fidelity == "solid" else 0.0
 
 
 def judge_stored(

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from contextlib import nullcontext
 from itertools import zip_longest
 from typing import TypeVar
 
-from fem_impact.case.case import Case
 from fem_impact.jobs.executors import LocalProcesses
-from fem_impact.scene.types import Scene
 
 Work = TypeVar("Work")
 Result = TypeVar("Result")
@@ -41,11 +39,6 @@ def by_worker(work: Sequence[Work], workers: int) -> list[Sequence[Work]]:
 def longest_s(times: Sequence[float], workers: int) -> float:
     """Return the time, s, of the process that is busy longest."""
     return max(map(sum, by_worker(times, workers)))
-
-
-def planned_s(scenes: Iterable[Scene], workers: int) -> float:
-    """Return the wall time, s, that runs side by side take by the plan, where none of them has run."""
-    return longest_s([Case.of(scene).size.time for scene in scenes], workers)
 
 
 def about_s(time: float) -> str:

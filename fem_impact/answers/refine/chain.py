@@ -21,7 +21,6 @@ from time import perf_counter
 
 from fem_impact.answers.refine.budget import LONGER, about_s, in_turns, longest_s
 from fem_impact.answers.refine.level import (
-    GRID_OFFSETS,
     STAMP,
     UNRESOLVED,
     LevelRun,
@@ -30,6 +29,7 @@ from fem_impact.answers.refine.level import (
     simulate_level,
 )
 from fem_impact.answers.refine.level_meshes import LevelMeshes, steps_between
+from fem_impact.answers.refine.levels import GRID_OFFSETS
 from fem_impact.case.case import Case
 from fem_impact.case.cells import contact_edge
 from fem_impact.case.record import together
@@ -165,10 +165,8 @@ class LevelChain:
             if self._decided or cut or ran >= finest + MOST_FINER:
                 return None
             finest = max(finest, ran + 1)
-        if (
-            not (record.resolved or self.meshes.is_sized)
-            and len(self.done) < self.scene.accuracy.levels + MORE
-        ):
+        unresolved = not (record.resolved or self.meshes.is_sized)
+        if unresolved and len(self.done) < self.scene.accuracy.levels + MORE:
             finest = max(finest, ran + 1)
         return next(iter(steps_between(ran, finest)), None)
 
@@ -179,7 +177,10 @@ class LevelChain:
             return False
         if self.decides is not None:
             return self.decides(self.done)
-        errors = relative_errors(self.done)
+        return self._reached(relative_errors(self.done))
+
+    def _reached(self, errors: Mapping[str, float]) -> bool:
+        """Say whether relative errors, by quantity, are what the scene asks for; those of none are not."""
         return bool(errors) and max(errors.values()) <= (self.scene.accuracy.target or 0.0)
 
     @property
@@ -205,11 +206,7 @@ class LevelChain:
 
         It is the last one where none did.
         """
-        parted = [
-            n
-            for n, level in enumerate(self.done, 1)
-            if not any(isinstance(one.motion.V_n, Unknown) for one in level.outcomes)
-        ]
+        parted = [n for n, level in enumerate(self.done, 1) if not level.cut_off]
         return parted[-1] if parted else len(self.done)
 
     @property
@@ -226,9 +223,8 @@ class LevelChain:
     def _offsets(self) -> tuple[float, ...]:
         """Places of the barrier's grid at which the next level runs; a rigid barrier has none."""
         pilot = not self.done or self.twin is not None or not self.case.bodies.contact.compliant
-        return GRID_OFFSETS[
-            : 1 if pilot else self.scene.accuracy.offsets or 1 + bool(self.scene.accuracy.target)
-        ]
+        accuracy = self.scene.accuracy
+        return GRID_OFFSETS[: 1 if pilot else accuracy.offsets or 1 + bool(accuracy.target)]
 
     def _turns(self, runs: int) -> int:
         """Return how many of so many runs the busier of the workers does."""
@@ -240,7 +236,7 @@ class LevelChain:
         steps = [level.splits for level in self.done]
         slower = (times[-1] / times[-2]) ** (1 / (steps[-1] - steps[-2])) if len(times) > 1 else SLOWER
         of_one = times[-1] * max(slower, 1.0) ** (splits - steps[-1])
-        return float(of_one * self._turns(1 if self.twin is None else 2) * self._turns(len(self._offsets)))
+        return float(of_one * self._turns(2 if self.twin else len(self._offsets)))
 
     def _sharing(self, scene: Scene) -> list[Scene]:
         """Return the scenes that run on one mesh: a scene at places of the grid, or beside its twin."""
@@ -376,7 +372,7 @@ class LevelChain:
 
     def _missed(self, errors: Mapping[str, float]) -> str:
         """Say why the wanted error is not reached, and what more would cost; empty where it is."""
-        if errors and max(errors.values()) <= (self.scene.accuracy.target or 0.0):
+        if self._reached(errors):
             return ""
         reached = [f"{name} is known to {plain(100 * error, 2)} %" for name, error in errors.items()]
         told = " and ".join(reached) or UNRESOLVED.reason

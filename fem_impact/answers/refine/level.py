@@ -20,8 +20,6 @@ from fem_impact.run.simulate import simulate_recorded
 # of nodes across the narrow side of a contact, on levels whose values are extrapolated: a line of contact one
 # cell wide is pressed as hard as its cells are large, and two levels of it may agree and be wrong together
 ROWS = 4
-# shifts of a meshed barrier's grid along t, in cells at the contact, at which a level runs
-GRID_OFFSETS = (0.0, 0.5)
 UNRESOLVED = Unknown("the last level did not resolve the contact; accuracy.levels = 4 adds a finer one")
 STAMP = "level.stamp"
 """File of a level's directory that says what was computed there."""
@@ -79,10 +77,14 @@ class LevelRun:
         )
 
     @property
+    def cut_off(self) -> list[Outcome]:
+        """Its runs that did not see the bodies part."""
+        return [one for one in self.outcomes if isinstance(one.motion.V_n, Unknown)]
+
+    @property
     def stopped(self) -> str:
-        """Why a run of it did not see the bodies part, empty where all did."""
-        cut = (one.validity.stopped_because for one in self.outcomes if isinstance(one.motion.V_n, Unknown))
-        return next(cut, "")
+        """Why the first of `cut_off` ended, empty where there is none."""
+        return next((one.validity.stopped_because for one in self.cut_off), "")
 
     @property
     def runs(self) -> MeshRuns:
