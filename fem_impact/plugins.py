@@ -46,6 +46,15 @@ def added(group: str, ours: Collection[str]) -> dict[str, Any]:
     return entries
 
 
+def listed() -> list[tuple[str, str, str]]:
+    """Return group, name and package of everything that other packages add."""
+    return [
+        (group, entry.name, f"{entry.dist.name} {entry.dist.version}" if entry.dist else "")
+        for group in GROUPS
+        for entry in sorted(_entries(group), key=lambda entry: entry.name)
+    ]
+
+
 @cache
 def providers() -> dict[str, str]:
     """Return name and version of each package that adds something, sorted: results depend on them."""

@@ -147,9 +147,12 @@ def surfaces() -> str:
 
 def effects() -> str:
     """Every effect with the number that decides about it."""
-    rows = [(f"`{e.name}`", e.sentence, e.measure, f"{e.threshold:g}", e.source) for e in EFFECTS.values()]
-    head = ("effect", "what it adds", "number", "on above", "source of the threshold")
-    return Table.of(head, rows, left=(0, 1, 2, 4)).markdown()
+    rows = [
+        (f"`{e.name}`", e.sentence, ", ".join(e.fidelities), e.measure, f"{e.threshold:g}", e.source)
+        for e in EFFECTS.values()
+    ]
+    head = ("effect", "what it adds", "computed by", "number", "on above", "source of the threshold")
+    return Table.of(head, rows, left=(0, 1, 2, 3, 5)).markdown()
 
 
 def problems() -> str:

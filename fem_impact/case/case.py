@@ -8,8 +8,9 @@ from functools import cached_property
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.cells import coarse_tip, thin_cells
 from fem_impact.case.choose import Decision, all_effects, choices, decide, neglected, require_approach
+from fem_impact.case.effects.fill import filled
 from fem_impact.case.effects.loss import require_closed_form
-from fem_impact.case.effects.registry import AUTO, EFFECTS, NAMES, check_effects
+from fem_impact.case.effects.registry import AUTO, NAMES, check_effects
 from fem_impact.case.effects.slots import ModelSpec
 from fem_impact.case.elastic_only import require_crushing_named
 from fem_impact.case.layers import block_of, require_layers, thin_layer
@@ -65,9 +66,10 @@ class Case:
         UsageError
             If the fidelity is unknown.
         SceneError
-            If an effect is unknown, the rod does not come towards the barrier, or the solid
-            fidelity cannot hold it: an indentation as deep as the rod, a tip without a fine zone, a mesh that
-            needs more memory than the machine has, a shape that cannot be meshed.
+            If an effect is unknown, or of another package and not of this fidelity, if the rod does not come
+            towards the barrier, or the solid fidelity cannot hold it: an indentation as deep as the rod, a
+            tip without a fine zone, a mesh that needs more memory than the machine has, a shape that has no
+            mesh.
         """
         if fidelity not in FIDELITIES:
             hint = did_you_mean(fidelity, FIDELITIES, f"Use one of {', '.join(FIDELITIES)}.")
@@ -158,9 +160,7 @@ class Case:
     @cached_property
     def slots(self) -> ModelSpec:
         """What the effects fill."""
-        slots = ModelSpec()
-        for name in self.active:
-            EFFECTS[name].fill(self.bodies, slots)
+        slots = filled(self.bodies, self.active, self.fidelity)
         if self.meshed_through:  # the mesh bends by itself: its impedance would count that twice
             slots.plate, slots.bending = None, plate_waves(self.contact)[0]
         return slots

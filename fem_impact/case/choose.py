@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from math import inf, isfinite
 from typing import TYPE_CHECKING
 
-from fem_impact.case.effects.registry import AUTO, BARRIERS, EFFECTS, NAMES, with_prerequisites
+from fem_impact.case.effects.registry import ADDED, AUTO, BARRIERS, EFFECTS, NAMES, with_prerequisites
 from fem_impact.case.measured import expected_shares
 from fem_impact.errors import SceneError
 from fem_impact.outcome.groups import EffectChoice
@@ -49,15 +49,15 @@ def all_effects(scene_effects: Sequence[str]) -> tuple[str, ...]:
     if AUTO not in scene_effects:
         return tuple(name for name in NAMES if name in scene_effects)
     barrier = next((name for name in scene_effects if name in BARRIERS), BARRIERS[-1])
-    wanted = set(NAMES) - set(BARRIERS) - _forced_off(scene_effects) | {barrier}
+    wanted = set(_weighed(scene_effects)) - set(BARRIERS) - _forced_off(scene_effects) | {barrier}
     return _in_order(wanted)
 
 
 def decide(whole: Bodies) -> Decision:
     """Return what is decided of the effects of a scene, from bodies with `all_effects` in force."""
     scene_effects = whole.scene.effects
-    number = {name: effect.number(whole) for name, effect in EFFECTS.items()}
-    needed = _with_one_barrier({name for name in NAMES if number[name] > EFFECTS[name].threshold})
+    number = {name: EFFECTS[name].number(whole) for name in _weighed(scene_effects)}
+    needed = _with_one_barrier({name for name in number if number[name] > EFFECTS[name].threshold})
     if AUTO not in scene_effects:
         return Decision(number, needed, set(scene_effects))
     wanted = (needed | set(scene_effects)) - _forced_off(scene_effects) - {AUTO}
@@ -82,7 +82,7 @@ def choices(scene: Scene, decision: Decision) -> tuple[EffectChoice, ...]:
             sentence=effect.sentence if name in decision.on else effect.absence,
             share=share.get(name),
         )
-        for name, effect in EFFECTS.items()
+        for name, effect in ((name, EFFECTS[name]) for name in decision.number)
     )
 
 
@@ -96,6 +96,11 @@ def neglected(choices: Sequence[EffectChoice]) -> tuple[str, ...]:
         for choice in choices
         if choice.needed and not choice.on and choice.name not in (*weaker, *UNFELT)
     )
+
+
+def _weighed(scene_effects: Sequence[str]) -> list[str]:
+    """Return the effects of the program, and those of other packages that the scene names."""
+    return [name for name in NAMES if name not in ADDED or name in scene_effects]
 
 
 def _forced_off(scene_effects: Sequence[str]) -> set[str]:

@@ -1,4 +1,4 @@
-"""The command ``scenes``: the shipped scenes, the shipped materials and the known pairs of friction."""
+"""The command ``scenes``: shipped scenes and materials, known pairs of friction, what packages add."""
 
 from __future__ import annotations
 
@@ -7,9 +7,12 @@ import sys
 from collections.abc import Iterator
 from typing import Any
 
+from fem_impact.case.effects.registry import EFFECTS
 from fem_impact.cli.options import Options
 from fem_impact.cli.parser import CommandParser
 from fem_impact.cli.terminal import print_json, print_table
+from fem_impact.options import FIDELITIES
+from fem_impact.plugins import listed
 from fem_impact.scene.library import (
     about,
     aliases_of,
@@ -30,7 +33,8 @@ from fem_impact.tables.text import wrapped
 
 def add_options(parser: CommandParser) -> None:
     """State the command and its options."""
-    parser.state(scenes, "fem-impact scenes", "fem-impact scenes --materials", "fem-impact scenes --friction")
+    kinds_listed = ("--materials", "--friction", "--added")
+    parser.state(scenes, "fem-impact scenes", *(f"fem-impact scenes {kind}" for kind in kinds_listed))
     kinds = parser.add_mutually_exclusive_group()
     kinds.add_argument(
         "--materials", action="store_true", help="list the shipped materials instead, with every source"
@@ -38,14 +42,21 @@ def add_options(parser: CommandParser) -> None:
     kinds.add_argument(
         "--friction", action="store_true", help="list the dry pairs of materials of which friction is known"
     )
+    kinds.add_argument(
+        "--added",
+        action="store_true",
+        help="list what other installed packages add, with the fidelities that compute it",
+    )
 
 
 def scenes(options: Options) -> int:
-    """List the shipped scenes, the shipped materials, or the pairs whose friction is known."""
+    """List the shipped scenes or materials, the pairs whose friction is known, or what packages add."""
     if options.materials:
         return _materials(options)
     if options.friction:
         return _friction(options)
+    if options.added:
+        return _added(options)
     rows = [
         {
             "id": scene.id,
@@ -115,4 +126,20 @@ def _friction(options: Options) -> int:
         return 0
     rows = [(" on ".join(pair["families"]), pair["low"], pair["high"], pair["source"]) for pair in pairs]
     print_table(Table.of(("pair, dry", "f from", "to", "source"), rows, left=(0, 3)), options)
+    return 0
+
+
+def _added(options: Options) -> int:
+    """List what other installed packages add, and the fidelities that compute it."""
+    rows = [
+        (group, name, package, EFFECTS[name].fidelities if group == "effects" else FIDELITIES)
+        for group, name, package in listed()
+    ]
+    if options.json:
+        head = ("kind", "name", "package", "fidelities")
+        print_json({"added": [dict(zip(head, row, strict=True)) for row in rows]})
+        return 0
+    texts = [(*row, ", ".join(fidelities)) for *row, fidelities in rows]
+    head = ("kind", "name", "package", "computed by")
+    print_table(Table.of(head, texts, left=range(4)), options)
     return 0

@@ -9,6 +9,7 @@ from typing import Self
 
 from fem_impact.arrays import Array
 from fem_impact.case.case import Case
+from fem_impact.case.effects.registry import EFFECTS
 from fem_impact.outcome.groups import (
     BarrierMotion,
     Contact,
@@ -117,7 +118,6 @@ class Reduction:
         choices: tuple[EffectChoice, ...] | Unknown,
         unmeshed: str,
         limited: Iterable[Limitation],
-        omitted: Iterable[str] = (),
         withheld: str = "",
         sites: tuple[ContactSite, ...] | Unknown = ONE_POINT,
     ) -> Outcome:
@@ -125,7 +125,7 @@ class Reduction:
 
         Parameters
         ----------
-        choices : of effects, or why there are none; omitted : effects that the fidelity does not know
+        choices : of effects, or why there are none
         unmeshed : why there is no limit of two meshes
         limited : limitations of the fidelity and of this run; those of the case are added, and those that the
             result shows
@@ -136,7 +136,7 @@ class Reduction:
         gravity, ruled = _gravity(case, end.contacts)
         failed = _open_ledger(end.missing) or ruled
         cut = failed or ("" if end.separated else end.reason)
-        origin = _provenance(case, choices, omitted)
+        origin = _provenance(case, choices)
         shown = () if withheld or cut else unusual(origin, self.motion, self.restitution, energy)
         alone = case.scene.impact.until == FIRST
         again = strikes_again(end.leaving) if end.finished and not failed and alone else ""
@@ -163,9 +163,7 @@ class Reduction:
         return without_end(outcome, cut) if cut else outcome
 
 
-def _provenance(
-    case: Case, choices: tuple[EffectChoice, ...] | Unknown, omitted: Iterable[str]
-) -> Provenance:
+def _provenance(case: Case, choices: tuple[EffectChoice, ...] | Unknown) -> Provenance:
     return Provenance(
         fidelity=case.fidelity,
         scene_id=case.scene.id,
@@ -173,7 +171,7 @@ def _provenance(
         scene_digest=digest(case.scene),
         created_utc=utc_now(),
         versions=installed_versions(),
-        effects=tuple(name for name in case.active if name not in omitted),
+        effects=tuple(name for name in case.active if case.fidelity in EFFECTS[name].fidelities),
         effect_choices=choices,
     )
 

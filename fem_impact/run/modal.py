@@ -21,7 +21,6 @@ from fem_impact.run.assemble import ImpactEnd, Reduction
 from fem_impact.run.common import HARDER, MASSIVE, RESIDUAL_LIMIT, UNBENT, apart, plastic_shares, rod_flows
 
 HALVINGS = 2  # of the time step
-OMITTED = ("rate-hardening", "machined-skin", "radiation", "material-damping", "contact-heating")
 CHOICES = Unknown("effects are weighed for the finite elements; `fem-impact check` lists them")
 NOT_MESHED = Unknown("the reduced model has no elements")
 NO_STRESS = Unknown("the reduced model does not compute residual stress")
@@ -81,7 +80,6 @@ def reduce(case: Case, result: ModalResult) -> Outcome:
         choices=CHOICES,
         sites=tuple(map(_site, result.sites)),
         unmeshed="the reduced model has no second mesh",
-        omitted=OMITTED,
         limited=limitations(
             "model",
             *ASSUMPTIONS,

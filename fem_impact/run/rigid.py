@@ -32,11 +32,6 @@ MEAN_HEAT = (
     "temperature rise was 0.3 to 1.3 times that of finite elements."
 )
 UNKNOWN = "a rigid rod in an impact without duration does not know it"
-OMITTED = (
-    *("vibration", "rate-hardening", "machined-skin", "radiation", "plate-bending", "gravity"),
-    "large-rotation",
-    "material-damping",
-)
 ASSUMPTIONS = (
     "The rod is rigid, the contact one point of its tip, and the impact takes no time.",
     "The impulse ratio follows from the sliding path with Coulomb's f: no ploughing, no elastic shear.",
@@ -82,7 +77,6 @@ def rigid_outcome(case: Case) -> Outcome:
         peak_force=Unknown(UNKNOWN),
         choices=Unknown(UNKNOWN),
         unmeshed=UNKNOWN,
-        omitted=OMITTED,
         limited=limitations("model", loss.source, *ASSUMPTIONS, *plate, *heated),
     )
 

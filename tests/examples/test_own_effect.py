@@ -1,62 +1,24 @@
-"""An effect as in docs/tutorials/extend.md: number and slot, and an item with its own account."""
+"""An item of an effect of one's own that changes velocities and books in an account of its own."""
 
 from dataclasses import dataclass, replace
 from math import exp
 
 import numpy as np
 import pytest
-from own_package.my_impact_parts import LUNAR_GRAVITY as EFFECT
-from own_package.my_impact_parts import MOON
 
 from fem_impact.case import case, choose
 from fem_impact.case.case import Case
-from fem_impact.case.choose import neglected
-from fem_impact.case.effects import registry as effect_names
+from fem_impact.case.effects import registry
 from fem_impact.case.effects.registry import EFFECTS
+from fem_impact.case.effects.slots import Effect
 from fem_impact.options import RunOptions
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.shipped import replace as changed
-from fem_impact.solid import run
 from fem_impact.solid.build import build
-from fem_impact.solid.elastic import Weight
 from fem_impact.solid.march import march
 from fem_impact.solid.observers import Watch
 from fem_impact.tables.table import read_csv
-
-
-@pytest.fixture
-def moon(monkeypatch):
-    """What two lines in `effects/registry.py` do."""
-    names = (*effect_names.NAMES, EFFECT.name)
-    monkeypatch.setitem(EFFECTS, EFFECT.name, EFFECT)
-    for module in (effect_names, choose, case):
-        monkeypatch.setattr(module, "NAMES", names)
-
-
-def scene_with(*effects, **changes):
-    return replace_all(load("quick"), {"effects": ["auto", *effects], **changes})
-
-
-def test_an_added_effect_is_chosen_by_its_number(moon):
-    fast, slow = scene_with(), scene_with(**{"impact.v_n": "-5 mm/s", "impact.v_t": "-5 mm/s"})
-    assert EFFECT.name not in Case(fast).active
-    assert EFFECT.name in Case(slow).active
-    (choice,) = [choice for choice in Case(slow).choices if choice.name == EFFECT.name]
-    assert choice.sentence == "The Moon pulls the rod down."
-    left_out = changed(slow, "effects", ["auto", f"-{EFFECT.name}"])
-    assert any(EFFECT.name in words for words in neglected(Case(left_out).choices))
-
-
-def test_it_is_built_when_it_is_on_and_only_then(moon):
-    coarse = {"accuracy.tip_size": "1.6 mm", "accuracy.across": 6, "projectile.length": "60 mm"}
-    on, off = (scene_with("barrier-rigid", *names, **coarse) for names in ((EFFECT.name,), ()))
-    model = build(Case.of(on))
-    (weight,) = [item for item in model.forces if isinstance(item, Weight)]
-    places = model.layout.rod[model.layout.rod[:, 0] < model.layout.rod_size]
-    pull = np.hypot(*weight.weight[places[:, [0, 2]]].sum(axis=0))
-    assert pull == pytest.approx(MOON * on.projectile.rigid_body.mass / 2, rel=1e-9)  # half the rod is meshed
-    assert not [item for item in build(Case.of(off)).forces if isinstance(item, Weight)]
 
 
 @dataclass
@@ -100,16 +62,16 @@ def coarse_scene():
     )
 
 
-def with_drag(model, rate):
-    n = model.layout.rod_size
-    free = model.inverse_mass[:n] > 0
-    drag = Drag(np.where(free, model.mass[:n], 0.0), model.inverse_mass[:n], rate)
-    return replace(model, impulses=[*model.impulses, drag])
+def drag_of(bodies, rate):
+    n = bodies.layout.rod_size
+    free = bodies.inverse_mass[:n] > 0
+    return Drag(np.where(free, bodies.mass[:n], 0.0), bodies.inverse_mass[:n], rate)
 
 
 def test_an_own_item_closes_the_ledger():
     scene = coarse_scene()
-    model = with_drag(build(Case.of(scene)).coasting(), RATE)
+    model = build(Case.of(scene)).coasting()
+    model = replace(model, impulses=[drag_of(model, RATE)])
     watch, state = Watch(model.ledger(), every=10), model.initial_state()
 
     class End:
@@ -127,9 +89,19 @@ def test_an_own_item_closes_the_ledger():
 
 
 def test_a_run_with_an_own_item_comes_to_its_end(monkeypatch, tmp_path):
-    """What `build` would do for a filled slot; the item's account and run time are its own."""
-    monkeypatch.setattr(run, "build", lambda planned: with_drag(build(planned), 50.0))
-    outcome = simulate(coarse_scene(), options=RunOptions(tmp_path))
+    """What an entry point does; the item's account and run time are its own."""
+    drag = Effect(
+        *("air-drag", "Air slows the rod.", "No air.", "rate tau", 0.01, "chosen"),
+        number=lambda bodies: 50.0 * bodies.estimate.duration,
+        fill=lambda bodies, spec: None,
+        fidelities=("solid",),
+        impulses=lambda builder: [drag_of(builder.meshed, 50.0)],
+    )
+    monkeypatch.setitem(EFFECTS, drag.name, drag)
+    for module in (registry, choose, case):
+        monkeypatch.setattr(module, "NAMES", (*registry.NAMES, drag.name))
+    scene = changed(coarse_scene(), "effects", ["vibration", "barrier-rigid", drag.name])
+    outcome = simulate(scene, options=RunOptions(tmp_path))
     assert outcome.validity.finished and abs(outcome.energy.residual) < 1e-4
     history = read_csv(tmp_path / "history.csv")
     held = history.numbers("E_kinetic_rod_J")

@@ -16,15 +16,33 @@ import fem_impact
 from fem_impact.scene.library import source_of
 changes = {"projectile.material": "al-6082-t6", "projectile.tip": "ball", "projectile.tip_radius": "9.5 mm"}
 scene = fem_impact.replace_all(fem_impact.load("t5b"), {**changes, "effects": ["auto", "lunar-gravity"]})
-outcome = fem_impact.simulate(scene, "rigid")
+case = fem_impact.Case.of(scene)
 print(json.dumps({
     "rho": scene.projectile.material.rho,
     "source": source_of("al-6082-t6", "E"),
-    "effects": fem_impact.Case.of(scene).active,
-    "gravity": fem_impact.Case.of(scene).slots.gravity,
-    "mass": outcome.motion.mass,
-    "versions": dict(outcome.provenance.versions),
+    "effects": case.active,
+    "gravity": case.slots.gravity,
+    "mass": case.bodies.body.mass,
 }))
+"""
+
+COARSE = """
+import json
+import fem_impact
+from fem_impact.errors import FemImpactError
+COARSE = {
+    "accuracy.tip_size": "1.6 mm", "accuracy.across": 6, "accuracy.levels": 1,
+    "accuracy.unresolved": "report", "projectile.length": "60 mm",
+}
+def run(fidelity, *effects, **changes):
+    scene = fem_impact.replace_all(fem_impact.load("quick"), {**COARSE, "effects": [*effects], **changes})
+    try:
+        outcome = fem_impact.simulate(scene, fidelity)
+    except FemImpactError as error:
+        return type(error).__name__ + " " + str(error)
+    origin = outcome.provenance
+    return {"V_n": outcome.motion.V_n, "residual": outcome.energy.residual,
+            "effects": origin.effects, "versions": dict(origin.versions)}
 """
 
 
@@ -57,7 +75,86 @@ def test_a_scene_uses_what_the_package_adds(tmp_path):
     assert found["source"] == "certificate of the bar"
     assert "lunar-gravity" in found["effects"] and found["gravity"] == 1.62
     assert 0.05 < found["mass"] < 0.06  # of aluminium, with a hemisphere
-    assert found["versions"]["my-impact-parts"] == "1.0"
+
+
+FIDELITY_RUNS = (
+    COARSE
+    + """
+base = ["vibration", "barrier-rigid"]
+found = {
+    (fidelity, name): run(fidelity, *base, name) for fidelity in ("rigid", "modal", "solid")
+    for name in ("lunar-gravity", "magnet")
+}
+found |= {(fidelity, ""): run(fidelity, *base) for fidelity in ("modal", "solid")}
+print(json.dumps([[*key, value] for key, value in found.items()]))
+"""
+)
+
+
+def test_each_fidelity_computes_an_added_effect_or_refuses_it(tmp_path):
+    done = run(FIDELITY_RUNS, installed(tmp_path))
+    assert done.returncode == 0, done.stderr
+    found = {(fidelity, name): value for fidelity, name, value in json.loads(done.stdout)}
+    refused = {("rigid", "lunar-gravity"), ("rigid", "magnet"), ("modal", "magnet")}
+    assert {key for key, value in found.items() if isinstance(value, str)} == refused
+    for fidelity, name in refused:
+        told = found[fidelity, name]
+        assert told.startswith("SceneError") and f'effects = "{name}"' in told
+        assert f"not computed by the fidelity {fidelity}" in told and "Use --fidelity" in told
+    for key in set(found) - refused:
+        assert abs(found[key]["residual"]) < 1e-4
+        assert found[key]["effects"][2:] == ([key[1]] if key[1] else [])
+        assert found[key]["versions"]["my-impact-parts"] == "1.0"
+    pulled = found["solid", ""]["V_n"] - found["solid", "magnet"]["V_n"]
+    assert 0.005 < pulled < 0.2  # 50 N on 0.13 kg over some 0.1 ms of contact: about 0.04 m/s
+    for fidelity in ("modal", "solid"):
+        assert found[fidelity, "lunar-gravity"]["V_n"] != found[fidelity, ""]["V_n"]
+
+
+def test_what_a_scene_does_not_name_changes_nothing_in_it(tmp_path):
+    code = """
+import fem_impact
+scene = fem_impact.replace_all(fem_impact.load("quick"), {"impact.v_n": "-5 mm/s", "impact.v_t": "-5 mm/s"})
+case = fem_impact.Case.of(scene)
+print(case.active, case.choices, case.limitations, case.slots)
+"""
+    bare, added = (run(code, env) for env in (dict(os.environ), installed(tmp_path)))
+    assert bare.returncode == 0, bare.stderr
+    assert bare.stdout == added.stdout  # though the Moon's number is above its threshold
+
+
+def test_the_command_lists_what_packages_add_and_what_computes_it(tmp_path):
+    code = "import sys\nfrom fem_impact.cli.main import main\nsys.exit(main(['scenes', '--added', '--json']))"
+    done = run(code, installed(tmp_path))
+    listed = {row["name"]: (row["kind"], row["fidelities"]) for row in json.loads(done.stdout)["added"]}
+    every = ["rigid", "modal", "solid"]
+    assert listed == {
+        "al-6082-t6": ("materials", every),
+        "ball": ("shapes", every),
+        "lunar-gravity": ("effects", ["modal", "solid"]),
+        "magnet": ("effects", ["solid"]),
+    }
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ("fidelities=('rigid',)", "fills gravity, which the fidelity rigid"),
+        ("fill=lambda bodies, spec: None", "fills no slot and adds no item"),
+        ("forces=lambda builder: []", "adds items of the finite elements"),
+    ],
+)
+def test_an_effect_that_would_change_nothing_is_refused(tmp_path, change, words):
+    env = installed(tmp_path)
+    module = tmp_path / "my_impact_parts.py"
+    module.write_text(
+        module.read_text()
+        + f"\nfrom dataclasses import replace\nLUNAR_GRAVITY = replace(LUNAR_GRAVITY, {change})\n"
+    )
+    fidelity = "rigid" if "fidelities" in change else "modal"
+    done = run(COARSE + f"print(run({fidelity!r}, 'auto', 'lunar-gravity'))", env)
+    assert done.stdout.startswith("UsageError") and words in done.stdout, done.stdout + done.stderr
+    assert "my-impact-parts" in done.stdout
 
 
 def test_without_the_package_its_names_are_refused():

@@ -44,4 +44,5 @@ EFFECT = Effect(
     number,
     fill,
     needs=("vibration",),
+    fidelities=("solid",),
 )

@@ -32,4 +32,5 @@ EFFECT = Effect(
     "speed gained by falling while the impact lasts: e moves by about as much, a quarter of 2 %",
     number,
     fill,
+    fidelities=("modal", "solid"),
 )

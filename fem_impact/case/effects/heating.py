@@ -70,4 +70,5 @@ EFFECT = Effect(
     number,
     fill,
     needs=("friction",),
+    fidelities=("rigid", "solid"),
 )

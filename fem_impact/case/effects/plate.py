@@ -46,4 +46,5 @@ EFFECT = Effect(
     "2 % that it may be off",
     number,
     fill,
+    fidelities=("modal", "solid"),
 )

@@ -57,4 +57,5 @@ EFFECT = Effect(
     number,
     fill,
     needs=("barrier-elastic", "barrier-elastoplastic"),
+    fidelities=("solid",),
 )

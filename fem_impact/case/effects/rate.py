@@ -47,4 +47,5 @@ EFFECT = Effect(
     number,
     fill,
     needs=("rod-plasticity", "barrier-elastoplastic"),
+    fidelities=("solid",),
 )

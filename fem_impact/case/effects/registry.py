@@ -44,7 +44,10 @@ EFFECTS: dict[str, Effect] = {
     )
 }
 
-for _name, _effect in added("effects", EFFECTS).items():
+ADDED = added("effects", EFFECTS)
+"""Effects of other packages, which are in force in the scenes alone that name them."""
+
+for _name, _effect in ADDED.items():
     if not isinstance(_effect, Effect) or _effect.name != _name:
         raise wrong(_name, "effects", "is no Effect of that name.")
     EFFECTS[_name] = _effect

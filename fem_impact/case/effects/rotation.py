@@ -45,4 +45,5 @@ EFFECT = Effect(
     "2 theta, a fifth of the 10 % that it may be, for theta is known to a factor of two; arms by theta^2/2",
     number,
     fill,
+    fidelities=("modal", "solid"),
 )

@@ -60,4 +60,5 @@ EFFECT = Effect(
     number,
     fill,
     needs=("rod-plasticity", "barrier-elastoplastic"),
+    fidelities=("solid",),
 )

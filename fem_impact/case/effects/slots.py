@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+from fem_impact.options import FIDELITIES
 
 if TYPE_CHECKING:
     from fem_impact.case.bodies import Bodies
@@ -70,6 +72,10 @@ class Effect:
     number : returns the number for bodies with all effects in force that the scene does not force off
     fill : sets its slots in a specification, for bodies with the effects of the model
     needs : prerequisites, of which at least one must be on; empty: none
+    fidelities : models that compute it. The others leave an effect of the program out, and refuse a scene
+        with one of another package
+    forces, impulses : return items of the finite-element model that add forces or change velocities
+        (`fem_impact.solid.items`), made from its `fem_impact.solid.build.Builder`
     """
 
     name: str
@@ -81,3 +87,6 @@ class Effect:
     number: Callable[[Bodies], float]
     fill: Callable[[Bodies, ModelSpec], None]
     needs: tuple[str, ...] = ()
+    fidelities: tuple[str, ...] = FIDELITIES
+    forces: Callable[[Any], Sequence[Any]] | None = None
+    impulses: Callable[[Any], Sequence[Any]] | None = None

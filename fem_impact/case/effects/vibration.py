@@ -45,4 +45,5 @@ EFFECT = Effect(
     "a yielding contact lets go in about half its time",
     number,
     fill,
+    fidelities=("modal", "solid"),
 )

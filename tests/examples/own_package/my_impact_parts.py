@@ -1,6 +1,10 @@
-"""A package of a user's own that adds a material, a tip and an effect to fem-impact."""
+"""A package of a user's own: a material, a tip, an effect in a slot of the program, one with a force."""
 
+from dataclasses import dataclass
 from math import hypot, pi
+from typing import ClassVar
+
+import numpy as np
 
 from fem_impact.case.effects.slots import Effect
 from rigid import Nose
@@ -42,4 +46,50 @@ LUNAR_GRAVITY = Effect(
     source="a quarter of the 2 % that e may be off",
     number=number,
     fill=fill,
+    fidelities=("modal", "solid"),
+)
+
+PULL = 50.0  # N, of a magnet under the plate on the whole rod
+
+
+@dataclass
+class Pull:
+    """A constant force on the half rod that is meshed, spread over its mass."""
+
+    body: ClassVar[str] = "rod"
+    effect: ClassVar[str] = "magnet"  # whose run time it counts to
+    accounts: ClassVar[tuple[str, ...]] = ("magnet",)  # a column of the ledger that no other item books in
+    moving: ClassVar[tuple[str, ...]] = ()  # what a checkpoint has to keep
+    force: np.ndarray  # (n,), N, along each unknown of the rod
+    start: np.ndarray  # (n,), m
+
+    def add(self, state):
+        """Add the force, N."""
+        state.force[: len(self.force)] += self.force
+
+    def energies(self, state):
+        """Return the potential energy since the start, J."""
+        return (-float(self.force @ (state.x[: len(self.force)] - self.start)),)
+
+
+def pulls(builder):
+    """Return the item of a model that is being built."""
+    meshed, n = builder.meshed, builder.meshed.layout.rod_size
+    normal = np.zeros(meshed.layout.size)
+    normal[meshed.rod.places[:, 2]] = 1.0
+    mass = meshed.mass[:n] * normal[:n]
+    return [Pull(-0.5 * PULL * mass / mass.sum(), meshed.x[:n].copy())]
+
+
+MAGNET = Effect(
+    name="magnet",
+    sentence="A magnet under the plate pulls the rod.",
+    absence="No magnet.",
+    measure="F tau/(m v)",
+    threshold=0.005,
+    source="a quarter of the 2 % that e may be off",
+    number=lambda bodies: PULL * bodies.estimate.duration / (bodies.body.mass * -bodies.contact.v_n),
+    fill=lambda bodies, spec: None,
+    fidelities=("solid",),
+    forces=pulls,
 )
