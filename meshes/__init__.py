@@ -12,6 +12,7 @@ from meshes.block import (
 )
 from meshes.cut import without_slices
 from meshes.errors import ClosedEndError, MeshError, MissingReaderError
+from meshes.faces import face_at
 from meshes.files import MeshFile, read, write
 from meshes.hexmesh import OUTER, SKIN, SYMMETRY, HexMesh, owners
 from meshes.moments import CellMoments, cell_moments
@@ -51,6 +52,7 @@ __all__ = [
     "drawn_depths",
     "drawn_to_ends",
     "edge_lengths",
+    "face_at",
     "included",
     "own_body",
     "owners",

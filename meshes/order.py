@@ -12,10 +12,11 @@ BESIDE = 0.237  # of it, by which the steps are shifted, so that round numbers d
 
 
 def in_order(points: FloatArray, cells: IntArray) -> tuple[FloatArray, IntArray, IntArray]:
-    """Return nodes and cells of a body in an order that follows from their places, and that of the cells.
+    """Return nodes and cells of a body in an order that follows from their places, and whence their corners.
 
     Nodes go from the tip to the tail, and at one height along y, then x. A cell begins with its lowest node
-    and goes on to the lowest of that node's three neighbours. Cells go by their nodes.
+    and goes on to the lowest of that node's three neighbours. Cells go by their nodes. The last array
+    (m, 8) is for each corner 8 times the number of its cell in ``cells``, and its number there.
     """
     step = QUANTUM * float(np.ptp(points, axis=0).max())
     x, y, z = np.floor(points / step + BESIDE).T
@@ -27,9 +28,10 @@ def in_order(points: FloatArray, cells: IntArray) -> tuple[FloatArray, IntArray,
     rows = np.arange(len(cells))
     near = NEIGHBOURS[first]
     second = numbered[rows[:, None], near].argmin(axis=1)
-    turned = numbered[rows[:, None], TURNS[first, second]]
+    corners = 8 * rows[:, None] + TURNS[first, second]
+    turned = numbered.ravel()[corners]
     by_nodes = np.lexsort(turned.T[::-1])
-    return points[order], turned[by_nodes], by_nodes
+    return points[order], turned[by_nodes], corners[by_nodes]
 
 
 # (8, 3) corners reached from each corner along x, y and z

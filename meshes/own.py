@@ -9,6 +9,7 @@ import scipy.sparse as sp
 
 from meshes.arrays import BoolArray, FloatArray, IntArray
 from meshes.errors import MeshError
+from meshes.faces import file_faces, lopsided, named_faces
 from meshes.gauss import jacobians
 from meshes.halving import across, halved_tetrahedra, straight
 from meshes.hexahedra import as_hexahedra
@@ -63,11 +64,15 @@ class OwnBody:
     ----------
     half : the half y >= 0, its tip at z = 0
     sets : by name of a set of the file, the mask (m,) of its cells
+    faces : by name of a set of faces or nodes of the file, the mask (k,) of the faces of the half in it
+    lopsided : names of sets of which one side of y = 0 holds more than the other
     told : sentences about what the file holds and how it was taken
     """
 
     half: HexMesh
     sets: Mapping[str, BoolArray] = field(default_factory=dict)
+    faces: Mapping[str, BoolArray] = field(default_factory=dict)
+    lopsided: frozenset[str] = frozenset()
     told: tuple[str, ...] = ()
 
 
@@ -90,7 +95,8 @@ def read_own(path: str | Path, unit: float = 1.0, stated: Stated | None = None) 
     stated = stated or Stated()
     stored = stored_mesh(path)
     if not stored.blocks:
-        left = f": {', '.join(stored.ignored)} alone" if stored.ignored else ""
+        other = (*stored.surfaces.counts(np.ones(len(stored.surfaces.kinds), bool)), *stored.ignored)
+        left = f": {', '.join(other)} alone" if other else ""
         raise MeshError(f"holds no volume cells{left}. Give hexahedra, wedges or tetrahedra.")
     if stored.points.shape[1:] != (3,):
         raise MeshError(f"has points of {stored.points.shape[1]} coordinates: a body needs three.")
@@ -114,12 +120,27 @@ def read_own(path: str | Path, unit: float = 1.0, stated: Stated | None = None) 
     parent = np.flatnonzero(chosen)[of[made.parent]]
     if cut:
         stated = replace(stated, symmetry="half", tip="-z" if stated.tip else None)
-    body = _own(Part(made.points, made.cells, parent), stated, _set_hint(stored))
-    ignored = (f"left out: {', '.join(stored.ignored)}",) if stored.ignored else ()
-    sets = {name: np.isin(body[1], cells) for name, cells in stored.sets.items()}
+    body, origin = _own(Part(made.points, made.cells, _corners(made.cells)), stated, _set_hint(stored))
+    files = file_faces(stored, chosen)
+    of = parent[origin // 8]  # (m, 8), all corners of a cell are of one cell of the file
+    sets = {name: np.isin(of[:, 0], cells) for name, cells in stored.sets.items()}
+    faces = named_faces(body.half, made.points, made.cells.ravel()[origin], of, files)
+    left_out = (*stored.surfaces.counts(~files.bounding), *stored.ignored)
+    told = (
+        *((f"left out: {', '.join(left_out)}",) if left_out else ()),
+        *((f"sets of faces: {', '.join(sorted(faces))}",) if faces else ()),
+        *(*stood, *cut, *made.told),
+        *(body.told[1:] if cut else body.told),  # what was cut here is no half in the file
+    )
+    dropped = np.setdiff1d(np.flatnonzero(chosen), of)
+    uneven = lopsided(stored, files, _axes(made.points, stated.tip), dropped)
     present = {name: here for name, here in sets.items() if here.any()}
-    last = body[0].told[1:] if cut else body[0].told  # what was cut here is no half in the file
-    return replace(body[0], sets=present, told=(*ignored, *stood, *cut, *made.told, *last))
+    return replace(body, sets=present, faces=faces, lopsided=uneven, told=told)
+
+
+def _corners(cells: IntArray) -> IntArray:
+    """Return the `Part.origin` (m, 8) of cells as they are read."""
+    return np.arange(cells.size).reshape(cells.shape)
 
 
 def own_body(points: FloatArray, cells: IntArray, stated: Stated | None = None) -> OwnBody:
@@ -145,7 +166,7 @@ def own_body(points: FloatArray, cells: IntArray, stated: Stated | None = None) 
     stated, stood = stated or Stated(), tuple[str, ...]()
     if is_oblique(stated.tip):
         points, stated, stood = _stood(points, cells, points, stated)
-    body = _own(Part(points, cells, np.arange(len(cells))), stated, "")[0]
+    body = _own(Part(points, cells, _corners(cells)), stated, "")[0]
     return replace(body, told=(*stood, *body.told))
 
 
@@ -221,11 +242,11 @@ def _set_hint(stored: StoredMesh) -> str:
 
 
 def _own(part: Part, stated: Stated, hint: str) -> tuple[OwnBody, IntArray]:
-    """Return the body of hexahedra, and the cells of the file in which its cells lie."""
+    """Return the body of hexahedra, and the `Part.origin` (m, 8) of its cells."""
     points, cells = part.points, part.cells
     _require_numbered(points, cells, 0)
     used, new = np.unique(cells, return_inverse=True)
-    part = Part(points[used], new.reshape(cells.shape), part.parent)
+    part = Part(points[used], new.reshape(cells.shape), part.origin)
     mesh = from_cells(part.points, part.cells, half_body_tags)
     _require_unfolded(mesh)
     _require_joined(mesh)
@@ -241,10 +262,10 @@ def _own(part: Part, stated: Stated, hint: str) -> tuple[OwnBody, IntArray]:
     half = from_cells(part.points, part.cells, half_body_tags)
     if not (half.face_tag == SYMMETRY).any():
         raise MeshError("has no face on the plane y = 0, its plane of symmetry. Move it there.")
-    placed, order = _placed(half)
+    placed, corners = _placed(half)
     doubled = size_text(part, (1,))
     told = (*part.told, *_leaning(placed), f"whole body: {doubled}")
-    return OwnBody(placed, {}, told), part.parent[order]
+    return OwnBody(placed, told=told), part.origin.ravel()[corners]
 
 
 def _require_numbered(points: FloatArray, cells: IntArray, least: int) -> None:
@@ -325,7 +346,7 @@ def _require_closed(mesh: HexMesh) -> None:
 
 def _turned(part: Part, tip: Tip) -> Part:
     """Return a part turned so that its tip, which points along an axis of the file, points to -z."""
-    return Part(_axes(part.points, tip), part.cells, part.parent, part.told)
+    return replace(part, points=_axes(part.points, tip))
 
 
 def _axes(points: FloatArray, tip: Tip | None) -> FloatArray:
@@ -364,10 +385,10 @@ def _leaning(mesh: HexMesh) -> tuple[str, ...]:
 
 
 def _placed(mesh: HexMesh) -> tuple[HexMesh, IntArray]:
-    """Return the half, its tip at z = 0, the centre of its volume at x = 0, and the order of its cells."""
+    """Return the half, its tip at z = 0, the centre of its volume at x = 0, and whence its corners."""
     part = cell_moments(mesh)
     centre = float(part.x.sum() / part.volume.sum())
     moved = abs(centre) > NEAR * float(np.ptp(mesh.points[:, 0]))
     shift = np.array([centre if moved else 0.0, 0.0, mesh.points[:, 2].min()])
-    points, cells, order = in_order(mesh.points - shift, mesh.cells)
-    return from_cells(points, cells, half_body_tags), order
+    points, cells, corners = in_order(mesh.points - shift, mesh.cells)
+    return from_cells(points, cells, half_body_tags), corners

@@ -30,13 +30,13 @@ class Part:
     ----------
     points : (n, 3) float64, m
     cells : (m, 8) int64
-    parent : (m,) int64, the cell of the file in which each lies
+    origin : (m, 8) int64, for each corner of each cell 8 times the cell as read that it is one of, and which
     told : sentences about what was done
     """
 
     points: FloatArray
     cells: IntArray
-    parent: IntArray
+    origin: IntArray
     told: tuple[str, ...] = ()
 
     @property
@@ -196,7 +196,7 @@ def _doubled(part: Part, axis: int) -> Part:
     return Part(
         np.concatenate([points, image]),
         np.concatenate([part.cells, new[part.cells][:, TURNED]]),
-        np.concatenate([part.parent, part.parent]),
+        np.concatenate([part.origin, part.origin[:, TURNED]]),
         part.told,
     )
 
@@ -213,7 +213,8 @@ def _on_positive_side(part: Part) -> Part:
     """Return a half on y >= 0, mirrored if it was given on the other side."""
     if part.points[:, 1].max() > 0.0:
         return part
-    return replace(part, points=part.points * [1.0, -1.0, 1.0] + 0.0, cells=part.cells[:, TURNED])
+    points, (cells, origin) = part.points * [1.0, -1.0, 1.0] + 0.0, (part.cells, part.origin)
+    return Part(points, cells[:, TURNED], origin[:, TURNED], part.told)
 
 
 def _cut(part: Part) -> Part:
@@ -231,7 +232,7 @@ def _cut(part: Part) -> Part:
     _require_mirrored(points, part.cells, near)
     places, cells, kept = made
     used, new = np.unique(cells[kept], return_inverse=True)
-    half = Part(places[used], new.reshape(-1, 8), part.parent[kept], part.told)
+    half = Part(places[used], new.reshape(-1, 8), part.origin[kept], part.told)
     return half.tell(f"{len(across)} cells across the plane y = 0 are cut there") if len(across) else half
 
 

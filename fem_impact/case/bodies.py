@@ -7,13 +7,14 @@ from functools import cached_property
 
 import numpy as np
 
-from fem_impact.arrays import Array, Ints
+from fem_impact.arrays import Array, Bools, Ints
 from fem_impact.physics.beam import bending_period, latest_time, stretching_period
 from fem_impact.physics.contact import ContactEstimate, ContactPair, Plate
 from fem_impact.physics.wall import ovalling_period
 from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.types import Scene
+from meshes import SKIN, HexMesh
 from rigid import Body
 
 SAME_PLACE = 1e-6  # of the length, as far as nodes of a user's mesh may lie from where they touch
@@ -76,17 +77,27 @@ class Bodies:
         stated, rod = self.scene.surface.friction, self.rod
         if not rod.faces:
             return stated
-        return float(rod.cell_friction(stated)[self.touching_cells].max())
+        half = self._own_half
+        there = self._at_contact[half.faces].any(axis=1) & (half.face_tag == SKIN)
+        return float(rod.face_friction(stated)[there].max())
 
     @cached_property
     def touching_cells(self) -> Ints:
         """The numbers of the cells of a mesh of its own at the place that touches first."""
+        return np.flatnonzero(self._at_contact[self._own_half.cells].any(axis=1))
+
+    @property
+    def _own_half(self) -> HexMesh:
         mesh = self.rod.own_mesh
         assert mesh is not None, "only a mesh has cells of its own"
-        half, (x, z) = mesh.half(), self.body.contact_point(self.scene.impact.angle)
+        return mesh.half()
+
+    @cached_property
+    def _at_contact(self) -> Bools:
+        """Which nodes (n,) of the half of a mesh of its own stand at the place that touches first."""
+        half, (x, z) = self._own_half, self.body.contact_point(self.scene.impact.angle)
         away = np.hypot(half.points[:, 0] - float(x), half.points[:, 2] - float(z))
-        at_contact = away <= max(float(away.min()), SAME_PLACE * self.rod.length)
-        return np.flatnonzero(at_contact[half.cells].any(axis=1))
+        return np.asarray(away <= max(float(away.min()), SAME_PLACE * self.rod.length))
 
     @property
     def estimate(self) -> ContactEstimate:

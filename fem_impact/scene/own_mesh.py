@@ -15,7 +15,7 @@ from fem_impact.scene.checks import check_choice, check_text
 from fem_impact.scene.units import DIMENSIONS
 
 if TYPE_CHECKING:
-    from fem_impact.arrays import Array, Ints
+    from fem_impact.arrays import Array, Bools, Ints
     from meshes import HexMesh, OwnBody
     from rigid import Faceted
 
@@ -153,30 +153,63 @@ def _body(mesh: OwnMesh) -> OwnBody:
 
 
 @lru_cache(maxsize=8)
-def cell_regions(mesh: OwnMesh, names: tuple[str, ...], key: str = "mesh_materials") -> Ints:
+def cell_regions(mesh: OwnMesh, names: tuple[str, ...]) -> Ints:
     """Return for each cell (m,) of the half the number, from 1, of the set that holds it; 0 where none does.
-
-    The ``key`` of the scene states something of these sets.
 
     Raises
     ------
     SceneError
-        If the file has no such set of cells of the body, or two of them hold one cell.
+        If the file has no such set of cells of the body, it does not lie on both sides of the plane of
+        symmetry, or two of them hold one cell.
+    """
+    return _numbered(mesh, names, mesh.body().sets, len(mesh.half().cells), ("mesh_materials", "cells"))
+
+
+@lru_cache(maxsize=8)
+def face_regions(mesh: OwnMesh, names: tuple[str, ...]) -> Ints:
+    """Return for each outer face (k,) of the half the number, from 1, of the set that holds it; else 0.
+
+    A set of cells stands for their outer faces, one of nodes for the faces that have all corners in it.
+
+    Raises
+    ------
+    SceneError
+        As `cell_regions`.
+    """
+    from meshes import owners
+
+    body, owner = mesh.body(), owners(mesh.half())
+    sets = {name: here[owner] for name, here in body.sets.items()}
+    for name, here in body.faces.items():
+        sets[name] = sets[name] | here if name in sets else here
+    return _numbered(mesh, names, sets, len(owner), ("mesh_surfaces", "cells, faces or nodes"))
+
+
+def _numbered(
+    mesh: OwnMesh, names: tuple[str, ...], sets: Mapping[str, Bools], count: int, where: tuple[str, str]
+) -> Ints:
+    """Return for each of so many cells or faces the number of the set that holds it; see `cell_regions`.
+
+    ``where`` is the key of the scene that names the sets, and what they are sets of.
     """
     import numpy as np
 
-    half, sets = mesh.half(), {name.upper(): here for name, here in mesh.body().sets.items()}
-    region = np.zeros(len(half.cells), dtype=np.int64)
+    (key, what), known = where, {name.upper(): name for name in sets}
+    region = np.zeros(count, dtype=np.int64)
     for number, name in enumerate(names, 1):
-        if name.upper() not in sets:
-            known = ", ".join(sorted(mesh.body().sets)[:12]) or "none"
-            faces = "A set of cells is meant, with their outer faces. " if key == "mesh_surfaces" else ""
-            remedy = f"{faces}It has {known}."
-            raise SceneError("is no set of cells of the mesh.", key=f"{key}.{name}", remedy=remedy)
-        here = sets[name.upper()]
+        if name.upper() not in known:
+            remedy = f"It has {', '.join(sorted(sets)[:12]) or 'none'}."
+            raise SceneError(f"is no set of {what} of the mesh.", key=f"{key}.{name}", remedy=remedy)
+        stored = known[name.upper()]
+        if stored in mesh.body().lopsided:
+            problem = "lies on one side of the plane of symmetry y = 0 more than on the other."
+            remedy = "The model holds half of a symmetric body: name a set that is symmetric."
+            raise SceneError(problem, key=f"{key}.{name}", remedy=remedy)
+        here = sets[stored]
         if region[here].any():
             remedy = f"Leave one of {name} and {names[int(region[here].max()) - 1]} out."
-            problem = f"holds {int((region[here] > 0).sum())} cells that another set holds too."
+            held = "cells" if key == "mesh_materials" else "faces"
+            problem = f"holds {int((region[here] > 0).sum())} {held} that another set holds too."
             raise SceneError(problem, key=f"{key}.{name}", remedy=remedy)
         region[here] = number
     return region

@@ -12,7 +12,7 @@ from fem_impact.errors import SceneError
 from fem_impact.scene import fields
 from fem_impact.scene.checks import check_choice, check_numbers
 from fem_impact.scene.material import Material
-from fem_impact.scene.own_mesh import OwnMesh, cell_regions, faceted_body
+from fem_impact.scene.own_mesh import OwnMesh, cell_regions, face_regions, faceted_body
 from fem_impact.scene.shapes import (
     NamedShape,
     Point,
@@ -55,7 +55,7 @@ class Region:
 
 @dataclass(frozen=True, slots=True)
 class Face:
-    """Outer faces of a mesh with a state of their own: the set of the file that holds their cells."""
+    """Outer faces of a mesh with a state of their own: a set of the file, of cells, faces or nodes."""
 
     name: str
     surface: Surface
@@ -182,15 +182,15 @@ class ProjectileSpec:
         regions = cell_regions(self.shape, tuple(region.name for region in self.regions))
         return np.asarray(np.where(regions > 0, max(len(self.segments), 1) - 1 + regions, of))
 
-    def cell_friction(self, other: float) -> Array:
-        """Return the Coulomb coefficient (m,) of the outer faces of each cell of the half of a mesh.
+    def face_friction(self, other: float) -> Array:
+        """Return the Coulomb coefficient (k,) of each outer face of the half of a mesh.
 
-        That of cells in none of `faces` is the ``other``.
+        That of faces in none of `faces` is the ``other``.
         """
         import numpy as np
 
         assert isinstance(self.shape, OwnMesh), "only a mesh has cells of its own"
-        of = cell_regions(self.shape, tuple(face.name for face in self.faces), "mesh_surfaces")
+        of = face_regions(self.shape, tuple(face.name for face in self.faces))
         return np.array([other, *(face.surface.friction for face in self.faces)])[of]
 
     def body(self) -> Turned | Faceted:

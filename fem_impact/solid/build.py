@@ -37,7 +37,7 @@ from fem_impact.solid.frame import FixedFrame, TurningFrame, mass_centre
 from fem_impact.solid.ground import Ground
 from fem_impact.solid.items import Force, Impulse
 from fem_impact.solid.model import Model
-from meshes import SKIN, owners
+from meshes import SKIN, face_at, owners
 from rigid import Faceted
 
 if TYPE_CHECKING:
@@ -286,11 +286,14 @@ class Builder:
         f = np.full(len(mesh.points), self.spec.friction or 0.0)
         if self.spec.friction is None or not rod.faces:
             return f
-        assert mesh.region is not None, "the cells of a mesh of its own are numbered"
-        of_quad = rod.cell_friction(self.spec.friction)[mesh.region[owners(mesh)]]
-        skin = mesh.face_tag == SKIN
-        f[mesh.faces[skin]] = 0.0
-        np.maximum.at(f, mesh.faces[skin], of_quad[skin, None])
+        assert mesh.region is not None and rod.own_mesh is not None, (
+            "the cells of a mesh of its own are numbered"
+        )
+        half, quads = rod.own_mesh.half(), mesh.faces_with(SKIN)
+        cell = mesh.region[owners(mesh)[mesh.face_tag == SKIN]]
+        at = face_at(mesh.points[quads].mean(axis=1), cell, half.points, half.faces, owners(half))
+        f[quads] = 0.0
+        np.maximum.at(f, quads, rod.face_friction(self.spec.friction)[at, None])
         return f
 
     def weight(self, gravity: float) -> Weight:

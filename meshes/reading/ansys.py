@@ -30,7 +30,7 @@ class _Archive:
     nodes : place of each node by number
     types : number of the element's type by its number in the file
     cells : by number: type, nodes
-    components : by name: numbers of elements
+    components, node_sets : by name: numbers of elements, of nodes
     """
 
     points: list[list[float]] = field(default_factory=list)
@@ -38,10 +38,11 @@ class _Archive:
     types: dict[int, int] = field(default_factory=dict)
     cells: dict[int, tuple[int, list[int]]] = field(default_factory=dict)
     components: dict[str, list[int]] = field(default_factory=dict)
+    node_sets: dict[str, list[int]] = field(default_factory=dict)
 
 
 def ansys(path: Path) -> StoredMesh:
-    """Read an archive as CDWRITE writes it; a set is a component of elements.
+    """Read an archive as CDWRITE writes it; a set is a component of elements or nodes.
 
     Raises
     ------
@@ -61,9 +62,9 @@ def ansys(path: Path) -> StoredMesh:
             _nodes(lines, archive)
         elif name == "EBLOCK":
             _cells(lines, archive, "SOLID" in line.upper())
-        elif name == "CMBLOCK" and words[2].upper().startswith("ELEM"):
-            members = list(_integers(lines, whole_number(words[3], "CMBLOCK")))
-            archive.components[words[1].upper()] = _ranges(members)
+        elif name == "CMBLOCK":
+            of = archive.components if words[2].upper().startswith("ELEM") else archive.node_sets
+            of[words[1].upper()] = _ranges(list(_integers(lines, whole_number(words[3], "CMBLOCK"))))
         elif name in MAKERS:
             raise MeshError(
                 f"makes nodes or cells by the command {name}. Write it by CDWRITE,DB with blocks."
@@ -147,6 +148,9 @@ def _stored(archive: _Archive) -> StoredMesh:
         if kind in SOLIDS | TETRA4 | TETRA10 and missing:
             raise MeshError(f"has a cell {number} that names the node {missing[0]}, which is not there.")
         told = _kind(kind, len(nodes))
+        if told is None and kind and kind not in MASSES:
+            found.add_face(str(kind), [archive.nodes.get(node, -1) for node in nodes], *sets.get(number, []))
+            continue
         if told is None:
             found.leave(
                 f"cell of type {kind}" if kind else "cell outside of solid blocks", mass=kind in MASSES
@@ -154,6 +158,8 @@ def _stored(archive: _Archive) -> StoredMesh:
             continue
         numbers = tuple(archive.nodes[node] if node else -1 for node in nodes)
         found.add(told, numbers, *sets.get(number, []))
+    for name, members in archive.node_sets.items():
+        found.node_sets[name] = [archive.nodes[node] for node in members if node in archive.nodes]
     return found.stored(np.array(archive.points, dtype=np.float64).reshape(-1, 3))
 
 

@@ -1,5 +1,6 @@
 """Formats that meshio reads right: Gmsh, VTK, MED, Medit, XDMF and others."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -7,12 +8,13 @@ import numpy as np
 
 from meshes.arrays import IntArray
 from meshes.errors import MeshError
-from meshes.reading.stored import NODES, StoredMesh, counted
+from meshes.reading.stored import NODES, Elements, StoredMesh, counted
 
 __all__ = ["by_meshio", "parsed"]
 
 VOXEL = (0, 1, 3, 2, 4, 5, 7, 6)  # corners of VTK's voxel in the order of a hexahedron
-FLAT = ("vertex", "line", "triangle", "quad", "polygon")  # cells of points, lines and surfaces
+FACES = ("triangle", "quad")
+FLAT = ("vertex", "line", "polygon")  # cells of points, lines and surfaces of any number of corners
 VALUES = 50  # of a whole number of cells, up to which it counts as a mark of regions
 
 
@@ -46,14 +48,20 @@ def by_meshio(path: Path, kinds: list[str]) -> StoredMesh:
 
 
 def _stored(mesh: Any) -> StoredMesh:
-    blocks, ignored, at = [], [], []
-    first = 0
+    blocks, ignored = [], []
+    at, faces_at = list[IntArray](), list[IntArray]()  # numbers of the cells, or of the faces, of each block
+    first, found = 0, Elements()
     for block in mesh.cells:
         kind, cells = block.type, np.asarray(block.data)
         if kind == "voxel":
             kind, cells = "hexahedron", cells[:, VOXEL]
-        if kind.startswith(FLAT):
-            ignored.append((kind, len(cells)))
+        is_flat, begin = kind.startswith(FLAT), len(found.faces)
+        if kind.startswith(FACES):
+            for nodes in cells.tolist():
+                found.add_face(kind, nodes)
+        faces_at.append(np.arange(begin, len(found.faces)))
+        if is_flat or kind.startswith(FACES):
+            ignored += [(kind, len(cells))] if is_flat else []
             at.append(np.zeros(0, np.int64))
             continue
         if kind not in NODES:
@@ -64,11 +72,25 @@ def _stored(mesh: Any) -> StoredMesh:
     counts = {kind: sum(count for one, count in ignored if one == kind) for kind, _ in ignored}
     told = tuple(counted(count, f"cell of type {kind}") for kind, count in counts.items())
     points = np.asarray(mesh.points, np.float64)
-    return StoredMesh(points, tuple(blocks), _sets(mesh, at), told)
+    surfaces = replace(found.surfaces(), sets=_sets(mesh, faces_at, 2), nodes=_node_sets(mesh))
+    return StoredMesh(points, tuple(blocks), _sets(mesh, at, 3), told, surfaces=surfaces)
 
 
-def _sets(mesh: Any, at: list[IntArray]) -> dict[str, IntArray]:
-    """Return named sets, and regions by the whole numbers that cells are marked with."""
+def _node_sets(mesh: Any) -> dict[str, IntArray]:
+    """Return the named sets of nodes, of MED its groups of nodes."""
+    sets = {name: np.asarray(nodes, np.int64) for name, nodes in mesh.point_sets.items()}
+    for family, names in (getattr(mesh, "point_tags", None) or {}).items():
+        here = np.flatnonzero(np.asarray(mesh.point_data.get("point_tags", [])) == family)
+        for name in names:
+            sets[name] = np.concatenate([sets[name], here]) if name in sets else here
+    return sets
+
+
+def _sets(mesh: Any, at: list[IntArray], dimension: int) -> dict[str, IntArray]:
+    """Return named sets, and regions by the whole numbers that cells are marked with.
+
+    Where the cells of each block stand ``at`` among those of the dimension, or nowhere.
+    """
     sets: dict[str, list[IntArray]] = {}
     for name, members in mesh.cell_sets.items():
         if name.startswith("gmsh:"):
@@ -76,7 +98,7 @@ def _sets(mesh: Any, at: list[IntArray]) -> dict[str, IntArray]:
         for places, chosen in zip(at, members, strict=False):
             if chosen is not None and len(places):
                 sets.setdefault(name, []).append(places[np.asarray(chosen, np.int64)])
-    names = {int(number): name for name, (number, dim) in mesh.field_data.items() if int(dim) == 3}
+    names = {int(number): name for name, (number, dim) in mesh.field_data.items() if int(dim) == dimension}
     for key, values in mesh.cell_data.items():
         for places, marks in zip(at, values, strict=False):
             marks = np.asarray(marks)

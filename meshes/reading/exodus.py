@@ -8,14 +8,22 @@ import numpy as np
 
 from meshes.arrays import IntArray
 from meshes.errors import MeshError
-from meshes.reading.stored import NODES, StoredMesh, counted
+from meshes.reading.stored import NODES, Elements, StoredMesh, counted
 
 __all__ = ["exodus"]
 
+KEPT = ("coord", "connect", "eb_", "ss_", "ns_", "elem_ss", "side_ss", "node_ns")
 HDF5 = b"\x89HDF"
 CLASSIC = b"CDF\x01", b"CDF\x02"
 NAMES = {"HEX": "hexahedron", "TET": "tetra", "WED": "wedge", "PYR": "pyramid"}  # by their first letters
+FLAT = ("TRI", "QUAD", "SHELL")
 MASSES = ("SPHERE", "POINT")
+# corners of the sides of a cell
+SIDES = {
+    "hexahedron": ((0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (0, 4, 7, 3), (0, 3, 2, 1), (4, 5, 6, 7)),
+    "tetra": ((0, 1, 3), (1, 2, 3), (0, 3, 2), (0, 2, 1)),
+    "wedge": ((0, 1, 4, 3), (1, 2, 5, 4), (0, 3, 5, 2), (0, 2, 1), (3, 4, 5)),
+}
 # the middles of edges between both ends come before those of the upper end
 REORDERED = {
     "hexahedron20": (*range(12), *range(16, 20), *range(12, 16)),
@@ -25,7 +33,9 @@ REORDERED = {
 
 
 def exodus(path: Path) -> StoredMesh:
-    """Read the blocks of solid elements; each block is a set, by its name or "BLOCK" with its number.
+    """Read the blocks of elements; each is a set, by its name or "BLOCK" with its number.
+
+    Sets of sides and of nodes have their names or "SIDE SET" and "NODE SET" with a number.
 
     Raises
     ------
@@ -42,29 +52,57 @@ def exodus(path: Path) -> StoredMesh:
         raise MeshError(
             "has no nodes of three coordinates (coordx, coordy, coordz): it is no body in Exodus."
         )
-    names = [_text(name) for name in kept.get("eb_names", [])]
-    numbers = list(kept.get("eb_prop1", []))
-    blocks, ignored, masses = [], [], []
+    blocks, ignored, masses, found = [], [], list[str](), Elements()
     sets: dict[str, IntArray] = {}
+    every: list[tuple[str | None, IntArray]] = []  # kind and nodes of the cells of each block, of any kind
     first, k = 0, 1
     while f"connect{k}" in kept or f"num_el_in_blk{k}" in kept:
         if f"connect{k}" in kept:
             cells, kind = kept[f"connect{k}"], _text(kept.get(f"connect{k}:elem_type", b""))
-            told = _kind(kind, cells.shape[1])
+            told, cells = _kind(kind, cells.shape[1]), np.asarray(cells, np.int64) - 1
+            every.append((told, cells))
             if told:
-                cells = np.asarray(cells, np.int64)[:, REORDERED.get(told, range(cells.shape[1]))] - 1
-                blocks.append((told, cells))
+                blocks.append((told, cells[:, REORDERED.get(told, range(cells.shape[1]))]))
                 here = np.arange(first, first + len(cells))
-                name = names[k - 1] if k <= len(names) else ""
-                number = int(numbers[k - 1]) if k <= len(numbers) else k
-                for one in {name, f"BLOCK {number}"} - {""}:
-                    sets[one] = here
+                sets |= dict.fromkeys(_names(kept, "eb", k, "BLOCK"), here)
                 first += len(cells)
+            elif kind.upper().startswith(FLAT):
+                for nodes in cells.tolist():
+                    found.add_face(kind, nodes, *_names(kept, "eb", k, "BLOCK"))
             else:
                 ignored.append(counted(len(cells), f"cell of type {kind}"))
                 masses += ignored[-1:] if kind.upper().startswith(MASSES) else []
         k += 1
-    return StoredMesh(points, tuple(blocks), sets, tuple(ignored), tuple(masses))
+    _add_sets(kept, every, found)
+    return StoredMesh(points, tuple(blocks), sets, tuple(ignored), tuple(masses), found.surfaces())
+
+
+def _names(kept: Mapping[str, Any], of: str, k: int, what: str) -> list[str]:
+    """Return the names of the k-th block or set, from 1 on: that of the file, ``what`` with its number."""
+    names, numbers = kept.get(f"{of}_names", ()), kept.get(f"{of}_prop1", ())
+    name = _text(names[k - 1]) if k <= len(names) else ""
+    number = f"{what} {int(numbers[k - 1]) if k <= len(numbers) else k}"
+    return [name, number] if name else [number]
+
+
+def _add_sets(kept: Mapping[str, Any], blocks: list[tuple[str | None, IntArray]], found: Elements) -> None:
+    """Add the sets of sides of cells, which are counted through all blocks, and those of nodes."""
+    first = np.cumsum([0, *(len(cells) for _, cells in blocks)])
+    k = 1
+    while f"elem_ss{k}" in kept:
+        for number, side in zip(kept[f"elem_ss{k}"], kept[f"side_ss{k}"], strict=True):
+            of = int(np.searchsorted(first, number, side="left")) - 1
+            kind, cells = blocks[of]
+            sides = next((one for name, one in SIDES.items() if kind and kind.startswith(name)), ())
+            nodes = cells[number - 1 - first[of]]
+            if 1 <= side <= len(sides):
+                found.add_face("", nodes[list(sides[side - 1])].tolist(), *_names(kept, "ss", k, "SIDE SET"))
+        k += 1
+    k = 1
+    while f"node_ns{k}" in kept:
+        nodes = (np.asarray(kept[f"node_ns{k}"], np.int64) - 1).tolist()
+        found.node_sets |= dict.fromkeys(_names(kept, "ns", k, "NODE SET"), nodes)
+        k += 1
 
 
 def _variables(path: Path) -> Mapping[str, Any]:
@@ -87,7 +125,7 @@ def _of_hdf5(path: Path) -> dict[str, Any]:
     kept: dict[str, Any] = {}
     with h5py.File(path) as file:
         for name, array in file.items():
-            if name.startswith(("coord", "connect", "eb_")):
+            if name.startswith(KEPT):
                 kept[name] = array[()]
                 if "elem_type" in array.attrs:
                     kept[f"{name}:elem_type"] = array.attrs["elem_type"]
@@ -102,7 +140,7 @@ def _of_classic(path: Path) -> dict[str, Any]:
     kept: dict[str, Any] = {}
     with netcdf_file(path, mmap=False) as file:
         for name, array in file.variables.items():
-            if name.startswith(("coord", "connect", "eb_")):
+            if name.startswith(KEPT):
                 kept[name] = array.data.copy()
                 if hasattr(array, "elem_type"):
                     kept[f"{name}:elem_type"] = array.elem_type

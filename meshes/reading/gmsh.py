@@ -12,7 +12,8 @@ __all__ = ["gmsh", "is_text"]
 
 KINDS = {4: "tetra", 5: "hexahedron", 6: "wedge", 7: "pyramid", 11: "tetra10", 12: "hexahedron27"}
 KINDS |= {17: "hexahedron20", 18: "wedge15", 19: "pyramid13"}
-FLAT = {1: "line", 2: "triangle", 3: "quad", 8: "line", 9: "triangle", 10: "quad", 15: "point", 16: "quad"}
+FACES = {2: "triangle", 3: "quad", 9: "triangle", 10: "quad", 16: "quad"}
+FLAT = {1: "line", 8: "line", 15: "point"}
 # the middles of edges in VTK's order, by their places in Gmsh's
 REORDERED = {
     "tetra10": (0, 1, 2, 3, 4, 5, 6, 7, 9, 8),
@@ -31,7 +32,7 @@ def is_text(start: str) -> bool:
 
 
 def gmsh(path: Path) -> StoredMesh:
-    """Read the volume cells; a set is a physical group of volumes, or "VOLUME" and a number.
+    """Read the cells; a set is a physical group, or "VOLUME" or "SURFACE" and a number.
 
     Raises
     ------
@@ -43,22 +44,28 @@ def gmsh(path: Path) -> StoredMesh:
     names = {}
     for line in sections.get("PhysicalNames", [])[1:]:
         dimension, number, name = line.split(maxsplit=2)
-        if dimension == "3":
-            names[int(number)] = name.strip().strip('"')
+        names[int(dimension), int(number)] = name.strip().strip('"')
     numbered: dict[int, list[float]]
     if version.startswith("4"):
         numbered = _nodes_4(sections["Nodes"], version)
         cells = _cells_4(sections["Elements"], version)
-        groups = _groups(sections.get("Entities", []))
+        groups = {of: _groups(sections.get("Entities", []), of) for of in (2, 3)}
     else:
         lines = sections.get("NOD") or sections["Nodes"]
         rows = (line.split() for line in lines[1 : 1 + int(lines[0])])
         numbered = {int(row[0]): [float(part) for part in row[1:4]] for row in rows}
         cells = _cells_2(sections.get("ELM") or sections["Elements"], "ELM" in sections)
-        groups = {}
+        groups = {2: {}, 3: {}}
     place = {number: k for k, number in enumerate(numbered)}
     found = Elements()
-    for kind, nodes, volume, marks in cells:
+    for kind, nodes, entity, marks in cells:
+        of = 2 if kind in FACES else 3
+        physical = [mark for mark in (*marks, *groups[of].get(entity, [])) if mark]
+        sets = {names.get((of, mark), f"PHYSICAL {mark}") for mark in physical}
+        if kind in FACES:
+            at = [place.get(node, -1) for node in nodes]
+            found.add_face(FACES[kind], at, *sets, *([f"SURFACE {entity}"] if entity else []))
+            continue
         if kind in FLAT:
             found.leave(f"cell of type {FLAT[kind]}")
             continue
@@ -69,9 +76,7 @@ def gmsh(path: Path) -> StoredMesh:
             raise MeshError(f"has a cell that names the node {missing[0]}, which is not there.")
         name = KINDS[kind]
         nodes = [nodes[k] for k in REORDERED.get(name, range(NODES[name]))]
-        physical = [*marks, *groups.get(volume, [])]
-        sets = {f"VOLUME {volume}", *(names.get(mark, f"PHYSICAL {mark}") for mark in physical if mark)}
-        found.add(name, tuple(place[node] for node in nodes), *sets)
+        found.add(name, tuple(place[node] for node in nodes), *sets, f"VOLUME {entity}")
     return found.stored(np.array(list(numbered.values()), dtype=np.float64).reshape(-1, 3))
 
 
@@ -90,7 +95,7 @@ def _sections(text: str) -> Iterator[tuple[str, list[str]]]:
 
 
 def _cells_2(lines: list[str], first_version: bool) -> Iterator[tuple[int, list[int], int, list[int]]]:
-    """Yield type, nodes, volume and physical groups of each cell of versions 1 and 2."""
+    """Yield type, nodes, volume or surface, and physical groups of each cell of versions 1 and 2."""
     for line in lines[1 : 1 + int(lines[0])]:
         row = [int(part) for part in line.split()]
         if first_version:  # number, type, physical, elementary, count, nodes
@@ -130,13 +135,13 @@ def _cells_4(lines: list[str], version: str) -> Iterator[tuple[int, list[int], i
         at += 1 + count
 
 
-def _groups(lines: list[str]) -> dict[int, list[int]]:
-    """Return the physical groups of each volume of version 4."""
+def _groups(lines: list[str], of: int) -> dict[int, list[int]]:
+    """Return the physical groups of each volume (3) or surface (2) of version 4."""
     if not lines:
         return {}
     counts = [int(part) for part in lines[0].split()]
     found = {}
-    for line in lines[1 + sum(counts[:3]) : 1 + sum(counts)]:
+    for line in lines[1 + sum(counts[:of]) : 1 + sum(counts[: of + 1])]:
         parts = line.split()
         groups = int(parts[7])
         found[int(parts[0])] = [abs(int(part)) for part in parts[8 : 8 + groups]]

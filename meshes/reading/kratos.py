@@ -32,6 +32,8 @@ REORDERED["hexahedron27"] = (*REORDERED["hexahedron20"], *range(20, 27))
 def kratos(path: Path) -> StoredMesh:
     """Read nodes and the elements whose name ends in 3D and a number of nodes; a set is a sub model part.
 
+    Conditions and nodes of sub model parts may name faces.
+
     Raises
     ------
     MeshError
@@ -40,7 +42,8 @@ def kratos(path: Path) -> StoredMesh:
     place: dict[int, int] = {}
     points: list[list[float]] = []
     cells: dict[int, tuple[str | None, list[int], str]] = {}
-    groups: dict[int, list[str]] = {}
+    conditions: dict[int, tuple[str, list[int]]] = {}
+    members: dict[str, dict[int, list[str]]] = {"Elements": {}, "Conditions": {}, "Nodes": {}}
     found, opened = Elements(), list[tuple[str, str]]()
     for raw in path.read_text(encoding="latin-1").splitlines():
         line = raw.split("//")[0].strip()
@@ -58,20 +61,28 @@ def kratos(path: Path) -> StoredMesh:
             name = opened[-1][1]
             numbers = [whole_number(text, name) for text in words]
             cells[numbers[0]] = _kind(name, len(numbers) - 2), numbers[2:], f"PROPERTIES {numbers[1]}"
-        elif opened and opened[-1][0] == "SubModelPartElements":
+        elif opened and (of := opened[-1][0].removeprefix("SubModelPart")) in members and len(opened) > 1:
             names = [name for kind, name in opened if kind == "SubModelPart"]
-            groups.setdefault(whole_number(words[0], "SubModelPartElements"), []).extend(names)
+            members[of].setdefault(whole_number(words[0], opened[-1][0]), []).extend(names)
         elif opened and opened[-1][0] == "Conditions":
-            found.leave(f"condition {opened[-1][1]}")
+            numbers = [whole_number(text, "Conditions") for text in words]
+            conditions[numbers[0]] = opened[-1][1], numbers[2:]
     for number, (kind, nodes, properties) in cells.items():
+        named = members["Elements"].get(number, [])
         if kind is None:
-            found.leave(f"cell of {len(nodes)} nodes that fills no volume")
+            corners = [place.get(node, -1) for node in nodes]
+            found.add_face(f"{len(nodes)} nodes that fills no volume", corners, *named)
             continue
         missing = [node for node in nodes if node not in place]
         if missing:
             raise MeshError(f"has a cell {number} that names the node {missing[0]}, which is not there.")
         nodes = [nodes[k] for k in REORDERED.get(kind, range(len(nodes)))]
-        found.add(kind, tuple(place[node] for node in nodes), properties, *groups.get(number, []))
+        found.add(kind, tuple(place[node] for node in nodes), properties, *named)
+    for number, (name, nodes) in conditions.items():
+        found.add_face(name, [place.get(node, -1) for node in nodes], *members["Conditions"].get(number, []))
+    for node, names in members["Nodes"].items():
+        for one in names if node in place else []:
+            found.node_sets.setdefault(one, []).append(place[node])
     return found.stored(np.array(points, dtype=np.float64).reshape(-1, 3))
 
 

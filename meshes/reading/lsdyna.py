@@ -29,6 +29,8 @@ MASSES = ("ELEMENT_MASS", "ELEMENT_INERTIA")
 def lsdyna(path: Path) -> StoredMesh:
     """Read *NODE and *ELEMENT_SOLID, fixed or free fields; a set is a part, by its number and its title.
 
+    Sets of segments and nodes, and shells of a part, may name faces.
+
     Raises
     ------
     MeshError
@@ -38,7 +40,7 @@ def lsdyna(path: Path) -> StoredMesh:
     points: list[list[float]] = []
     titles: dict[int, str] = {}
     solids: list[tuple[int, list[int]]] = []
-    found = Elements()
+    found, flat, sets = Elements(), list[list[int]](), list[tuple[str, bool, list[str]]]()
     for name, long, lines in _keywords(full_text(path, "lsdyna")):
         for start, problem in REFUSED.items():
             if name.startswith(start):
@@ -54,6 +56,10 @@ def lsdyna(path: Path) -> StoredMesh:
                 titles[part] = title.strip()
         elif name.startswith(("ELEMENT_SOLID", "ELEMENT_TSHELL")):
             solids += _solids(name, lines, 20 if long else 8)
+        elif name == "ELEMENT_SHELL":
+            flat += [_numbers(line, 20 if long else 8, name)[:6] for line in lines]
+        elif name.startswith(("SET_SEGMENT", "SET_NODE_LIST")):
+            sets.append((name, long, lines))
         elif name.startswith("ELEMENT_"):
             found.leave(f"line of *{name}", len(lines), mass=name.startswith(MASSES))
         elif name.startswith("RIGIDWALL"):
@@ -61,6 +67,11 @@ def lsdyna(path: Path) -> StoredMesh:
     for part, nodes in solids:
         kind = {8: "hexahedron", 10: "tetra10"}[len(nodes)]
         found.add_of_part(kind, nodes, place, str(part), titles.get(part, ""))
+    for _, part, *nodes in flat:
+        names = {f"PART {part}", titles.get(part, "")} - {""}
+        found.add_face("SHELL", [place.get(node, -1) for node in nodes], *names)
+    for name, long, lines in sets:
+        _take_set(name, lines, 20 if long else 10, place, found)
     return found.stored(np.array(points, dtype=np.float64).reshape(-1, 3))
 
 
@@ -80,6 +91,26 @@ def _keywords(text: str) -> Iterator[tuple[str, bool, list[str]]]:
 def _split(line: str, widths: list[int]) -> list[str]:
     """Return the fields of a line: between commas, or of fixed widths."""
     return [part.strip() for part in line.split(",")] if "," in line else fixed_fields(line, widths)
+
+
+def _numbers(line: str, width: int, name: str) -> list[int]:
+    """Return the whole numbers of a line, those that are left out not."""
+    return [whole_number(text, f"*{name}") for text in _split(line, [width] * 10) if text]
+
+
+def _take_set(name: str, lines: list[str], width: int, place: dict[int, int], found: Elements) -> None:
+    """Add a set of segments or nodes, by its number and its title."""
+    titled = name.endswith("_TITLE")
+    head, *rest = lines[titled:]
+    number = whole_number(_split(head, [width])[0], f"*{name}")
+    names = {lines[0].strip() if titled else "", f"{'SEGMENT' if 'SEGMENT' in name else 'NODE'} SET {number}"}
+    for line in rest:
+        nodes = [place.get(node, -1) for node in _numbers(line, width, name)]
+        if "SEGMENT" in name:
+            found.add_face("", nodes[:4], *(names - {""}))
+            continue
+        for one in names - {""}:
+            found.node_sets.setdefault(one, []).extend(node for node in nodes if node >= 0)
 
 
 def _solids(name: str, lines: list[str], width: int) -> Iterator[tuple[int, list[int]]]:

@@ -27,8 +27,6 @@ REORDERED = {
 }
 MASSES = ("CONM1", "CONM2", "CMASS1", "CMASS2", "CMASS3", "CMASS4")
 SURFACES = (
-    "CQUAD",
-    "CTRI",
     "CSHEAR",
     "CBAR",
     "CBEAM",
@@ -102,6 +100,9 @@ def nastran(path: Path) -> StoredMesh:
             _add(name, fields, numbered, found)
         elif name in MASSES:
             found.leave(f"mass ({name})", mass=True)
+        elif corners := 3 * name.startswith("CTRI") + 4 * name.startswith("CQUAD"):
+            nodes = [int(text) if text.isdigit() else 0 for text in fields[2 : 2 + corners]]
+            found.add_face(name, [numbered.get(node, -1) for node in nodes], f"PID {fields[1] or fields[0]}")
         elif name.startswith(SURFACES):
             found.leave(f"cell of type {name}")
     return found.stored(points)

@@ -16,7 +16,8 @@ SOLIDS = {"BRICK": 8, "TETRA4": 4, "PENTA6": 6, "TETRA10": 10, "BRIC20": 20}
 KINDS = {8: "hexahedron", 4: "tetra", 6: "wedge", 10: "tetra10", 20: "hexahedron20"}
 # /BRIC20 numbers the edges between both ends before those of the upper end
 REORDERED = {20: (*range(12), *range(16, 20), *range(12, 16))}
-OTHERS = ("SHELL", "SH3N", "TRUSS", "BEAM", "SPRING", "QUAD", "TRIA")
+FLAT = {"SHELL": 4, "SH3N": 3}
+OTHERS = ("TRUSS", "BEAM", "SPRING", "QUAD", "TRIA")
 MASSES = ("ADMAS",)
 REFUSED = {
     "TRANSFORM": "moves nodes by /{0}. Write the deck with the nodes where they are.",
@@ -27,6 +28,8 @@ REFUSED = {
 def radioss(path: Path) -> StoredMesh:
     """Read /NODE, /BRICK, /TETRA4, /PENTA6, /TETRA10 and /BRIC20; a set is a part, by number and title.
 
+    /SURF/SEG, /GRNOD/NODE, and /SHELL and /SH3N of a part may name faces.
+
     Raises
     ------
     MeshError
@@ -36,7 +39,8 @@ def radioss(path: Path) -> StoredMesh:
     points: list[list[float]] = []
     titles: dict[str, str] = {}
     solids: list[tuple[str, list[int]]] = []
-    found = Elements()
+    found, flat, segments = Elements(), list[tuple[str, str, list[int]]](), list[tuple[set[str], list[int]]]()
+    groups: list[tuple[set[str], list[int]]] = []
     for name, lines in sections(full_text(path, "radioss"), "/", "#"):
         for start, problem in REFUSED.items():
             if name.removeprefix("/").startswith(start):
@@ -51,6 +55,15 @@ def radioss(path: Path) -> StoredMesh:
             titles[part.split("/")[0]] = lines[0].strip()
         elif kind in SOLIDS:
             solids += [(part, nodes) for nodes in _solids(kind, lines)]
+        elif kind in FLAT:
+            flat += [(kind, part, _numbers(line, name)[1 : 1 + FLAT[kind]]) for line in lines]
+        elif name.startswith(("SURF/SEG/", "GRNOD/NODE/")) and lines:
+            names = {lines[0].strip(), " ".join([kind, name.split("/")[2]])}
+            rows = [_numbers(line, name) for line in lines[1:]]
+            if kind == "SURF":
+                segments += [(names, row[1:5]) for row in rows]
+            else:
+                groups += [(names, row) for row in rows]
         elif kind in OTHERS:
             found.leave(f"line of /{kind}", len(lines))
         elif kind in MASSES:
@@ -59,6 +72,14 @@ def radioss(path: Path) -> StoredMesh:
             found.leave("wall (/RWALL)")
     for part, nodes in solids:
         found.add_of_part(KINDS[len(nodes)], nodes, place, part, titles.get(part, ""))
+    for kind, part, nodes in flat:
+        names = {f"PART {part}", titles.get(part, "")} - {""}
+        found.add_face(kind, [place.get(node, -1) for node in nodes], *names)
+    for names, nodes in segments:
+        found.add_face("", [place.get(node, -1) for node in nodes], *names)
+    for names, nodes in groups:
+        for one in names:
+            found.node_sets.setdefault(one, []).extend(place[node] for node in nodes if node in place)
     return found.stored(np.array(points, dtype=np.float64).reshape(-1, 3))
 
 
@@ -68,12 +89,17 @@ def _split(line: str, widths: list[int]) -> list[str]:
     return parts if len(parts) >= len(widths) or len(line) <= widths[0] else fixed_fields(line, widths)
 
 
+def _numbers(line: str, name: str) -> list[int]:
+    """Return the whole numbers of a line, those that are left out not."""
+    texts = [line[k : k + 10] for k in range(0, len(line), 10)] if len(line) > 80 else line.split()
+    return [whole_number(text, f"/{name}") for text in texts if text.strip()]
+
+
 def _solids(kind: str, lines: list[str]) -> Iterator[list[int]]:
     """Yield the nodes of each solid; those of ten and twenty nodes go on after the line of their number."""
     count, numbers = SOLIDS[kind], list[int]()
     for line in lines:
-        texts = [line[k : k + 10] for k in range(0, len(line), 10)] if len(line) > 80 else line.split()
-        numbers += [whole_number(text, f"/{kind}") for text in texts if text.strip()]
+        numbers += _numbers(line, kind)
         if len(numbers) > count:
             nodes = numbers[1 : count + 1]
             yield [nodes[k] for k in REORDERED.get(count, range(count))]

@@ -1,15 +1,15 @@
 """What a mesh file holds: its nodes, its volume cells, their sets, and what of it is left out."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from meshes.arrays import FloatArray, IntArray
+from meshes.arrays import BoolArray, FloatArray, IntArray
 from meshes.errors import MeshError
 
-__all__ = ["NODES", "Elements", "StoredMesh", "counted", "number_of", "whole_number"]
+__all__ = ["NODES", "Elements", "StoredMesh", "Surfaces", "counted", "number_of", "whole_number"]
 
 # a number, of which Fortran may leave the E of the exponent out
 NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+))(?:E([+-]?\d+)|(?<=[\d.])([+-]\d+))?")
@@ -27,6 +27,33 @@ NODES = {
 }
 
 
+#: Corners of a face or a cell of a surface by the number of its nodes.
+FACE_CORNERS = {3: 3, 6: 3, 7: 3, 4: 4, 8: 4, 9: 4}
+
+
+@dataclass(frozen=True, slots=True)
+class Surfaces:
+    """Cells of surfaces, and faces of volume cells, that a file holds beside these.
+
+    Attributes
+    ----------
+    corners : (n, 4) int64, nodes around each; the last is -1 where there are three
+    kinds : (n,) what each is in the file, "" of a face that is no cell of its own
+    sets : by name, numbers of faces
+    nodes : by name of a set of nodes, their numbers: it stands for the faces that have all corners in it
+    """
+
+    corners: IntArray = field(default_factory=lambda: np.zeros((0, 4), np.int64))
+    kinds: tuple[str, ...] = ()
+    sets: Mapping[str, IntArray] = field(default_factory=dict)
+    nodes: Mapping[str, IntArray] = field(default_factory=dict)
+
+    def counts(self, chosen: BoolArray) -> tuple[str, ...]:
+        """Return how many of the chosen (n,) are cells of each kind."""
+        kinds = [kind for kind, taken in zip(self.kinds, chosen, strict=True) if taken and kind]
+        return tuple(counted(kinds.count(kind), f"cell of type {kind}") for kind in dict.fromkeys(kinds))
+
+
 @dataclass(frozen=True, slots=True)
 class StoredMesh:
     """The volume cells of a file.
@@ -39,6 +66,7 @@ class StoredMesh:
     sets : by name, numbers of cells, counted through all blocks
     ignored : what the file holds beside the cells and is left out, one phrase each
     masses : what of that has a mass
+    surfaces : cells of surfaces, and sets of faces
     """
 
     points: FloatArray
@@ -46,6 +74,7 @@ class StoredMesh:
     sets: Mapping[str, IntArray] = field(default_factory=dict)
     ignored: tuple[str, ...] = ()
     masses: tuple[str, ...] = ()
+    surfaces: Surfaces = field(default_factory=Surfaces)
 
 
 @dataclass(slots=True)
@@ -59,11 +88,16 @@ class Elements:
     sets : names of sets, with the places of their cells
     left_out : what is left out, with its count
     masses : what of that has a mass
+    faces, face_kinds, face_sets, node_sets : as in `Surfaces`
     """
 
     kinds: list[str] = field(default_factory=list)
     nodes: list[tuple[int, ...]] = field(default_factory=list)
     sets: dict[str, list[int]] = field(default_factory=dict)
+    faces: list[tuple[int, ...]] = field(default_factory=list)
+    face_kinds: list[str] = field(default_factory=list)
+    face_sets: dict[str, list[int]] = field(default_factory=dict)
+    node_sets: dict[str, list[int]] = field(default_factory=dict)
     left_out: dict[str, int] = field(default_factory=dict)
     masses: dict[str, int] = field(default_factory=dict)
 
@@ -104,6 +138,21 @@ class Elements:
         names = {f"PART {part}", title} - {""}
         self.add(kind, tuple(place[node] for node in nodes), *names)
 
+    def add_face(self, kind: str, nodes: Sequence[int], *names: str) -> None:
+        """Add a cell of a ``kind`` that may be one of a surface, or a face (""), in sets of those names.
+
+        Nodes are places in the list of points; what has a node that is not there (-1) bounds no solid.
+        """
+        corners = tuple(nodes[: FACE_CORNERS.get(len(nodes), 0)])
+        if not corners or min(corners) < 0:
+            if kind:
+                self.leave(f"cell of type {kind}")
+            return
+        for name in names:
+            self.face_sets.setdefault(name, []).append(len(self.faces))
+        self.faces.append((*corners, -1)[:4])
+        self.face_kinds.append(kind)
+
     def leave(self, what: str, count: int = 1, mass: bool = False) -> None:
         """Count what is left out, in one word or more, and whether it has a mass of its own."""
         counts = self.masses if mass else self.left_out
@@ -124,7 +173,16 @@ class Elements:
             tuple(counted(count, what) for what, count in counts.items())
             for counts in (self.left_out, self.masses)
         )
-        return StoredMesh(points, tuple(blocks), sets, (*told, *masses, *more), masses)
+        return StoredMesh(points, tuple(blocks), sets, (*told, *masses, *more), masses, self.surfaces())
+
+    def surfaces(self) -> Surfaces:
+        """Return the faces and the sets of faces and nodes that were read."""
+        of_faces, of_nodes = (
+            {name: np.unique(places) for name, places in named.items() if len(places)}
+            for named in (self.face_sets, self.node_sets)
+        )
+        corners = np.array(self.faces, dtype=np.int64).reshape(-1, 4)
+        return Surfaces(corners, tuple(self.face_kinds), of_faces, of_nodes)
 
 
 def counted(count: int, what: str) -> str:

@@ -39,6 +39,10 @@ def ucd(path: Path) -> StoredMesh:
     found = Elements()
     for parts in lines[1 + nodes : 1 + nodes + cells]:
         kind, count = KINDS.get(parts[2].lower(), ("", 0))
+        if parts[2].lower() in ("tri", "quad"):
+            around = [place.get(whole_number(text, f"cell {parts[0]}"), -1) for text in parts[3:]]
+            found.add_face(parts[2], around, f"MATERIAL {parts[1]}")
+            continue
         if not kind:
             found.leave(f"cell of type {parts[2]}")
             continue

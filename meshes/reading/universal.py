@@ -19,6 +19,9 @@ KINDS = {
     116: "hexahedron20",
     118: "tetra10",
 }
+# cells of surfaces, in plane stress, of shells and so on, by the last figure: every so many nodes is a corner
+FLAT = {1: 1, 2: 2, 4: 1, 5: 2}
+NODE, ELEMENT = 7, 8  # what a member of a group is
 LINES = {11, 21, 22, 23, 24}  # beams and rods, of which a line of their section follows
 MASSES = {161}
 # the middles of edges stand between the corners in the order of the walk around each end
@@ -40,7 +43,7 @@ def universal(path: Path) -> StoredMesh:
     place: dict[int, int] = {}
     points: list[list[float]] = []
     cells: dict[int, tuple[int, list[int]]] = {}
-    groups: dict[int, list[str]] = {}
+    groups: dict[int, dict[int, list[str]]] = {NODE: {}, ELEMENT: {}}
     local = False
     for number, lines in _sets(path.read_text(encoding="latin-1")):
         if number in (2411, 781):
@@ -56,6 +59,11 @@ def universal(path: Path) -> StoredMesh:
         raise MeshError("gives nodes in local systems of coordinates. Write it in the global one.")
     found = Elements()
     for number, (kind, nodes) in cells.items():
+        named = groups[ELEMENT].get(number, [])
+        if 41 <= kind <= 99 and kind % 10 in FLAT:
+            corners = nodes[:: FLAT[kind % 10]]
+            found.add_face(str(kind), [place.get(node, -1) for node in corners], *named)
+            continue
         if kind not in KINDS:
             found.leave(f"cell of type {kind}", mass=kind in MASSES)
             continue
@@ -63,7 +71,10 @@ def universal(path: Path) -> StoredMesh:
         if missing:
             raise MeshError(f"has a cell {number} that names the node {missing[0]}, which is not there.")
         nodes = [nodes[k] for k in REORDERED.get(kind, range(len(nodes)))]
-        found.add(KINDS[kind], tuple(place[node] for node in nodes), *groups.get(number, []))
+        found.add(KINDS[kind], tuple(place[node] for node in nodes), *named)
+    for node, names in groups[NODE].items():
+        for name in names if node in place else []:
+            found.node_sets.setdefault(name, []).append(place[node])
     return found.stored(np.array(points, dtype=np.float64).reshape(-1, 3))
 
 
@@ -93,8 +104,8 @@ def _cells(lines: list[str], cells: dict[int, tuple[int, list[int]]]) -> None:
         cells[head[0]] = head[1], nodes
 
 
-def _groups(lines: list[str], groups: dict[int, list[str]]) -> None:
-    """Add the names of groups of elements (of kind 8) by element."""
+def _groups(lines: list[str], groups: dict[int, dict[int, list[str]]]) -> None:
+    """Add the names of groups by node or element."""
     at = 0
     while at + 1 < len(lines):
         count, name = int(lines[at].split()[7]), lines[at + 1].strip()
@@ -103,6 +114,6 @@ def _groups(lines: list[str], groups: dict[int, list[str]]) -> None:
         while len(numbers) < 4 * count and at < len(lines):
             numbers += [int(part) for part in lines[at].split()]
             at += 1
-        for kind, element in zip(numbers[::4], numbers[1::4], strict=False):
-            if kind == 8:
-                groups.setdefault(element, []).append(name)
+        for kind, number in zip(numbers[::4], numbers[1::4], strict=False):
+            if kind in groups:
+                groups[kind].setdefault(number, []).append(name)

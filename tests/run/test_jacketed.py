@@ -125,6 +125,17 @@ def test_what_sets_cannot_say_is_refused(tmp_path):
         Case.of(scene(path, {"ALL": "lead"}))
 
 
+def test_a_set_on_one_side_of_the_plane_of_symmetry_is_refused(tmp_path):
+    """It would be mirrored, and the body be another."""
+    points, hexes = box(2, 2, 10, (-5, -5, 0), (5, 5, 60))
+    upper = np.flatnonzero(points[hexes][:, :, 1].mean(axis=1) > 0) + 1
+    lines = ["*NODE", *(f"{n}, {a!r}, {b!r}, {c!r}" for n, (a, b, c) in enumerate(points.tolist(), 1))]
+    lines += ["*ELEMENT, TYPE=C3D8", *(f"{n}, " + ", ".join(map(str, c)) for n, c in enumerate(hexes + 1, 1))]
+    (tmp_path / "bar.inp").write_text("\n".join([*lines, "*ELSET, ELSET=UPPER", *map(str, upper)]))
+    with pytest.raises(SceneError, match=r"mesh_materials\.UPPER: lies on one side of the plane of symmetry"):
+        scene(tmp_path / "bar.inp", {"UPPER": "lead"}, mesh_unit="mm")
+
+
 def test_a_written_scene_reads_back_equal(tmp_path):
     stated = scene(jacketed(tmp_path), {"CORE": "tungsten-heavy-alloy"}, mesh_symmetry="half")
     assert read_dict(to_dict(stated)) == stated

@@ -83,11 +83,30 @@ def test_nodes_between_two_faces_have_the_larger_friction(tmp_path):
     assert foot.sum() > 10
 
 
+def test_a_set_of_faces_leaves_the_other_faces_of_its_cells_as_they_are(tmp_path):
+    """The end of the bar alone is greased, on cells that the zone at the contact splits."""
+    path = bar(tmp_path)
+    number = np.arange(1, 81).reshape(4, 2, 10)[:, :, 0].ravel()
+    path.write_text(path.read_text() + "\n*SURFACE, NAME=SOLE\n" + "\n".join(f"{n}, S1" for n in number))
+    stated = scene(path, {"SOLE": GREASED})
+    builder = Builder(Case.of(stated), 1e-6)
+    mesh = builder.meshed.geometry.rod.mesh
+    x, y, z = mesh.points[mesh.free_skin].T
+    sole = (z == 0.0) & (np.abs(x) < 6e-3 - 1e-9) & (y < 6e-3 - 1e-9)
+    assert sole.sum() > 30
+    assert (builder.friction[mesh.free_skin][sole] == 0.1).all()
+    assert (builder.friction[mesh.free_skin][~sole] == 0.6).all()
+    with pytest.raises(SceneError, match=r"mesh_surfaces\.FOOT: holds 8 faces that another set holds too"):
+        Case.of(scene(path, {"SOLE": GREASED, "FOOT": {"state": "machined"}}), "rigid")
+
+
 def test_a_scene_with_faces_is_written_and_read_back(tmp_path):
     stated = scene(bar(tmp_path), {"FOOT": {"state": "machined"}, "SHANK": GREASED})
     assert read_dict(to_dict(stated)) == stated
     assert stated.projectile.faces[0].surface.friction == 0.57
-    with pytest.raises(SceneError, match=r"mesh_surfaces\.HEEL: is no set of cells of the mesh"):
+    with pytest.raises(
+        SceneError, match=r"mesh_surfaces\.HEEL: is no set of cells, faces or nodes of the mesh"
+    ):
         Case.of(scene(tmp_path / "bar.inp", {"HEEL": GREASED}), "rigid")
     with pytest.raises(SceneError, match=r"mesh_surfaces\.FOOT\.state: is the state of the scene's surface"):
         scene(tmp_path / "bar.inp", {"FOOT": {"state": "pair"}})
