@@ -12,6 +12,7 @@ from .arms import Arms, point_arms
 from .arrays import Floats, floats
 from .chord import mirrored_chord
 from .errors import ShapeError
+from .rounds import Round, hull, rounds_of
 from .slenderness import slenderness
 from .touch import Touch, level_part, on_side, require_inclination
 from .turned import CORNER
@@ -226,6 +227,10 @@ class Faceted:
         mass, x, xx = 2.0 * (np.diff(share @ moments, axis=0) / np.diff(z)[:, None]).T
         return np.column_stack([mass, xx - x**2 / mass])
 
+    def rounds(self) -> list[Round]:
+        """Corners of the convex outline in the plane of motion, in order around it."""
+        return rounds_of(self._outline)
+
     def _lowest(self, alpha: Floats) -> NDArray[np.int64]:
         """Return the vertex of the outline that is lowest; of those equally low, see `contact_point`."""
         x, z = self._outline.T
@@ -249,22 +254,3 @@ class Faceted:
             wide = np.where(level, np.maximum(np.abs(a), np.abs(b)), np.abs(a + share * (b - a)))
             width[k] = wide.max(initial=0.0)
         return z, width
-
-
-def hull(places: Floats, level: float) -> Floats:
-    """Return the vertices (k, 2) of the convex hull of places (x, z), m, in order around it.
-
-    Those that lie nearer than `level`, m, to the line between their neighbours are left out.
-    """
-    from scipy.spatial import ConvexHull
-
-    line = np.asarray(places[ConvexHull(places).vertices])
-    while len(line) > 3:
-        before, after = np.roll(line, 1, axis=0), np.roll(line, -1, axis=0)
-        (x, z), (u, w) = (after - before).T, (line - before).T
-        away = np.abs(x * w - z * u) / np.hypot(x, z)
-        nearest = int(np.argmin(away))
-        if away[nearest] >= level:
-            break
-        line = np.delete(line, nearest, axis=0)
-    return line

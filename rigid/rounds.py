@@ -1,4 +1,4 @@
-"""The convex outline of a body of revolution in its plane of motion: arcs and corners that may touch.
+"""The convex outline of a body in its plane of motion: arcs and corners that may touch.
 
 A plane barrier touches a body where the outward normal of its convex outline is that of the barrier, which at
 an inclination `alpha` is (sin alpha, -cos alpha) in (x, z). Each `Round` is what touches over a range of that
@@ -8,22 +8,33 @@ angle; rounds of one smooth curve follow each other without a straight part or a
 from __future__ import annotations
 
 import math
+from itertools import accumulate, pairwise
 from typing import NamedTuple
 
 import numpy as np
 
 from .arrays import Floats
 
+TURN = 2.0 * math.pi
 LONG = 2.0
 """Steps of a smooth curve beside it that a straight part is longer than."""
-ALIKE = 1e-4
-"""Share of its radius by which the circles of one arc may differ."""
+SAME = 1e-8
+"""Share of the length within which neighbouring arcs of a stated curve are one circle."""
+
+
+ROUND_OFF = 1e-12
+"""Of angles, rad."""
 
 
 class Round(NamedTuple):
-    """An arc of the outline, or a corner of radius 0: its centre (x, z), m, radius, m, and normals, rad.
+    """An arc of the outline, or a corner of radius 0, which is lowest from one inclination to another.
 
-    ``curve`` numbers the smooth curves and corners around the outline.
+    Attributes
+    ----------
+    x, z : its centre, m
+    radius : m
+    low, high : inclinations between which the body touches with it, rad, low < high
+    curve : number of its smooth curve or corner around the outline
     """
 
     x: float
@@ -31,7 +42,16 @@ class Round(NamedTuple):
     radius: float
     low: float
     high: float
-    curve: int
+    curve: int = 0
+
+    def arms(self, alpha: float) -> tuple[float, float]:
+        """Return d_c and d_d, m, of its lowest point at an inclination, rad, if (0, 0) is the mass centre."""
+        sin, cos = math.sin(alpha), math.cos(alpha)
+        return -self.x * cos - self.z * sin, self.radius + self.x * sin - self.z * cos
+
+    def place(self, alpha: float) -> tuple[float, float]:
+        """Return its lowest point (x, z), m, at an inclination, rad."""
+        return self.x + self.radius * math.sin(alpha), self.z - self.radius * math.cos(alpha)
 
 
 def around(side: list[Round]) -> list[Round]:
@@ -52,57 +72,99 @@ def around(side: list[Round]) -> list[Round]:
     return [one._replace(curve=one.curve - last) for one in whole]
 
 
-def rounds_of(outline: Floats, corner: float) -> list[Round]:
-    """Return the rounds of the side x >= 0 of a turned outline (k, 2), (rho, z), m, from its tip.
+def rounds_of(line: Floats, corner: float = 0.0) -> list[Round]:
+    """Return the rounds of a convex polygon (k, 2), (x, z), m, counterclockwise, over a full turn.
 
     Turns above ``corner``, rad, are corners; vertices that lie closer than straight parts are of one curve.
-    On a curve a vertex is an arc of the radius of curvature there; neighbours on one circle are one arc.
+    On a curve a vertex is the arc that touches both sides, the shorter one in its middle, so that a body
+    rolls on without a jump; neighbours on one circle are one arc.
     """
-    line = _hull_side(outline)
-    step = np.diff(line, axis=0)
-    slope, length = np.arctan2(step[:, 1], step[:, 0]), np.hypot(*step.T)
-    low = np.concatenate([[-slope[0] if line[0, 0] == 0.0 else 0.0], slope])
-    high = np.append(slope, np.pi)
-    turn = high - low
-    if line[-1, 0] == 0.0:
-        turn[-1] *= 2.0  # half of it lies on the other side
-    shorter = np.minimum(np.append(length[0], length), np.append(length, length[-1]))
-    smooth = turn < corner
+    step = np.roll(line, -1, axis=0) - line
+    after, length = np.arctan2(step[:, 1], step[:, 0]), np.hypot(*step.T)
+    first = int(np.argmin(np.roll(after, 1)))
+    line, after, length = (np.roll(part, -first, axis=0) for part in (line, after, length))
+    low = np.roll(after, 1)  # inclination at which the side before it lies on the barrier
+    turn = (after - low) % TURN
+    high = low[0] + np.cumsum(turn)
+    shorter, smooth = np.minimum(length, np.roll(length, 1)), turn < corner
     steps = np.where(smooth, shorter, 0.0)
-    joined = smooth[1:] & smooth[:-1] & (length <= LONG * np.maximum(steps[1:], steps[:-1]))
-    curve = np.append(0, np.cumsum(~joined))
-    on_curve = np.append(joined, False) | np.append(False, joined)
-    bend = np.where(on_curve, shorter / turn, 0.0)
-    middle = 0.5 * (low + high)
-    middle[0] = 0.0 if line[0, 0] == 0.0 else middle[0]
-    middle[-1] = np.pi if line[-1, 0] == 0.0 else middle[-1]
-    x, z = line[:, 0] - bend * np.sin(middle), line[:, 1] + bend * np.cos(middle)
-    columns = (part.tolist() for part in (x, z, bend, low, high, curve))
-    rounds = [Round(*row) for row in zip(*columns, strict=True)]
-    found = rounds[:1]
-    for one in rounds[1:]:
-        last = found[-1]
-        away = max(math.hypot(one.x - last.x, one.z - last.z), abs(one.radius - last.radius))
-        if one.curve == last.curve and away < ALIKE * one.radius:
-            found[-1] = last._replace(high=one.high)
+    joined = smooth & np.roll(smooth, -1) & (length <= LONG * np.maximum(steps, np.roll(steps, -1)))
+    bend = np.where(joined | np.roll(joined, 1), 0.5 * shorter / np.tan(0.5 * turn), 0.0)
+    middle, inside = high - 0.5 * turn, bend / np.cos(0.5 * turn)
+    x, z = line[:, 0] - inside * np.sin(middle), line[:, 1] + inside * np.cos(middle)
+    curve = np.append(0, np.cumsum(~joined)[:-1])
+    columns = (part.tolist() for part in (x, z, bend, high - turn, high, curve))
+    same = SAME * float(np.ptp(line, axis=0).max())
+    return _merged([Round(*row) for row in zip(*columns, strict=True)], same)
+
+
+def cut(rounds: list[Round], angle: float) -> list[Round]:
+    """Return rounds over the full turn that ends at an ``angle``, rad; what is lowest there is cut in two.
+
+    The curve that is cut has two numbers, but a whole circle stays one round.
+    """
+    start = angle - TURN
+    if len(rounds) == 1:
+        return [rounds[0]._replace(low=start, high=angle)]
+    found = []
+    for one in rounds:
+        turns = math.floor((one.low - start) / TURN + ROUND_OFF)
+        low, high = max(one.low - turns * TURN, start), one.high - turns * TURN
+        found.append(one._replace(low=low, high=min(high, angle)))
+        if high > angle + ROUND_OFF:
+            found.append(one._replace(low=start, high=high - TURN))
+    found.sort(key=lambda one: one.low)
+    begins = [0, *(int(a.curve != b.curve) for a, b in pairwise(found))]
+    return [one._replace(curve=number) for one, number in zip(found, accumulate(begins), strict=True)]
+
+
+def hull(places: Floats, level: float) -> Floats:
+    """Return the vertices (k, 2) of the convex hull of places (x, z), m, counterclockwise.
+
+    Those that lie nearer than `level`, m, to the line between their neighbours are left out.
+    """
+    ordered = places[np.lexsort((places[:, 1], places[:, 0]))].tolist()
+    line = np.array(_chain(ordered)[:-1] + _chain(ordered[::-1])[:-1])
+    while len(line) > 3:
+        before, after = np.roll(line, 1, axis=0), np.roll(line, -1, axis=0)
+        (x, z), (u, w) = (after - before).T, (line - before).T
+        away = np.abs(x * w - z * u) / np.hypot(x, z)
+        nearest = int(np.argmin(away))
+        if away[nearest] >= level:
+            break
+        line = np.delete(line, nearest, axis=0)
+    return line
+
+
+def _chain(ordered: list[list[float]]) -> list[list[float]]:
+    """Return one side of the convex hull of places that are sorted (Andrew 1979): those that turn left."""
+    chain: list[list[float]] = []
+    for x, z in ordered:
+        while len(chain) > 1:
+            (x_0, z_0), (x_1, z_1) = chain[-2:]
+            if (x_1 - x_0) * (z - z_0) > (z_1 - z_0) * (x - x_0):
+                break
+            chain.pop()
+        chain.append([x, z])
+    return chain
+
+
+def _merged(rounds: list[Round], same: float) -> list[Round]:
+    """Return rounds of which neighbours on one circle, within ``same``, m, are one arc."""
+    groups: list[list[Round]] = []
+    for one in rounds:
+        first = groups[-1][0] if groups else None
+        if first and first.curve == one.curve and math.dist(first[:3], one[:3]) < same:
+            groups[-1].append(one)
         else:
-            found.append(one)
-    return found
+            groups.append([one])
+    return [_circle(group) for group in groups]
 
 
-def _hull_side(outline: Floats) -> Floats:
-    """Return the vertices (k, 2) of the convex hull of a turned outline, on one side from tip to tail."""
-    first = int(np.flatnonzero(outline[:, 1] <= outline[0, 1])[-1])
-    hull: list[tuple[float, float]] = []
-    for x, z in outline[first:].tolist():
-        while len(hull) > 1 and _left(hull[-2], hull[-1], (x, z)) <= 0.0:
-            hull.pop()
-        hull.append((x, z))
-    return np.array(hull)
-
-
-def _left(a: tuple[float, float], b: tuple[float, float], c: tuple[float, float]) -> float:
-    """Return how far c lies to the left of the way from a to b, times that way, m2; 0 below round-off."""
-    (ux, uz), (vx, vz) = (b[0] - a[0], b[1] - a[1]), (c[0] - b[0], c[1] - b[1])
-    turn = ux * vz - uz * vx
-    return turn if turn > 1e-12 * math.hypot(ux, uz) * math.hypot(vx, vz) else 0.0
+def _circle(group: list[Round]) -> Round:
+    """Return the arc of neighbours on one circle; one that goes all round passes through its vertices."""
+    x, z, radius = (float(np.mean([one[k] for one in group])) for k in range(3))
+    low, high = group[0].low, group[-1].high
+    if high - low > TURN - ROUND_OFF:
+        radius /= math.cos(0.5 * TURN / len(group))
+    return Round(x, z, radius, low, high, group[0].curve)

@@ -13,7 +13,7 @@ from .arms import Arms, point_arms
 from .arrays import Floats, floats
 from .chord import both_sides, mirrored_chord
 from .errors import ShapeError, TooLongError
-from .rounds import LONG, Round, around, rounds_of
+from .rounds import LONG, Round, cut, hull, rounds_of
 from .slenderness import slenderness
 from .touch import LEVEL, Touch, level_part, on_side, require_inclination
 
@@ -236,7 +236,8 @@ class Turned:
 
     def rounds(self) -> list[Round]:
         """Arcs and corners of the convex outline in the plane of motion, in order around it."""
-        return around(rounds_of(self.outline, CORNER))
+        line = hull(both_sides(self.outline), LEVEL * self.length)
+        return cut(rounds_of(line, CORNER), math.pi)
 
     def reversed(self) -> Turned:
         """Return the body with its tail as its tip."""

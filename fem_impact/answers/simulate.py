@@ -67,7 +67,7 @@ def simulate(
     UsageError, SceneError, OutputPathError, ResultError, RunError
         As `fem_impact.run.simulate.simulate`; or a wanted error is asked of a model without a mesh.
     """
-    fidelity = fidelity or "solid"
+    fidelity = fidelity or scene.strikes.first
     if on_levels(scene, fidelity):
         budget = BUDGET if budget_s is None else budget_s
         return LevelChain(case or Case(scene), options, budget, workers).run()

@@ -88,6 +88,8 @@ class Case:
         require_closed_form(case.bodies, slots, fidelity)
         if fidelity == "solid":
             case._require_mesh(slots)
+        if fidelity == "solid" and "modal" in dict(scene.strikes.stated):
+            cls.of(scene, "modal")  # which computes later strikes
         return case
 
     def _require_mesh(self, slots: ModelSpec) -> None:

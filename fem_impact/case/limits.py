@@ -15,6 +15,7 @@ from fem_impact.scene import library
 from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.impact import BESIDE, FIRST
 from fem_impact.scene.projectile import ProjectileSpec
+from fem_impact.scene.strikes import Following
 from fem_impact.scene.types import Scene
 from fem_impact.scene.units import format_quantity
 from rigid import Faceted, Turned
@@ -163,7 +164,12 @@ def require_still(barrier: Barrier, fidelity: str) -> None:
 
 def require_followed(scene: Scene) -> None:
     """Refuse a barrier that nothing holds where more than the first impact is asked for (SceneError)."""
-    if scene.impact.until == FIRST or scene.barrier.mass is None:
+    if scene.impact.until == FIRST:
+        if scene.strikes != Following():
+            problem = "says how a body is followed, but the scene asks for the first impact alone."
+            raise SceneError(problem, key="strikes", remedy='Add until = "rest" to impact, or leave it out.')
+        return
+    if scene.barrier.mass is None:
         return
     raise SceneError(
         "follows a body that comes back to a barrier which the first impact has set moving, and nothing is "

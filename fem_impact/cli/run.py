@@ -89,10 +89,10 @@ def run(options: Options) -> int:
 
     say_kept(scene, options)
     budget = stated_budget(options)
-    if budget and not on_levels(scene, options.fidelity or "solid"):
+    if budget and not on_levels(scene, options.fidelity or scene.strikes.first):
         problem = "is for several meshes, and the scene asks for one."
         raise UsageError(problem, key="--budget", remedy="Leave it out, or accuracy.levels.")
-    case = compiled(scene, options.fidelity or "solid")
+    case = compiled(scene, options.fidelity or scene.strikes.first)
     if case.fidelity == "solid" and not options.quiet:
         sys.stderr.write(_long_run(case.size))
     out = checked_out(options.out or Path("results") / _usual_name(scene, options))

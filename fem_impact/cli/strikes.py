@@ -8,7 +8,7 @@ from fem_impact.cli.options import Options
 from fem_impact.cli.terminal import print_table
 from fem_impact.outcome.keys import or_none
 from fem_impact.outcome.record import Outcome
-from fem_impact.outcome.strike_text import strikes_table, told
+from fem_impact.outcome.strike_text import spread_table, strikes_table, told
 from fem_impact.tables.text import wrapped
 
 SHOWN = 12
@@ -20,3 +20,5 @@ def print_strikes(outcome: Outcome, options: Options) -> None:
     sys.stdout.writelines(f"{line}\n" for sentence in told(outcome.strikes) for line in wrapped(sentence))
     if each := or_none(outcome.strikes.each):
         print_table(strikes_table(each[:SHOWN]), options, indent="  ")
+    if spread := or_none(outcome.strikes.spread):
+        print_table(spread_table(spread), options, indent="  ")

@@ -6,10 +6,11 @@ from collections.abc import Sequence
 from math import degrees
 
 from fem_impact.outcome.keys import Num, Unknown
-from fem_impact.outcome.strikes import StrikeRecord, Strikes
+from fem_impact.outcome.strikes import StrikeRecord, Strikes, StrikeSpread
 from fem_impact.tables.table import Table
 
 HEAD = ("", "time, ms", "part", "angle, deg", "approach, m/s", "e", "mu", "lost, J", "friction, J", "model")
+SPREAD = ("strike", "tip", "tail", "other", "none", "time, ms", "approach, m/s")
 
 
 def told(strikes: Strikes) -> list[str]:
@@ -31,6 +32,19 @@ def strikes_table(each: Sequence[StrikeRecord]) -> Table:
     return Table.of(HEAD, rows, left=(2, 9))
 
 
+def spread_table(spread: Sequence[StrikeSpread]) -> Table:
+    """Return a row a strike: what strikes in how many sequences, when and how fast in most."""
+    rows = [
+        (
+            *(str(count) for count in (one.number, one.tip, one.tail, one.other, one.none)),
+            f"{1e3 * one.time_low:.3g} to {1e3 * one.time_high:.3g}",
+            f"{one.approach_low:.3g} to {one.approach_high:.3g}",
+        )
+        for one in spread
+    ]
+    return Table.of(SPREAD, rows)
+
+
 def _row(number: int, one: StrikeRecord) -> tuple[str, ...]:
     values = 1e3 * one.time, degrees(one.alpha), one.approach, one.e, one.mu, one.lost, one.friction
     time, *rest = (f"{value:.4g}" for value in values)
@@ -46,15 +60,15 @@ def _other_end(strikes: Strikes) -> str:
 
 
 def _certain(strikes: Strikes) -> list[str]:
-    """Return how many strikes hold for the whole interval of friction, nothing where that is not known."""
+    """Return how many strikes hold over the stated intervals, nothing where none is stated."""
     certain, ends = strikes.certain, (strikes.other_end_low, strikes.other_end_high)
     if isinstance(certain, Unknown):
         return []
     known = [f"{end:.3g}" for end in ends if not isinstance(end, Unknown)]
-    between = f" That ratio lies between {' and '.join(known)} there." if len(known) == 2 else ""
+    between = f" The other end strikes {' to '.join(known)} times as fast in most." if len(known) == 2 else ""
     return [
-        f"Over the stated interval of friction the order of the first {certain} is certain; later strikes "
-        f"are one path of many.{between}"
+        f"In rigid sequences over the stated intervals of friction, angle and speed the order of the first "
+        f"{certain} is the same; later strikes are one path of many.{between}"
     ]
 
 

@@ -56,6 +56,21 @@ class StrikeRecord:
 
 
 @group
+class StrikeSpread:
+    """What strikes as one of the first strikes in sequences over the stated intervals of what comes in."""
+
+    number: int = key("strike", "-", "Number of the strike, from 1.")
+    tip: int = key("tip", "-", "Sequences in which the tip strikes.")
+    tail: int = key("tail", "-", "Sequences in which the tail strikes.")
+    other: int = key("other", "-", "Sequences in which a face, a side or a ball strikes.")
+    none: int = key("none", "-", "Sequences that have ended before.")
+    time_low: float = key("time_low_s", "s", "Time below which a tenth of those that strike do.")
+    time_high: float = key("time_high_s", "s", "Time above which a tenth of them do.")
+    approach_low: float = key("approach_low_m_per_s", "m/s", "Speed below which a tenth of them come.")
+    approach_high: float = key("approach_high_m_per_s", "m/s", "Speed above which a tenth of them come.")
+
+
+@group
 class Strikes:
     """All strikes of a body that is followed beyond its first impact, and where its energy went."""
 
@@ -84,13 +99,19 @@ class Strikes:
     certain: int | Unknown = key(
         "strikes_certain",
         "-",
-        "First strikes whose order is the same at the ends of the stated interval of friction.",
+        "First strikes that are of the same part of the body in all rigid sequences over the stated "
+        "intervals of friction, angle and speed.",
+    )
+    spread: tuple[StrikeSpread, ...] | Unknown = key(
+        "strikes_spread", "s, m/s", "The first strikes in 64 rigid sequences over those intervals."
     )
     other_end_low: Num = key(
-        "strikes_other_end_over_first_low", "-", "Least strikes_other_end_over_first over that interval."
+        "strikes_other_end_over_first_low",
+        "-",
+        "strikes_other_end_over_first that a tenth of those sequences stay below.",
     )
     other_end_high: Num = key(
-        "strikes_other_end_over_first_high", "-", "Largest strikes_other_end_over_first over that interval."
+        "strikes_other_end_over_first_high", "-", "The same that a tenth of them exceed."
     )
     gravity: Num = key("strikes_W_gravity_J", "J", "Work of gravity, all flights and contacts.")
     friction: Num = key("strikes_W_friction_J", "J", "Friction of all strikes, and of sliding between them.")

@@ -14,16 +14,15 @@ from fem_impact.case.effects.damping import loss_factor
 from fem_impact.case.effects.registry import AUTO
 from fem_impact.modal.impact import Arrival, ModalResult
 from fem_impact.modal.motion import AT
+from fem_impact.modal.rod import ModalRod, modal_rod
 from fem_impact.modal.sites import lowest_place
-from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.strikes import StrikeRecord
 from fem_impact.run.modal import closed
-from fem_impact.run.strikes import LEAST_BY_LAW, RULES, Followed, part_of
+from fem_impact.run.strikes import LEAST_BY_LAW, Followed
 from rigid.strikes import Finish, State, next_touch
 
 if TYPE_CHECKING:
     from fem_impact.case.case import Case
-    from fem_impact.outcome.record import Outcome
 
 MOST = 40
 """Strikes that modes compute at most."""
@@ -46,66 +45,74 @@ def modal_loss(case: Case) -> float:
     return loss_factor(case.bodies) if named else 0.0
 
 
-def with_modal_strikes(case: Case, outcome: Outcome, first: ModalResult) -> Outcome:
-    """Return the outcome of a first impact with the strikes after it that its scene asks for."""
-    if not first.finished:
-        because = Unknown(f"the first impact did not end: {first.reason}")
-        return replace(outcome, strikes=replace(outcome.strikes, each=because))
-    course = _ModalCourse.of(case)
-    finish = course.to_the_end()
-    told = TOLD.format(course.strikes, course.loss, MOST), SMOOTH, *RULES
-    held = course.vibration, course.damped
-    return course.followed.outcome(outcome, course.state, finish, told, *held)
-
-
 @dataclass(eq=False)
-class _ModalCourse:
-    """Strikes by modes so far: the rod after the last of them, with its modes, and a record of each."""
+class ModalCourse:
+    """Strikes by modes so far: the rod after the last of them, with its modes, and a record of each.
+
+    Attributes
+    ----------
+    rod : with the sites and modes of the case
+    state : the rigid motion; q, rate : (k,) amplitudes and rates of the modes, sqrt(kg) m, sqrt(kg) m/s
+    loss : loss factor of the modes in flight
+    strikes : by modes so far; finished : whether the last one ended
+    damped : energy, J, that the modes have lost since the last strike
+    """
 
     case: Case
     followed: Followed
-    result: ModalResult
+    rod: ModalRod
     state: State
     q: Array
     rate: Array
     loss: float
     strikes: int = 0
+    finished: bool = True
     damped: float = 0.0
 
     @classmethod
-    def of(cls, case: Case) -> _ModalCourse:
+    def at_first(cls, case: Case, followed: Followed) -> ModalCourse:
         """Return the course after the first strike.
 
         It ends sooner than a first impact that stands by itself, which counts what touches much later to it.
         """
-        first = closed(case, ahead=_ahead(case))
-        followed = Followed.of(case)
-        seen = case.scene.relative
+        first, seen = closed(case, ahead=_ahead(case)), case.scene.relative
         begin = followed.touching(seen.angle, seen.v_n, seen.v_t, seen.omega)
-        course = cls(case, followed, first, begin, first.last.q, first.last.rate, modal_loss(case))
+        course = cls(case, followed, first.rod, begin, first.last.q, first.last.rate, modal_loss(case))
         course._enter(begin, first, 0.0)
         return course
+
+    @classmethod
+    def going_on(cls, case: Case, followed: Followed, state: State) -> ModalCourse:
+        """Return the course of a rod at rest in itself that moves on from a ``state``."""
+        rod = modal_rod(case.bodies, case.slots.vibrating)
+        rest = np.zeros(len(rod.omega))
+        return cls(case, followed, rod, state, rest, rest.copy(), modal_loss(case))
 
     @property
     def vibration(self) -> float:
         """Energy of the modes, J."""
-        return _energy(self.result, self.q, self.rate)
+        return _energy(self.rod, self.q, self.rate)
+
+    @property
+    def told(self) -> tuple[str, ...]:
+        """What is to be told of strikes by modes."""
+        return TOLD.format(self.strikes, self.loss, MOST), SMOOTH
 
     def to_the_end(self) -> Finish:
         """Follow the rod: hard strikes by modes, what lies between and after them as a rigid body."""
-        while self.followed.missing != 0 and self.strikes < MOST and self.result.finished:
+        while self.followed.missing != 0 and self.strikes < MOST and self.finished:
             touch = self._touch()
             if touch is None or not self._hard(touch):
                 state, finish = self.followed.go_on(self.state, LEAST_BY_LAW)
-                self._swing_on(state)
+                self.swing_on(state)
                 if finish is not Finish.STRONG:
                     return finish
                 touch = state
             if self.followed.tumbles(touch):
                 break
-            self._strike(touch)
+            self.strike(touch)
         end, finish = self.followed.go_on(self.state)
-        self._swing_on(end)
+        self.swing_on(end)
         return finish
 
     def _comes(self, state: State) -> tuple[float, float]:
@@ -121,17 +128,17 @@ class _ModalCourse:
         least = LEAST_BY_LAW * self.followed.each[0].before
         return 0.5 * mass * comes**2 / (1.0 + d_c**2 / k2) >= least
 
-    def _swing_on(self, state: State) -> None:
+    def swing_on(self, state: State) -> None:
         """Take over a later state of the rigid body; what the modes lose meanwhile is damping."""
         held = self.vibration
         self.q, self.rate = self._swung(state.time - self.state.time)
         self.damped += held - self.vibration
         self.state = state
 
-    def _strike(self, before: State) -> None:
+    def strike(self, before: State) -> None:
         """Strike at a later state in flight."""
         self.followed.gravity += self.followed.work(self.state, before)
-        self._swing_on(before)
+        self.swing_on(before)
         turn = before.alpha - self.case.scene.impact.angle
         arrival = Arrival(before.V_n, before.V_t, before.Omega, turn, self.q, self.rate)
         self._enter(before, closed(self.case, arrival=arrival, ahead=_ahead(self.case)), self.vibration)
@@ -142,7 +149,7 @@ class _ModalCourse:
         It is looked for about the touch of the rigid rod, as long as that takes to come by the amplitudes. A
         weak touch is that of the rigid rod.
         """
-        pull, rod = self.followed.pull, self.result.rod
+        pull, rod = self.followed.pull, self.rod
         rigid = next_touch(self.followed.shape, self.state, pull.g_n)
         if rigid is None:
             return None
@@ -166,11 +173,11 @@ class _ModalCourse:
         """Return the height, m, of what is lowest of the vibrating rod, ``dt``, s, from now."""
         state = self.state.flown(dt, self.followed.pull.g_n, self.followed.pull.g_t)
         turn = state.alpha - self.case.scene.impact.angle
-        return state.height + lowest_place(self.result.rod.sites, turn, self._swung(dt)[0])[1]
+        return state.height + lowest_place(self.rod.sites, turn, self._swung(dt)[0])[1]
 
     def _swung(self, dt: float) -> tuple[Array, Array]:
         """Return amplitudes and rates of the modes ``dt``, s, from now: exact damped oscillators."""
-        omega = self.result.rod.omega
+        omega = self.rod.omega
         if not len(omega):
             return self.q, self.rate
         slow, free = 0.5 * self.loss * omega, omega * sqrt(1.0 - 0.25 * self.loss**2)
@@ -197,52 +204,30 @@ class _ModalCourse:
         self.followed.each.append(self._record(before, after, result, taken, fell))
         outside = self.followed.touching(after.alpha, V_n, V_t, Omega).height  # beside its dent
         self.state = after._replace(height=max(after.height, outside))
-        self.result, self.q, self.rate = result, last.q, last.rate
-        self.strikes, self.damped = self.strikes + 1, 0.0
+        self.rod, self.q, self.rate = result.rod, last.q, last.rate
+        self.strikes, self.finished, self.damped = self.strikes + 1, result.finished, 0.0
 
     def _record(
         self, before: State, after: State, result: ModalResult, taken: float, fell: float
     ) -> StrikeRecord:
         """Return the record of a strike that began with a vibration ``taken``; gravity gave ``fell``, J."""
-        case, body, shape = self.case, self.case.contact.body, self.followed.shape
-        corner = shape.corners[shape.lowest(before.alpha, before.Omega)]
-        (d_c, d_d), (x, z) = corner.arms(before.alpha), corner.place(before.alpha)
-        place = x + body.x_c, z + body.z_c
+        followed = self.followed
+        corner = followed.shape.corners[followed.shape.lowest(before.alpha, before.Omega)]
+        place = corner.place(before.alpha)
         p, q = (float(one) for one in result.contacts[:, 2:].sum(axis=0))
-        comes, leaves = (one.V_n + d_c * one.Omega for one in (before, after))
-        held, kept = (self.followed.kinetic(one) for one in (before, after))
-        vibration = _energy(result, result.last.q, result.last.rate)
-        spent = result.friction + result.plastic + result.viscous
-        return StrikeRecord(
-            time=before.time,
-            fidelity="modal",
-            part=part_of(place, 0.0, before.alpha, shape, body.length),
-            x=place[0],
-            z=place[1],
-            along=before.along - d_c + case.contact.arms[0],
-            alpha=before.alpha,
-            approach=-comes,
-            sliding=before.V_t - d_d * before.Omega,
-            v_n=before.V_n,
-            v_t=before.V_t,
-            omega=before.Omega,
-            V_n=after.V_n,
-            V_t=after.V_t,
-            Omega=after.Omega,
-            e=-leaves / comes,
-            mu=q / p if p else 0.0,  # a touch that presses nothing has no friction
-            impulse_n=p,
-            impulse_t=q,
+        record = followed.record(
+            "modal",
+            *(before, after, place, corner.arms(before.alpha), (p, q)),
+            part=followed.part_of(place, 0.0, before.alpha),
             force=result.force,
-            before=held,
-            after=kept,
             friction=result.friction,
             plastic=result.plastic,
             damping=result.viscous + self.damped,
-            vibration=vibration,
+            vibration=_energy(result.rod, result.last.q, result.last.rate),
             taken=taken,
-            other=held + taken + fell - kept - vibration - spent,
         )
+        spent = record.vibration + result.friction + result.plastic + result.viscous
+        return replace(record, other=record.lost + taken + fell - spent)
 
 
 def _ahead(case: Case) -> float:
@@ -250,6 +235,6 @@ def _ahead(case: Case) -> float:
     return max(case.bodies.bending_period, 2.0 * case.estimate.duration)
 
 
-def _energy(result: ModalResult, q: Array, rate: Array) -> float:
+def _energy(rod: ModalRod, q: Array, rate: Array) -> float:
     """Return the energy of modes of given amplitudes and rates, J."""
-    return float(0.5 * (rate**2 + (result.rod.omega * q) ** 2).sum())
+    return float(0.5 * (rate**2 + (rod.omega * q) ** 2).sum())

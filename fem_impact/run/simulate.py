@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -115,8 +114,7 @@ def _compute(case: Case, options: RunOptions) -> tuple[Outcome, ContactRecord | 
     if case.fidelity == "rigid":
         from fem_impact.run.rigid import rigid_outcome
 
-        outcome = _followed(case, rigid_outcome(case))
-        return _over_friction(case, outcome, lambda other: _followed(other, rigid_outcome(other))), None
+        return _followed(case, rigid_outcome(case)), None
     if case.fidelity == "modal":
         from fem_impact.run.modal import closed
         from fem_impact.run.modal import reduce as reduce_modal
@@ -125,16 +123,7 @@ def _compute(case: Case, options: RunOptions) -> tuple[Outcome, ContactRecord | 
         result = closed(case, options.progress, recorded=options.out is not None)
         if options.out is not None:
             write_history(case, result, options.out / "history.csv")
-        outcome = reduce_modal(case, result)
-        if case.scene.impact.until != FIRST:
-            from fem_impact.run.modal_strikes import with_modal_strikes
-
-            def again(other: Case) -> Outcome:
-                first = closed(other)
-                return with_modal_strikes(other, reduce_modal(other, first), first)
-
-            outcome = _over_friction(case, with_modal_strikes(case, outcome, result), again)
-        return outcome, None
+        return _followed(case, reduce_modal(case, result)), None
     from threadpoolctl import threadpool_limits
 
     from fem_impact.outcome.limitation import texts
@@ -158,18 +147,9 @@ def _followed(case: Case, outcome: Outcome) -> Outcome:
     """Return an outcome with all strikes that its scene asks for, whose code is imported only then."""
     if case.scene.impact.until == FIRST:
         return outcome
-    from fem_impact.run.strikes import with_strikes
+    from fem_impact.run.follow import with_strikes
 
     return with_strikes(case, outcome)
-
-
-def _over_friction(case: Case, outcome: Outcome, again: Callable[[Case], Outcome]) -> Outcome:
-    """Return an outcome that tells how far its strikes are those of the whole stated interval of friction."""
-    if case.scene.impact.until == FIRST:
-        return outcome
-    from fem_impact.run.certain import with_certainty
-
-    return with_certainty(case, outcome, again)
 
 
 def _write(outcome: Outcome, record: ContactRecord | None, out: Path) -> None:

@@ -2,27 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from math import copysign, cos, hypot, inf, pi, remainder, sin
 from typing import TYPE_CHECKING
 
 from fem_impact.case.effects.registry import AUTO
 from fem_impact.outcome.keys import Num, Unknown, known, or_none
-from fem_impact.outcome.limitation import limitations
 from fem_impact.outcome.record import Outcome
 from fem_impact.outcome.strikes import StrikeRecord, Strikes
 from fem_impact.physics.contact import ContactPair
 from fem_impact.run.rigid import NormalLoss, normal_loss
-from rigid import GRAVITY, kinetic_energy
+from rigid import GRAVITY, Body, kinetic_energy
 from rigid.strikes import (
     LEAST,
     RUNAWAY,
     Approach,
-    Corner,
     Finish,
     Outline,
     Pull,
+    Round,
     State,
     Strike,
     outline,
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
 
 BESIDE = 1e-6  # rad from the end of a corner's inclinations, at which it touches alone
-ONE_FRICTION = Unknown("only one friction was computed: the scene states no interval, or finite elements")
+ONE_PATH = Unknown("only one path was computed")
 NO_FORCE = Unknown("a rigid impact without duration has no force")
 FINISHED = {
     Finish.RESTS: "It rests.",
@@ -56,7 +56,6 @@ RULES = (
     "Two feet at one instant strike one after the other, the one that comes down first; a face or side that "
     "comes down level and without spin strikes in its middle.",
 )
-LATER = "Strikes after the first are those of a rigid body: vibration is not carried on into them."
 LEVEL = (
     "{} of the strikes land a straight part level; their restitution is that of a round contact as wide as "
     "the model allows."
@@ -73,26 +72,6 @@ def gravity_of(scene: Scene) -> float:
     return GRAVITY if named else 0.0
 
 
-def with_strikes(case: Case, outcome: Outcome) -> Outcome:
-    """Return an outcome with the strikes that its scene asks for, from its first impact on.
-
-    The first strike of a rigid run is that of the sequence; of finite elements it is their impact, after
-    whose last separation the body goes on as a rigid one.
-    """
-    after = [outcome.motion.V_n, outcome.motion.V_t, outcome.motion.Omega]
-    unknown = next((v for v in after if isinstance(v, Unknown)), None)
-    if unknown is not None:
-        because = Unknown(f"the motion after the first impact is not known: {unknown.reason}")
-        return replace(outcome, strikes=replace(outcome.strikes, each=because))
-    followed, seen = Followed.of(case), case.scene.relative
-    if outcome.provenance.fidelity == "rigid":
-        end, finish = followed.go_on(followed.touching(seen.angle, seen.v_n, seen.v_t, seen.omega))
-        return followed.outcome(outcome, end, finish, RULES)
-    followed.each.append(_first_record(followed, outcome))
-    end, finish = followed.go_on(followed.after(outcome))
-    return followed.outcome(outcome, end, finish, (LATER, *RULES), followed.each[0].vibration)
-
-
 @dataclass(eq=False)
 class Followed:
     """A body that is followed: its outline, what acts on it, a record of each strike, and the books.
@@ -102,6 +81,7 @@ class Followed:
     losses : restitution and what follows from it, by the motion before a strike of the rigid body
     gravity, settled, heat : J, of gravity, of strikes too weak to count, of friction between strikes
     level, lossless : strikes of the rigid body that land level, and that lose nothing along the normal
+    upto : strikes after which another model goes on, None where none does
     """
 
     case: Case
@@ -114,6 +94,7 @@ class Followed:
     heat: float = 0.0
     level: int = 0
     lossless: int = 0
+    upto: int | None = None
 
     @classmethod
     def of(cls, case: Case) -> Followed:
@@ -124,9 +105,9 @@ class Followed:
 
     @property
     def missing(self) -> int | None:
-        """How many strikes are still asked for, None where they are not counted."""
-        most = self.case.scene.impact.most_strikes
-        return None if most is None else most - len(self.each)
+        """How many strikes are still asked for of this model, None where they are not counted."""
+        ends = [end for end in (self.case.scene.impact.most_strikes, self.upto) if end is not None]
+        return min(ends) - len(self.each) if ends else None
 
     def go_on(self, begin: State, strong: float = inf) -> tuple[State, Finish]:
         """Follow the rigid body and book it, to the end or to a ``strong`` strike; see `sequence`."""
@@ -161,7 +142,7 @@ class Followed:
         begin = self.touching(scene.impact.angle + turn, V_n, V_t, known(motion.Omega))
         return begin._replace(time=lasts, along=0.5 * lasts * (scene.relative.v_t + V_t))
 
-    def _doubts(self) -> tuple[str, ...]:
+    def doubts(self) -> tuple[str, ...]:
         """Return what is to be told of restitutions that follow from the law of a round contact."""
         if self.case.scene.restitution is not None:
             return ()
@@ -189,6 +170,11 @@ class Followed:
         height = self.shape.corners[self.shape.lowest(alpha, omega)].arms(alpha)[1]
         return State(0.0, height, 0.0, alpha, v_n, v_t, omega)
 
+    @cached_property
+    def _turned_over(self) -> Body:
+        """The body with its tail as its tip."""
+        return self.case.contact.body.reversed()
+
     def _restitution(self, strike: Approach) -> float:
         """Return the energetic restitution of a strike, and keep where its loss goes."""
         loss = normal_loss(self.case, self._pair(strike))
@@ -201,7 +187,7 @@ class Followed:
         angle = remainder(state.alpha if strike.line else _inside(one, state.alpha), 2.0 * pi)
         body = first.body
         if abs(angle) > 0.5 * pi:
-            body, angle = body.reversed(), angle - copysign(pi, angle)
+            body, angle = self._turned_over, angle - copysign(pi, angle)
         material, yields = _struck(self.case, strike.place[1] + first.body.z_c)
         return replace(
             first,
@@ -214,16 +200,8 @@ class Followed:
             rod_yields=yields,
         )
 
-    def outcome(
-        self,
-        outcome: Outcome,
-        end: State,
-        finish: Finish,
-        told: tuple[str, ...],
-        vibration: float = 0.0,
-        damped: float = 0.0,
-    ) -> Outcome:
-        """Return an outcome with all strikes, whose body ends so.
+    def strikes(self, end: State, finish: Finish, vibration: float, damped: float) -> Strikes:
+        """Return all strikes of a body that ends so.
 
         ``vibration`` and ``damped``, J, are what its modes still hold and have lost since the last strike.
         """
@@ -235,7 +213,7 @@ class Followed:
         sums["friction"] += self.heat
         sums["damping"] += damped
         left, E_0 = self.kinetic(end) + vibration, each[0].before
-        strikes = Strikes(
+        return Strikes(
             until=case.scene.impact.until,
             each=each,
             end=finish.value,
@@ -245,107 +223,120 @@ class Followed:
             hardest_energy=_hardest([one.lost for one in each]),
             hardest_force=_hardest([one.force for one in each]),
             hardest_heat=_hardest([one.friction for one in each]),
-            other_end=_other_end(each, case.contact.body.length),
-            certain=ONE_FRICTION,
-            other_end_low=ONE_FRICTION,
-            other_end_high=ONE_FRICTION,
+            other_end=other_end(each, case.contact.body.length),
+            certain=ONE_PATH,
+            spread=ONE_PATH,
+            other_end_low=ONE_PATH,
+            other_end_high=ONE_PATH,
             gravity=self.gravity,
             **sums,
             settled=self.settled,
             left=left,
             residual=(E_0 + self.gravity - sum(sums.values()) - self.settled - left) / E_0,
         )
-        every = (*outcome.validity.limitations, *limitations("model", *told, *self._doubts()))
-        return replace(outcome, strikes=strikes, validity=replace(outcome.validity, limitations=every))
 
     def _record(self, strike: Strike) -> StrikeRecord:
         """Return the record of one strike of the rigid body."""
-        case, before = self.case, strike.before
-        state, body = before.state, case.contact.body
-        loss = self.losses[state]
-        place = before.place[0] + body.x_c, before.place[1] + body.z_c
-        return StrikeRecord(
-            time=state.time,
-            fidelity="rigid",
-            part=part_of(place, before.line, state.alpha, self.shape, body.length),
-            x=place[0],
-            z=place[1],
-            along=state.along - before.d_c + case.contact.arms[0],
-            alpha=state.alpha,
-            approach=-before.normal,
-            sliding=before.sliding,
-            v_n=state.V_n,
-            v_t=state.V_t,
-            omega=state.Omega,
-            V_n=strike.V_n,
-            V_t=strike.V_t,
-            Omega=strike.Omega,
-            e=strike.e,
-            mu=strike.mu,
-            impulse_n=body.mass * strike.p,
-            impulse_t=body.mass * strike.q,
-            force=None,
-            before=self.kinetic(state),
-            after=self.kinetic(strike.after),
-            friction=body.mass * strike.friction,
-            plastic=body.mass * (1.0 - loss.viscous) * strike.normal,
-            damping=body.mass * loss.viscous * strike.normal,
-            vibration=0.0,
-            taken=0.0,
-            other=0.0,
+        mass, before = self.case.contact.body.mass, strike.before
+        loss, arms = self.losses[before.state], (before.d_c, before.d_d)
+        return self.record(
+            "rigid",
+            *(before.state, strike.after, before.place, arms, (mass * strike.p, mass * strike.q)),
+            part=self.part_of(before.place, before.line, before.state.alpha),
+            friction=mass * strike.friction,
+            plastic=mass * (1.0 - loss.viscous) * strike.normal,
+            damping=mass * loss.viscous * strike.normal,
         )
 
+    def first_record(self, outcome: Outcome) -> StrikeRecord:
+        """Return the impact of an outcome of finite elements as the first strike."""
+        case, motion, energy = self.case, outcome.motion, outcome.energy
+        seen, E_0, pair = case.scene.relative, energy.E_0, case.contact
+        before = self.touching(seen.angle, seen.v_n, seen.v_t, seen.omega)
+        after = self.after(outcome)
+        parts = [energy.friction, energy.plastic, energy.damping, energy.vibration]
+        friction, plastic, damping, vibration = (E_0 * (or_none(part) or 0.0) for part in parts)
+        place = pair.touch_point[0] - pair.body.x_c, pair.touch_point[1] - pair.body.z_c
+        impulse = motion.mass * (after.V_n - seen.v_n), motion.mass * (after.V_t - seen.v_t)
+        record = self.record(
+            outcome.provenance.fidelity,
+            *(before, after, place, pair.arms, impulse),
+            part=self.part_of(place, 0.0, seen.angle),
+            force=or_none(outcome.contact.peak_force),
+            friction=friction,
+            plastic=plastic,
+            damping=damping,
+            vibration=vibration,
+        )
+        return replace(record, other=record.before - record.after - friction - plastic - damping - vibration)
 
-def _first_record(course: Followed, outcome: Outcome) -> StrikeRecord:
-    """Return the impact of an outcome as the first strike."""
-    case, motion, energy = course.case, outcome.motion, outcome.energy
-    seen, barrier, pair = case.scene.relative, case.scene.barrier, case.contact
-    E_0, (x, z) = energy.E_0, pair.touch_point
-    V_n, V_t = known(motion.V_n) - barrier.v_n, known(motion.V_t) - barrier.v_t
-    parts = [energy.rigid, energy.friction, energy.plastic, energy.damping, energy.vibration]
-    kept, friction, plastic, damping, vibration = (E_0 * (or_none(part) or 0.0) for part in parts)
-    return StrikeRecord(
-        time=0.0,
-        fidelity=outcome.provenance.fidelity,
-        part="tip" if z < 0.5 * pair.body.length else "tail",
-        x=x,
-        z=z,
-        along=0.0,
-        alpha=seen.angle,
-        approach=pair.approach,
-        sliding=pair.sliding,
-        v_n=seen.v_n,
-        v_t=seen.v_t,
-        omega=seen.omega,
-        V_n=V_n,
-        V_t=V_t,
-        Omega=known(motion.Omega),
-        e=known(outcome.restitution.edge.e),
-        mu=known(outcome.restitution.mu),
-        impulse_n=motion.mass * (V_n - seen.v_n),
-        impulse_t=motion.mass * (V_t - seen.v_t),
-        force=or_none(outcome.contact.peak_force),
-        before=E_0,
-        after=kept,
-        friction=friction,
-        plastic=plastic,
-        damping=damping,
-        vibration=vibration,
-        taken=0.0,
-        other=E_0 - kept - friction - plastic - damping - vibration,
-    )
+    def record(
+        self,
+        fidelity: str,
+        before: State,
+        after: State,
+        place: tuple[float, float],
+        arms: tuple[float, float],
+        impulse: tuple[float, float],
+        *,
+        part: str,
+        friction: float,
+        plastic: float,
+        damping: float,
+        force: float | None = None,
+        vibration: float = 0.0,
+        taken: float = 0.0,
+        other: float = 0.0,
+    ) -> StrikeRecord:
+        """Return the record of a strike.
+
+        ``place`` (x, z), m, and ``arms``, d_c and d_d, m, are those of the contact from the mass centre,
+        ``impulse``, N s, is that along n and t; the rest is as in `StrikeRecord`, J.
+        """
+        (d_c, d_d), body = arms, self.case.contact.body
+        comes, leaves = (one.V_n + d_c * one.Omega for one in (before, after))
+        return StrikeRecord(
+            time=before.time,
+            fidelity=fidelity,
+            part=part,
+            x=place[0] + body.x_c,
+            z=place[1] + body.z_c,
+            along=before.along - d_c + self.case.contact.arms[0],
+            alpha=before.alpha,
+            approach=-comes,
+            sliding=before.V_t - d_d * before.Omega,
+            v_n=before.V_n,
+            v_t=before.V_t,
+            omega=before.Omega,
+            V_n=after.V_n,
+            V_t=after.V_t,
+            Omega=after.Omega,
+            e=-leaves / comes,
+            mu=impulse[1] / impulse[0] if impulse[0] else 0.0,  # a touch that presses nothing has no friction
+            impulse_n=impulse[0],
+            impulse_t=impulse[1],
+            force=force,
+            before=self.kinetic(before),
+            after=self.kinetic(after),
+            friction=friction,
+            plastic=plastic,
+            damping=damping,
+            vibration=vibration,
+            taken=taken,
+            other=other,
+        )
+
+    def part_of(self, place: tuple[float, float], line: float, alpha: float) -> str:
+        """Return what strikes at a place (x, z), m, from the mass centre: an end, a line, a ball."""
+        if len(self.shape.corners) == 1:
+            return "surface"
+        if line:
+            return "face" if abs(remainder(alpha, pi)) < 0.25 * pi else "side"
+        body = self.case.contact.body
+        return "tip" if place[1] + body.z_c < 0.5 * body.length else "tail"
 
 
-def part_of(place: tuple[float, float], line: float, alpha: float, shape: Outline, length: float) -> str:
-    """Return what strikes at a place (x, z), m, from the tip: an end, a ``line``, m, or a ball."""
-    if len(shape.corners) == 1:
-        return "surface"
-    if line:
-        return "face" if abs(remainder(alpha, pi)) < 0.25 * pi else "side"
-    return "tip" if place[1] < 0.5 * length else "tail"
-
-
-def _inside(one: Corner, alpha: float) -> float:
+def _inside(one: Round, alpha: float) -> float:
     """Return the inclination, rad, at which a corner touches alone, next to one at which a line does."""
     middle, half = 0.5 * (one.low + one.high), 0.5 * (one.high - one.low) - BESIDE
     return middle + min(max(remainder(alpha - middle, 2.0 * pi), -half), half)
@@ -366,7 +357,7 @@ def _hardest(values: Iterable[float | None]) -> int | Unknown:
     return -max(known_ones)[1] if known_ones else NO_FORCE
 
 
-def _other_end(each: tuple[StrikeRecord, ...], length: float) -> Num:
+def other_end(each: Sequence[StrikeRecord], length: float) -> Num:
     """Return the largest speed at which the other end strikes over that of the first strike."""
     first = each[0].z < 0.5 * length
     others = [one.approach for one in each if (one.z < 0.5 * length) != first and one.part in ("tip", "tail")]

@@ -149,6 +149,13 @@ SLOPE = Parameter(
     derived="that of the angle: the rod's axis is vertical",
 )
 SPEED = Parameter("speed", "speed along the rod's axis", "speed", 1e-6, 500.0, derived=_GIVEN)
+_EXACT = "none: it is taken as exact"
+STRIKES = (
+    Parameter(
+        "angle_error", "how far the angle may be off", "angle", 0.0, math.radians(10.0), derived=_EXACT
+    ),
+    Parameter("speed_error", "share by which the velocities may be off", "", 0.0, 0.5, derived=_EXACT),
+)
 _MASSIVE = "none: the barrier is massive"
 BARRIER = (
     Parameter(
@@ -397,6 +404,7 @@ DEFAULTS: tuple[Default, ...] = (
             ("accuracy", ACCURACY),
             ("save", SAVE),
             ("heating", HEATING),
+            ("strikes", STRIKES),
         )
         for f in fields
         if f.default is not None or f.derived

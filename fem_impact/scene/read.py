@@ -31,6 +31,7 @@ from fem_impact.scene.shapes import (
     stated_by_length,
     stated_points,
 )
+from fem_impact.scene.strikes import Following
 from fem_impact.scene.surface import Surface
 from fem_impact.scene.surface_table import of_known, read_surface
 from fem_impact.scene.tables import UNKNOWN_KEY, Table, check_keys, listed, needed, numbers_of, within
@@ -133,6 +134,7 @@ _TOP = (
     "accuracy",
     "save",
     "heating",
+    "strikes",
 )
 
 
@@ -154,6 +156,7 @@ def read_scene(data: Table) -> Scene:
         "accuracy": lambda: within(data, "accuracy", _accuracy, {}),
         "save": lambda: within(data, "save", lambda t: Save(**numbers_of(t, fields.SAVE)), {}),
         "heating": lambda: within(data, "heating", lambda t: Heating(**numbers_of(t, fields.HEATING)), {}),
+        "strikes": lambda: within(data, "strikes", _strikes, {}),
     }
     read = _all_read(parts)
     if read["surface"] is None:
@@ -169,6 +172,10 @@ def read_scene(data: Table) -> Scene:
     )
     _check_measured(scene)
     return scene
+
+
+def _strikes(table: Table) -> Following:
+    return Following(table.get("fidelity", ""), **numbers_of(table, fields.STRIKES, ("fidelity",)))
 
 
 def _all_read(parts: Mapping[str, Callable[[], Any]]) -> dict[str, Any]:

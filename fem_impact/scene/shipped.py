@@ -223,6 +223,8 @@ def _refuse_bare(key: str, data: dict[str, Any]) -> None:
 def _section(data: dict[str, Any], path: list[str], key: str) -> dict[str, Any]:
     table = data
     for name in path:
+        if name == "strikes" and table is data:  # scenes that state nothing of it are written without it
+            table.setdefault(name, {})
         inner = table.get(name)
         if name == "accuracy" and isinstance(inner, str):
             remedy = "Give the error that is allowed, or a mesh, not both."

@@ -29,6 +29,7 @@ PLACES = {
         ("[impact]", (*fields.IMPACT, fields.SLOPE, fields.HEIGHT, fields.SPEED)),
         ("[accuracy]", fields.ACCURACY),
         ("[save]", fields.SAVE),
+        ("[strikes]", fields.STRIKES),
     )
     for f in wanted
 }

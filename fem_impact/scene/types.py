@@ -16,6 +16,7 @@ from fem_impact.scene.checks import check_choice, check_id, check_names, check_n
 from fem_impact.scene.impact import WAYS, Impact
 from fem_impact.scene.material import Material
 from fem_impact.scene.projectile import ProjectileSpec
+from fem_impact.scene.strikes import Following
 from fem_impact.scene.surface import Surface
 
 MEASURED_SETS = (
@@ -121,6 +122,7 @@ class Scene:
     accuracy: Accuracy = Accuracy()
     save: Save = Save()
     heating: Heating = Heating()
+    strikes: Following = Following()  # noqa: RUF009
     measured: str | None = None
     restitution: float | None = None
 

@@ -32,6 +32,9 @@ def to_dict(scene: Scene) -> dict[str, Any]:
         top["measured"] = scene.measured
     if scene.restitution is not None:
         top["restitution"] = scene.restitution
+    models = {"fidelity": scene.strikes.fidelity} if scene.strikes.fidelity else {}
+    if strikes := models | _written(scene.strikes, fields.STRIKES):
+        top["strikes"] = strikes
     return top | {
         "projectile": _projectile(scene.projectile),
         "barrier": _barrier(scene.barrier),

@@ -1,9 +1,10 @@
 """Strikes of a rigid body from the first to rest: outline, flight, contacts that are held, and records."""
 
+from ..rounds import Round
 from .course import LEAST, MOST, RUNAWAY, sequence
 from .flight import State, next_touch
 from .held import Ending, Held, Pull, hold
-from .outline import Corner, Outline, outline
+from .outline import Outline, outline
 from .record import Approach, Finish, Phase, Sequence, Strike
 
 __all__ = [
@@ -11,13 +12,13 @@ __all__ = [
     "MOST",
     "RUNAWAY",
     "Approach",
-    "Corner",
     "Ending",
     "Finish",
     "Held",
     "Outline",
     "Phase",
     "Pull",
+    "Round",
     "Sequence",
     "State",
     "Strike",

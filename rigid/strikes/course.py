@@ -17,9 +17,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from ..path import sliding_path
+from ..rounds import TURN
 from .flight import State, next_touch
 from .held import Ending, Held, Pull, hold
-from .outline import LEVEL_ANGLE, TURN, Outline
+from .outline import LEVEL_ANGLE, Outline
 from .record import Approach, Finish, Phase, Sequence, Strike
 
 LEAST = 1e-4

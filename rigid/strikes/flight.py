@@ -9,7 +9,8 @@ from typing import NamedTuple
 
 from scipy.optimize import brentq
 
-from .outline import TURN, Corner, Outline
+from ..rounds import TURN, Round
+from .outline import Outline
 
 EXACT, SOON = 1e-15, 1e-20  # relative and absolute error, s, of a root
 
@@ -116,7 +117,7 @@ def _low_again(state: State, g_n: float, widest: float) -> tuple[float, float]:
     return (state.V_n - math.sqrt(over)) / g_n, (state.V_n + math.sqrt(over)) / g_n
 
 
-def _first_root(one: Corner, state: State, g_n: float, start: float, stop: float) -> float | None:
+def _first_root(one: Round, state: State, g_n: float, start: float, stop: float) -> float | None:
     """Return the first time between two, s, at which the gap under a corner closes."""
     spin = state.Omega
 
@@ -136,7 +137,7 @@ def _first_root(one: Corner, state: State, g_n: float, start: float, stop: float
     return None
 
 
-def _pieces(one: Corner, state: State, g_n: float, start: float, stop: float) -> list[float]:
+def _pieces(one: Round, state: State, g_n: float, start: float, stop: float) -> list[float]:
     """Return times, s, between which the second derivative of a gap does not change sign.
 
     It is -g_n - Omega^2 n, where n = rho cos(alpha + phi) is the height of the corner's centre over the mass

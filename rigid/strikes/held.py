@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Floats
+from ..rounds import Round
 from .flight import State
-from .outline import LEVEL_ANGLE, Corner
+from .outline import LEVEL_ANGLE
 
 TOLERANCE = 1e-12
 STUCK = 1e-12
@@ -63,7 +64,7 @@ class Pull:
     f: float
 
 
-def hold(one: Corner, state: State, pull: Pull, longest: float, slips: bool = False) -> Held:
+def hold(one: Round, state: State, pull: Pull, longest: float, slips: bool = False) -> Held:
     """Follow a contact with one corner that does not rebound, for a time, s, at most.
 
     With the normal and tangential acceleration a_n, a_t by the contact, the mass centre's height over the
@@ -80,7 +81,7 @@ def hold(one: Corner, state: State, pull: Pull, longest: float, slips: bool = Fa
     return _integrated(one, state, pull, sliding, longest)
 
 
-def _sliding(one: Corner, state: State, pull: Pull, slips: bool) -> float:
+def _sliding(one: Round, state: State, pull: Pull, slips: bool) -> float:
     """Return 1 or -1 for a contact that slides up or down the slope, 0 for one that sticks."""
     d_c, d_d = one.arms(state.alpha)
     w = state.V_t - d_d * state.Omega
@@ -93,7 +94,7 @@ def _sliding(one: Corner, state: State, pull: Pull, slips: bool) -> float:
     return -math.copysign(1.0, a_t)  # friction would have to hold it by more than it can
 
 
-def _forces(one: Corner, pull: Pull, sliding: float, alpha: float, spin: float) -> tuple[float, float, float]:
+def _forces(one: Round, pull: Pull, sliding: float, alpha: float, spin: float) -> tuple[float, float, float]:
     """Return a_n and a_t, m/s2, by the contact, and the change of the spin, rad/s2; nan where it jams."""
     (d_c, d_d), k2 = one.arms(alpha), pull.k2
     push = pull.g_n - (d_d - one.radius) * spin**2
@@ -112,7 +113,7 @@ def _forces(one: Corner, pull: Pull, sliding: float, alpha: float, spin: float) 
     return a_n, a_t, (a_n * d_c - a_t * d_d) / k2
 
 
-def _integrated(one: Corner, state: State, pull: Pull, sliding: float, longest: float) -> Held:
+def _integrated(one: Round, state: State, pull: Pull, sliding: float, longest: float) -> Held:
     """Integrate alpha, spin, V_t, way along the barrier, heat and the three impulses of the contact."""
     from scipy.integrate import solve_ivp
 
@@ -179,7 +180,7 @@ def _event(function: Callable[[float, Floats], float], way: float) -> Callable[[
     return event
 
 
-def _state(one: Corner, time: float, y: Floats, sliding: float) -> State:
+def _state(one: Round, time: float, y: Floats, sliding: float) -> State:
     """Return a state on the corner, whose velocities keep the contact."""
     alpha, spin, V_t, along = (float(v) for v in y[:4])
     d_c, d_d = one.arms(alpha)

@@ -70,6 +70,42 @@ def test_without_a_slope_the_axis_is_vertical():
     assert rattling().impact.vertical == 0.0
 
 
+@pytest.mark.parametrize(
+    "stated, fidelity, stages",
+    [
+        ("", "solid", (("solid", 1), ("rigid", None))),
+        ("", "modal", (("modal", None),)),
+        ("solid for the first 3, then modal", "solid", (("solid", 3), ("modal", None))),
+        ("solid for the first 3, then modal", "modal", (("modal", None),)),
+        ("solid for the first 3, then modal", "rigid", (("rigid", None),)),
+        ("modal for the first 5, then rigid", "solid", (("solid", 1), ("modal", 5), ("rigid", None))),
+        (
+            "solid for the first 1, then modal for the next 4, then rigid",
+            "solid",
+            (("solid", 1), ("modal", 4), ("rigid", None)),
+        ),
+    ],
+)
+def test_the_models_of_the_strikes_follow_the_statement(stated, fidelity, stages):
+    scene = rattling(strikes__fidelity=stated) if stated else rattling()
+    assert scene.strikes.stages(fidelity) == stages
+    assert scene.strikes.first == ("modal" if stated.startswith("modal") else "solid")
+    assert read_dict(to_dict(scene)) == scene
+
+
+@pytest.mark.parametrize(
+    "stated", ["rigid, then modal", "modal for the first 0, then rigid", "modal, then rigid", 3]
+)
+def test_other_statements_of_models_are_refused_with_examples(stated):
+    with pytest.raises(SceneError, match=r"strikes.fidelity.*solid for the first 3, then modal"):
+        rattling(strikes__fidelity=stated)
+
+
+def test_how_to_follow_a_body_is_refused_where_it_is_not_followed():
+    with pytest.raises(SceneError, match=r'strikes.*until = "rest"'):
+        simulate(rattling(strikes__fidelity="modal", impact__until="first"), "modal")
+
+
 def test_a_free_barrier_is_refused_with_the_remedy():
     with pytest.raises(SceneError, match=r"impact.until.*Leave out barrier.mass"):
         simulate(rattling(barrier__mass="1 kg"), "rigid")
@@ -181,20 +217,38 @@ def test_a_body_of_segments_takes_the_material_of_the_part_that_strikes():
 # what is certain of it
 
 
-def test_strikes_are_compared_over_the_interval_of_friction(floor):
+def test_the_first_strikes_are_counted_over_the_interval_of_friction(floor):
     s = floor.strikes
     assert 1 <= s.certain < len(s.each)
-    assert s.other_end_low <= s.other_end <= s.other_end_high
-    assert s.other_end_low < s.other_end_high
-    parts = []
-    surface = rattling().surface
-    for f in (surface.friction_low, surface.friction, surface.friction_high):
-        scene = rattling(surface__friction=f)
-        parts.append([one.part for one in simulate(scene, "rigid").strikes.each])
-    assert len({tuple(one[: s.certain]) for one in parts}) == 1
-    assert len({tuple(one[: s.certain + 1]) for one in parts}) > 1
+    assert s.other_end_low < s.other_end < s.other_end_high
+    surface, frictions = rattling().surface, []
+    for f in (surface.friction_low, surface.friction_high):
+        frictions.append(simulate(rattling(surface__friction=f), "rigid").strikes.each)
+    for number, one in enumerate(s.spread[: s.certain]):
+        assert sorted((one.tip, one.tail, one.other, one.none)) == [0, 0, 0, 64]
+        ends = sorted(each[number].approach for each in frictions)
+        assert ends[0] <= one.approach_low <= one.approach_high <= ends[1] * (1 + 1e-12)
+    after = s.spread[s.certain]
+    assert max(after.tip, after.tail, after.other, after.none) < 64
+    assert all(one.tip + one.tail + one.other + one.none == 64 for one in s.spread)
+
+
+def test_stated_errors_of_angle_and_speed_widen_what_is_told():
+    """An elastic ball that falls straight down: its time and speed are known from the speed alone."""
+    errors = {"strikes__speed_error": 0.1, "surface__friction": 0.5}
+    changes = {"restitution": 0.5, "impact__v_t": "0 m/s", "impact__until": "2 strikes"}
+    table = {"shape": "ball", "diameter": "20 mm", "material": "rod-steel"}
+    data = to_dict(rattling(**errors, **changes)) | {"projectile": table}
+    data.pop("measured", None)
+    s = simulate(read_dict(data), "rigid").strikes
+    first, second = s.spread
+    v = s.each[0].approach
+    assert (first.approach_low / v, first.approach_high / v) == pytest.approx((0.92, 1.08), abs=0.01)
+    assert second.time_high / s.each[1].time == pytest.approx(first.approach_high / v, rel=1e-9)
+    assert s.certain == 2
 
 
 def test_without_an_interval_nothing_is_compared():
     strikes = simulate(rattling(surface__friction=0.5), "rigid").strikes
     assert isinstance(strikes.certain, Unknown)
+    assert "strikes.angle_error" in strikes.certain.reason

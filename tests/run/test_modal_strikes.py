@@ -8,8 +8,9 @@ from scipy.integrate import solve_ivp
 
 from fem_impact.case.case import Case
 from fem_impact.outcome.limitation import texts
-from fem_impact.run.modal_strikes import _ModalCourse, modal_loss
+from fem_impact.run.modal_strikes import ModalCourse, modal_loss
 from fem_impact.run.simulate import simulate
+from fem_impact.run.strikes import Followed
 from fem_impact.scene.shipped import load, replace_all
 
 FLOOR = {"impact.slope": "0 deg", "impact.until": "rest"}
@@ -42,6 +43,18 @@ def test_more_strikes_than_modes_compute_are_those_of_a_rigid_body(monkeypatch):
     each = simulate(replace_all(load("quick"), FLOOR), "modal").strikes.each
     assert [one.fidelity for one in each[:4]] == ["modal", "modal", "modal", "rigid"]
     assert each[3].force is None
+
+
+def test_stages_that_a_scene_states_follow_each_other_and_the_change_is_told():
+    stated = FLOOR | {"strikes.fidelity": "modal for the first 3, then rigid"}
+    outcome = simulate(replace_all(load("quick"), stated), "modal")
+    s = outcome.strikes
+    assert [one.fidelity for one in s.each[:4]] == ["modal", "modal", "modal", "rigid"]
+    assert abs(s.residual) < 1e-10
+    told = next(text for text in texts(outcome.validity.limitations, "model") if "after the first 3" in text)
+    assert f"the modal model gave {s.each[2].e:.3g}" in told
+    alone = simulate(replace_all(load("quick"), stated), "rigid").strikes
+    assert {one.fidelity for one in alone.each} == {"rigid"}
 
 
 def test_the_books_of_the_rattle_close(rattle):
@@ -78,8 +91,8 @@ def test_a_strike_may_take_vibration_back_into_motion():
 def test_modes_in_flight_are_damped_oscillators():
     scene = replace_all(load("quick"), FLOOR)
     case = Case.of(scene, "modal")
-    course = _ModalCourse.of(case)
-    omega, eta, dt = course.result.rod.omega, course.loss, 3e-4
+    course = ModalCourse.at_first(case, Followed.of(case))
+    omega, eta, dt = course.rod.omega, course.loss, 3e-4
     q, rate = course._swung(dt)
     for k in (0, len(omega) - 1):
         exact = solve_ivp(
@@ -97,7 +110,7 @@ def test_modes_in_flight_are_damped_oscillators():
 def test_a_vibrating_rod_touches_where_its_lowest_place_meets_the_barrier():
     changes = FLOOR | {"impact.angle": "60 deg"}
     case = Case.of(replace_all(load("t4"), changes), "modal")
-    course = _ModalCourse.of(case)
+    course = ModalCourse.at_first(case, Followed.of(case))
     state = course._touch()
     dt = state.time - course.state.time
     assert course._gap(dt) == pytest.approx(0.0, abs=1e-10)

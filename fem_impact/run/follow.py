@@ -1,0 +1,137 @@
+"""The strikes that a scene asks for, one after the other, each by the model of its stage."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+from fem_impact.outcome.keys import Unknown, unknown
+from fem_impact.outcome.limitation import Limitation, limitations
+from fem_impact.outcome.strikes import StrikeRecord, Strikes
+from fem_impact.run.certain import with_spread
+from fem_impact.run.strikes import RULES, Followed
+from rigid.strikes import Finish, State
+
+if TYPE_CHECKING:
+    from fem_impact.case.case import Case
+    from fem_impact.outcome.record import Outcome
+    from fem_impact.run.modal_strikes import ModalCourse
+
+LATER = "Strikes of a rigid body after those of a finer model do not feel its vibration."
+STILL = "The vibration that finite elements left counts as damped before the next strike."
+CHANGE = (
+    "Strikes after the first {count} are those of the {model} model. Of strike {count} it gives "
+    "e = {new.e:.3g}, a spin after it of {new.Omega:.3g} rad/s and {new.after:.3g} J of motion; the "
+    "{old.fidelity} model gave {old.e:.3g}, {old.Omega:.3g} and {old.after:.3g}."
+)
+
+
+def with_strikes(case: Case, outcome: Outcome) -> Outcome:
+    """Return an outcome with the strikes that its scene asks for, from its first impact on."""
+    strikes, told = _strikes_of(case, outcome)
+    strikes = with_spread(case, strikes)
+    validity = replace(outcome.validity, limitations=(*outcome.validity.limitations, *told))
+    return replace(outcome, strikes=strikes, validity=validity)
+
+
+def _strikes_of(case: Case, outcome: Outcome) -> tuple[Strikes, tuple[Limitation, ...]]:
+    """Return the strikes of a case, whose first impact has an ``outcome``, and what limits trust in them."""
+    after = [outcome.motion.V_n, outcome.motion.V_t, outcome.motion.Omega]
+    lost = next((v for v in after if isinstance(v, Unknown)), None)
+    if lost is not None:
+        none = unknown(Strikes, f"the motion after the first impact is not known: {lost.reason}")
+        return replace(none, until=case.scene.impact.until), ()
+    course = _Course.of(case, outcome)
+    course.follow()
+    body = course.body
+    strikes = body.strikes(course.state, course.finish, *course.held)
+    return strikes, limitations("model", *course.told, *RULES, *body.doubts())
+
+
+@dataclass(eq=False)
+class _Course:
+    """A sequence of strikes as it grows, stage by stage.
+
+    Attributes
+    ----------
+    outcome : of the first impact
+    body : with the records of its strikes
+    state : its rigid motion after the last of them, at first before it touches
+    finish : how the last stage ended
+    modal : the vibration, once modes have computed a strike
+    told : what limits trust
+    """
+
+    case: Case
+    outcome: Outcome
+    body: Followed
+    state: State
+    finish: Finish = Finish.COUNTED
+    modal: ModalCourse | None = None
+    told: list[str] = field(default_factory=list)
+
+    @classmethod
+    def of(cls, case: Case, outcome: Outcome) -> _Course:
+        """Return the course before the first strike."""
+        body, seen = Followed.of(case), case.scene.relative
+        return cls(case, outcome, body, body.touching(seen.angle, seen.v_n, seen.v_t, seen.omega))
+
+    @property
+    def held(self) -> tuple[float, float]:
+        """Energy, J, that vibration holds, and that it has lost since the last strike."""
+        return (
+            (self.modal.vibration, self.modal.damped) if self.modal else (self.body.each[-1].vibration, 0.0)
+        )
+
+    def follow(self) -> None:
+        """Follow the body through all stages."""
+        models = {"rigid": self._by_rigid, "modal": self._by_modes, "solid": self._by_elements}
+        for model, count in self.case.scene.strikes.stages(self.case.fidelity):
+            done, self.body.upto = len(self.body.each), None
+            if self.finish is not Finish.COUNTED or self.body.missing == 0:
+                break
+            if done:
+                self._tell_change(model, done)
+            self.body.upto = None if count is None else done + count
+            models[model]()
+        if self.modal:
+            self.told += self.modal.told
+
+    def _by_rigid(self) -> None:
+        self.state, self.finish = self.body.go_on(self.state)
+        if self.modal:
+            self.modal.swing_on(self.state)
+
+    def _by_modes(self) -> None:
+        from fem_impact.run.modal_strikes import ModalCourse
+
+        if not self.body.each:
+            self.modal = ModalCourse.at_first(self.case, self.body)
+        else:
+            self.modal = ModalCourse.going_on(self.case, self.body, self.state)
+            self.modal.damped = self.body.each[-1].vibration
+        self.finish = self.modal.to_the_end()
+        self.state = self.modal.state
+
+    def _by_elements(self) -> None:
+        self.body.each.append(self.body.first_record(self.outcome))
+        self.state = self.body.after(self.outcome)
+
+    def _tell_change(self, model: str, count: int) -> None:
+        """Tell how far the model of the next strikes is from that of the last one, which both compute."""
+        old = self.body.each[-1]
+        self.told.append(CHANGE.format(model=model, count=count, old=old, new=self._again(model, old)))
+        self.told.append(LATER if model == "rigid" else STILL)
+
+    def _again(self, model: str, old: StrikeRecord) -> StrikeRecord:
+        """Return a strike as another model computes it, without vibration before it."""
+        body = Followed.of(self.case)
+        before = body.touching(old.alpha, old.v_n, old.v_t, old.omega)
+        body.upto = 1
+        if model == "rigid":
+            body.go_on(before)
+        else:
+            from fem_impact.run.modal_strikes import ModalCourse
+
+            ModalCourse.going_on(self.case, body, before).strike(before)
+        return body.each[0]
