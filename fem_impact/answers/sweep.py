@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import nullcontext
 from dataclasses import replace
@@ -14,10 +14,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fem_impact.answers.report import Request, Sheet, StudyReport, StudyResult, publish
-from fem_impact.answers.simulate import simulate
-from fem_impact.answers.sweep_results import COLUMNS, SHORT, Results, SweepRow, row_of
-from fem_impact.answers.vary import cases, in_unit, measure
-from fem_impact.errors import UsageError, did_you_mean
+from fem_impact.answers.simulate import compiled, simulate
+from fem_impact.answers.sweep_results import HIGH, SHORT, Results, SweepRow, require_columns, row_of
+from fem_impact.answers.vary import Variation, cases, in_unit, listed, measure
+from fem_impact.case.effects.heating import thermal
+from fem_impact.errors import FemImpactError, UsageError, did_you_mean
 from fem_impact.figures.panels import Panel, Picture, Series
 from fem_impact.files.atomic import make_directory
 from fem_impact.files.digests import checksum
@@ -27,10 +28,12 @@ from fem_impact.jobs.job import Failure, Job
 from fem_impact.jobs.run import run_jobs
 from fem_impact.jobs.store import STORE
 from fem_impact.options import FIDELITIES
-from fem_impact.outcome.record import KEY_TABLE
-from fem_impact.progress import NullMeter
+from fem_impact.outcome.record import KEY_TABLE, KEYS
+from fem_impact.progress import Notice, NullMeter
+from fem_impact.scene.shipped import named
 from fem_impact.scene.types import Scene
 from fem_impact.scene.write import digest
+from fem_impact.tables.table import Cell, Table
 
 if TYPE_CHECKING:
     from fem_impact.progress import ProgressMeter
@@ -51,29 +54,39 @@ EXPLAINED = (
     "tip that touches first; `fem-impact schema` explains every other column."
 )
 MOST_CURVES, MOST_ROWS = 8, 50
+UNMESHED = (
+    "accuracy = {:.3g} % is for finite elements: the {} model, which has no mesh to refine, leaves it out "
+    "(--fidelity solid keeps it)"
+)
 CELLS = ("tip_size_m", "barrier_size_m")
 
 
 def sweep(
     scene: Scene,
-    vary: Mapping[str, Sequence[Any]],
+    vary: Mapping[str, Iterable[Any]],
     fidelity: str = FIDELITY,
     out: str | Path | None = None,
     workers: int = 1,
     progress: ProgressMeter | None = None,
     executor: Executor | None = None,
+    columns: Sequence[str] = (),
+    line: str = "",
 ) -> Results:
     """Compute a scene with values varied in all combinations, each case as a run of its own would.
 
     Parameters
     ----------
     scene : Scene
-    vary : values by key, such as ``{"impact.angle": ["15 deg", "30 deg"], "surface.friction": [0.2, 0.4]}``
-    fidelity : rigid, modal or solid
-    out : directory with the store of the outcomes, from which a second call goes on; a temporary one if None
+    vary : values by key, such as ``{"impact.angle": ["15 deg", "30 deg"], "surface.friction": [0.2, 0.4]}``;
+        arrays of numpy and columns of pandas too
+    fidelity : rigid, modal or solid; an error that the scene asks for is that of finite elements alone
+    out : directory for sweep.csv, figures, summary.md, study.json, and the store of the outcomes, from which
+        a second call goes on; None: nothing is kept
     workers : runs at a time; more than one start processes, so call from under ``if __name__ == "__main__":``
-    progress : told after each run
+    progress : told before the runs which columns cannot be filled, and after each run
     executor : where the runs are done instead, such as what `fem_impact.jobs.executors.on_scheduler` lends
+    columns : numbers that the summary shows and draws; `SHORT` where none are named
+    line : the command line that made it, for the summary
 
     Returns
     -------
@@ -91,15 +104,50 @@ def sweep(
     if fidelity not in FIDELITIES:
         hint = did_you_mean(fidelity, FIDELITIES, f"Use one of {', '.join(FIDELITIES)}.")
         raise UsageError("is not a fidelity.", key="fidelity", value=fidelity, remedy=hint)
+    require_columns(columns)
+    vary, meter = listed(vary), progress or NullMeter()
+    asked = scene.accuracy.target
+    if asked is not None and fidelity != "solid":
+        meter(Notice(UNMESHED.format(100 * asked, fidelity)))
+        scene = replace(scene, accuracy=replace(scene.accuracy, target=None))
     every = cases(scene, vary)
+    for sentence in _unfilled(every, fidelity, columns or SHORT):
+        meter(Notice(sentence))
     jobs = [Job(case.name, case.scene, fidelity, way=simulate) for case in every if case.scene is not None]
     with tempfile.TemporaryDirectory() as spare:
         place = Path(out) if out is not None else Path(spare)
         make_directory(place)
         # an executor that is lent stays open
         with directory_lock(place), nullcontext(executor) if executor else _engine(workers) as engine:
-            results = run_jobs(jobs, place / STORE, progress or NullMeter(), engine)
-    return Results(dict(vary), tuple(row_of(case, results.get(case.name)) for case in every))
+            done = run_jobs(jobs, place / STORE, meter, engine)
+            results = Results(vary, tuple(row_of(case, done.get(case.name)) for case in every))
+            if out is not None:
+                publish_sweep(results, scene.title, line, place, columns, cases_digest(scene, vary, fidelity))
+    return results
+
+
+def _unfilled(every: Sequence[Variation], fidelity: str, columns: Sequence[str]) -> list[str]:
+    """Return which columns no case can fill, with the reason, as known before any run."""
+    scene = next(case.scene for case in every if case.scene is not None)
+    try:
+        reasons = _without_heat(scene) if fidelity == "solid" else simulate(scene, fidelity).reasons
+    except FemImpactError:
+        return []  # its row says why
+    groups: dict[str, list[str]] = {}
+    for name in columns:
+        if name in reasons:
+            groups.setdefault(reasons[name].rstrip("."), []).append(name)
+    return [f"not known in this sweep: {', '.join(names)} ({why})" for why, names in groups.items()]
+
+
+def _without_heat(scene: Scene) -> dict[str, str]:
+    """Return why finite elements do not know the heat of a scene's contact, by key; nothing if they do."""
+    case = compiled(scene, "solid")
+    if "contact-heating" in case.active:
+        return {}
+    missing = [f"heating.{key}" for key, value in thermal(case.bodies).items() if value is None]
+    why = f"state {', '.join(missing)}" if missing else "the contact-heating effect is off"
+    return {key.name: why for key in KEYS if key.path[0] == "heat"}
 
 
 def _engine(workers: int) -> Executor:
@@ -119,11 +167,6 @@ def publish_sweep(
 
     The table has every column; the summary shows ``columns``, `SHORT` where none are named. A report in
     ``out`` of a sweep with other ``cases`` (`cases_digest`) is set aside.
-
-    Raises
-    ------
-    UsageError
-        A name is no column of an outcome.
     """
     drawn = [name for name in columns if KEY_TABLE[name].kind == "number"] if columns else list(SHOWN)
     runs = {row.case.name: row.outcome or Failure(row.case.name, row.reason) for row in results}
@@ -146,13 +189,25 @@ def _sheet(results: Results, columns: Sequence[str]) -> Sheet:
     """Return the table of all columns; the summary shows the chosen ones, or those known of `SHORT`."""
     whole = results.table()
     names = columns or [name for name in SHORT if any(whole.texts(name))]
-    stopped = ["reason"] if any(whole.texts("reason")) else []
-    varied = [name for name in whole.names if name not in (*COLUMNS, "reason")]
-    places = [whole.names.index(name) for name in (*varied, *stopped, *names)]
-    rows = tuple(tuple(row[at] for at in places) for row in whole.rows[:MOST_ROWS])
-    brief = replace(whole, columns=tuple(whole.columns[at] for at in places), rows=rows)
+    stated = results.table(())
+    kept = [at for at, name in enumerate(stated.names) if name != "reason" or any(whole.texts("reason"))]
+    rows = [
+        [*(cells[at] for at in kept), *(_cell(row, name) for name in names)]
+        for row, cells in list(zip(results, stated.rows, strict=True))[:MOST_ROWS]
+    ]
+    brief = Table.of((*(stated.names[at] for at in kept), *names), rows)
     caption = "All cases" if len(whole) <= MOST_ROWS else f"The first {MOST_ROWS} of {len(whole)} cases"
     return Sheet("sweep", caption, whole, brief=brief)
+
+
+def _cell(row: SweepRow, name: str) -> Cell:
+    """Return a value of a row for a reader: a number with its half-width."""
+    if row.outcome is None or name in row.outcome.reasons:
+        return None
+    value = KEY_TABLE[name].of(row.outcome)
+    if isinstance(value, tuple):
+        return len(value)
+    return row.outcome.told(name) if isinstance(value, float) else value
 
 
 def _not_known(results: Results, columns: Sequence[str]) -> list[str]:
@@ -198,14 +253,14 @@ def _findings(results: Results, drawn: Sequence[str]) -> list[str]:
         values, label = results.numbers(name), SHOWN.get(name, name)
         if np.isfinite(values).any():
             ends = (int(np.nanargmin(values)), int(np.nanargmax(values)))
-            low, high = (f"{values[at]:.4g} ({_stated(results.rows[at])})" for at in ends)
+            low, high = (f"{_cell(results.rows[at], name)} ({_stated(results.rows[at])})" for at in ends)
             titled = f"{label[0].upper()}{label[1:]} (`{name}`)" if name in SHOWN else f"`{name}`"
             sentences.append(f"{titled}: from {low} to {high}.")
     return sentences
 
 
 def _stated(row: SweepRow, without: str = "") -> str:
-    return ", ".join(f"{key} = {value}" for key, value in row.case.values.items() if key != without)
+    return ", ".join(f"{key} = {named(value)}" for key, value in row.case.values.items() if key != without)
 
 
 def _pictures(results: Results, drawn: Sequence[str]) -> list[Picture]:
@@ -229,9 +284,12 @@ def _panel(
     results: Results, name: str, label: str, along: list[Any], curves: Mapping[str, list[int]]
 ) -> Panel:
     values, series = results.numbers(name), []
+    has_band = name + HIGH in results.table((name,)).names
+    bands = results.numbers(name + HIGH) - values if has_band else None
     for title, places in list(curves.items())[:MOST_CURVES]:
         known = [at for at in places if np.isfinite(values[at])]
         if known:
-            series.append(Series(title, [along[at] for at in known], values[known], "joined"))
+            band = None if bands is None else bands[known]
+            series.append(Series(title, [along[at] for at in known], values[known], "joined", band=band))
     title = SHOWN.get(name, name)
     return Panel(title, label, title, tuple(series))

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from fem_impact.answers.vary import Variation, in_unit, measure
 from fem_impact.errors import UsageError, did_you_mean
 from fem_impact.jobs.job import Failure
-from fem_impact.outcome.keys import or_none
+from fem_impact.outcome.keys import known, or_none
 from fem_impact.outcome.record import KEYS, Outcome
 from fem_impact.tables.table import Cell, Table
 
@@ -29,6 +29,8 @@ COLUMNS = tuple(
     and key.name not in ("schema_version", "effect_choices", "finished", "stopped_because")
 )
 """Columns of an outcome: every number, count, flag and text of it by its key; of its contacts, how many."""
+NUMBERS = frozenset(key.name for key in KEYS if key.kind == "number")
+"""Columns of floats."""
 UNIT = re.compile(r"_(over_E_0|rad_per_s|m_per_s|W_per_m2|[a-zA-Z]{1,2}2?)$")
 """End of a column's name that states its unit."""
 SHORT = (
@@ -38,8 +40,8 @@ SHORT = (
 """Columns that are shown unless others are chosen."""
 
 
-BAND = "_band"
-"""End of the name of a column with the half-widths of the column before it."""
+LOW, HIGH = "_low", "_high"
+"""Ends of the names of the columns with the ends of the band of the column before them."""
 
 
 def known_bands(outcome: Outcome) -> dict[str, float]:
@@ -142,7 +144,7 @@ class Results(Sequence[SweepRow]):
         """
         import numpy as np
 
-        plain = name.removesuffix(BAND)
+        plain = name.removesuffix(LOW).removesuffix(HIGH)
         table = self.table((plain,) if plain in COLUMNS else ())
         if name not in table.names:
             names = (*table.names, *COLUMNS)
@@ -153,8 +155,9 @@ class Results(Sequence[SweepRow]):
     def table(self, columns: Sequence[str] = COLUMNS) -> Table:
         """Return one row a case: values, unit in the header, how it ended, and columns of its outcome.
 
-        A number with a band is the limit of its levels, and its half-width stands in a column after it, named
-        with `BAND` at the end; None where it has none. Without any band there is no such column.
+        A number with a band is the limit of its levels, and the ends of its band stand in two columns after
+        it, named with `LOW` and `HIGH` at the end; None where it has none. Without any band there are no such
+        columns.
 
         Raises
         ------
@@ -163,7 +166,9 @@ class Results(Sequence[SweepRow]):
         """
         require_columns(columns)
         bands = {name for row in self.rows if row.outcome for name in known_bands(row.outcome)}
-        listed = [one for name in columns for one in (name, name + BAND) if one == name or name in bands]
+        listed = [
+            one for name in columns for one in (name, name + LOW, name + HIGH)[: 3 if name in bands else 1]
+        ]
         units = {key: measure(values[0])[1] for key, values in self.vary.items()}
         heads = [f"{key} [{unit}]" if unit else key for key, unit in units.items()]
         rows = [
@@ -179,6 +184,8 @@ class Results(Sequence[SweepRow]):
     def to_dataframe(self, columns: Sequence[str] = COLUMNS) -> pandas.DataFrame:
         """Return the table as a data frame of pandas, of every column of an outcome or of chosen ones.
 
+        A number that is not known is NaN.
+
         Raises
         ------
         UsageError
@@ -187,7 +194,9 @@ class Results(Sequence[SweepRow]):
         import pandas
 
         table = self.table(columns)
-        return pandas.DataFrame(list(table.rows), columns=[column.name for column in table.columns])
+        frame = pandas.DataFrame(list(table.rows), columns=[column.name for column in table.columns])
+        numbers = [name for name in frame if name.removesuffix(LOW).removesuffix(HIGH) in NUMBERS]
+        return frame.astype(dict.fromkeys(numbers, "float64"))
 
 
 def _same(stated: Any, wanted: Any) -> bool:
@@ -203,8 +212,9 @@ def _ended(row: SweepRow, columns: Sequence[str]) -> list[Cell]:
     if row.outcome is None:
         return [False, row.reason, *([None] * len(columns))]
     values, validity, bands = row.outcome.to_dict(), row.outcome.validity, known_bands(row.outcome)
-    values |= {name: or_none(row.outcome.estimate(name)[0]) for name in bands}
-    values |= {name + BAND: band for name, band in bands.items()}
+    for name, band in bands.items():
+        limit = values[name] = known(row.outcome.estimate(name)[0])
+        values |= {name + LOW: limit - band, name + HIGH: limit + band}
     reason = row.outcome.reasons.get("e_edge", "") if validity.finished else validity.stopped_because
     cells = (values.get(name) for name in columns)
     return [validity.finished, reason, *(len(cell) if isinstance(cell, list) else cell for cell in cells)]

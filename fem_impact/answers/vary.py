@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from itertools import product
+from pathlib import Path
 from typing import Any
 
 from fem_impact.errors import FemImpactError, SceneError, UsageError
-from fem_impact.scene.shipped import replace_all
+from fem_impact.scene.read import read_tables
+from fem_impact.scene.shipped import named, plain_value, replace_all
 from fem_impact.scene.types import Scene
 from fem_impact.scene.units import DIMENSIONS
 
@@ -25,6 +27,8 @@ _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 _RANGE = re.compile(rf"\s*({_NUMBER})\s*(?<!\.)\.\.(?!\.)\s*({_NUMBER})\s*:\s*({_NUMBER})\s*(\S.*)?")
 _QUANTITY = re.compile(rf"\s*({_NUMBER})\s*(\S.*)?")
 _EXAMPLE = "Write --vary impact.angle=15..60:5deg, or --vary projectile.length=0.2,0.4,0.8m."
+_TABLE = '--vary \'projectile.material={name = "mine", E = "70 GPa", nu = 0.33, rho = "2700 kg/m3"}\''
+OPEN, CLOSE = "[{", "]}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,10 +44,14 @@ class Variation:
 def read_vary(text: str) -> tuple[str, list[Any]]:
     """Return key and values of one ``key=values``: a list, or a range ``first..last:step``, with its unit.
 
+    A value of a list may be a table or a list in TOML, or ``@FILE``, the table that a TOML file holds.
+
     Raises
     ------
     UsageError
-        The text is of neither form, or the range has no step towards its end.
+        The text is of neither form, the range has no step towards its end, or there is no such file.
+    SceneError
+        The file cannot be read as TOML.
 
     Examples
     --------
@@ -51,6 +59,8 @@ def read_vary(text: str) -> tuple[str, list[Any]]:
     ('impact.angle', ['15 deg', '20 deg', '25 deg', '30 deg'])
     >>> read_vary("projectile.length=0.2,0.4m")
     ('projectile.length', ['0.2 m', '0.4 m'])
+    >>> read_vary('barrier.material=rod-steel,{name = "mine", E = "70 GPa"}')
+    ('barrier.material', ['rod-steel', {'name': 'mine', 'E': '70 GPa'}])
     """
     key, equals, listed = text.partition("=")
     if not equals or not key.strip() or not listed.strip():
@@ -90,13 +100,36 @@ def _no_step(match: re.Match[str], text: str, count: int) -> UsageError:
 
 def _listed(text: str) -> list[Any]:
     """Return the values of a list; a unit after the last one is that of those before without one."""
-    parts = [part.strip() for part in text.split(",")]
+    parts = [part.strip() for part in _split(text)]
     last = _QUANTITY.fullmatch(parts[-1])
     unit = last[2] if last else None
     return [_value(part, unit) for part in parts]
 
 
+def _split(text: str) -> Iterator[str]:
+    """Yield what stands between the commas outside brackets, braces and quotes."""
+    depth, quote, begin = 0, "", 0
+    for at, letter in enumerate(text):
+        if quote or letter in "\"'":
+            quote = "" if letter == quote else quote or letter
+        elif letter == "," and depth == 0:
+            yield text[begin:at]
+            begin = at + 1
+        else:
+            depth += (letter in OPEN) - (letter in CLOSE)
+    yield text[begin:]
+
+
 def _value(text: str, unit: str | None) -> Any:
+    if text.startswith("@"):
+        return read_tables(Path(text[1:]))
+    if text.startswith(tuple(OPEN)):
+        try:
+            return tomllib.loads(f"value = {text}")["value"]
+        except tomllib.TOMLDecodeError as error:
+            remedy = f"Write it as TOML in one pair of quotes, such as {_TABLE}."
+            problem = f"is no table or list in TOML ({error})."
+            raise UsageError(problem, key="--vary", value=text, remedy=remedy) from None
     match = _QUANTITY.fullmatch(text)
     if match is None:
         return text.strip("\"'")
@@ -113,7 +146,24 @@ def _plain(number: str) -> str:
     return f"{whole or '0'}.{rest or '0'}" if point else number
 
 
-def cases(scene: Scene, vary: Mapping[str, Sequence[Any]]) -> list[Variation]:
+def listed(vary: Mapping[str, Iterable[Any]]) -> dict[str, list[Any]]:
+    """Return values by key as lists of plain values, arrays of numpy and columns of pandas too.
+
+    Raises
+    ------
+    UsageError
+        One is a text, or no list at all.
+    """
+    found = {}
+    for key, values in vary.items():
+        if isinstance(values, str | Mapping) or not isinstance(values, Iterable):
+            remedy = "Give a list, such as ['15 deg', '30 deg']."
+            raise UsageError("is one value, not a list of them.", key=key, value=values, remedy=remedy)
+        found[key] = plain_value(list(values))
+    return found
+
+
+def cases(scene: Scene, vary: Mapping[str, Iterable[Any]]) -> list[Variation]:
     """Return the scenes of all combinations, the last key changing fastest; a refused one says why.
 
     Raises
@@ -121,11 +171,12 @@ def cases(scene: Scene, vary: Mapping[str, Sequence[Any]]) -> list[Variation]:
     SceneError, UsageError
         Nothing varies, there are too many combinations, or each of them is refused.
     """
-    _check(vary)
-    every = list(_made(scene, vary))
+    by_key = listed(vary)
+    _check(by_key)
+    every = list(_made(scene, by_key))
     if all(case.scene is None for case in every):
         which = "The only combination" if len(every) == 1 else f"Each of the {len(every)} combinations"
-        raise SceneError(f"{which} is refused: {every[0].refused}", key="--vary")
+        raise SceneError(f"{which} is refused: {every[0].refused}", key="vary")
     return every
 
 
@@ -133,10 +184,7 @@ def _check(vary: Mapping[str, Sequence[Any]]) -> None:
     if not vary or not all(vary.values()):
         raise UsageError("names no values.", key="vary", remedy=_EXAMPLE)
     count = 1
-    for key, values in vary.items():
-        if isinstance(values, str):
-            remedy = "Give a list, such as ['15 deg', '30 deg']."
-            raise UsageError("is one text, not a list of values.", key=key, value=values, remedy=remedy)
+    for values in vary.values():
         count *= len(values)
     if count > MOST:
         remedy = f"Give at most {MOST}, or several sweeps."
@@ -155,7 +203,7 @@ def _made(scene: Scene, vary: Mapping[str, Sequence[Any]]) -> Iterator[Variation
 def measure(value: Any) -> tuple[float | str, str]:
     """Return number and unit of a stated value, a text and no unit where it is none."""
     if isinstance(value, bool) or not isinstance(value, int | float | str):
-        return str(value), ""
+        return named(value), ""
     match = _QUANTITY.fullmatch(value) if isinstance(value, str) else None
     if isinstance(value, str):
         return (float(match[1]), (match[2] or "").strip()) if match else (value, "")
@@ -170,5 +218,5 @@ def in_unit(value: Any, unit: str) -> float | str:
     pairs = ((kind.unit(given), kind.unit(unit)) for kind in DIMENSIONS.values())
     of, to = next(((of, to) for of, to in pairs if of and to), (None, None))
     if of is None or to is None:
-        return str(value)
+        return named(value)
     return (of.to_si(repr(number)) - to.offset) / (to.to_si("1") - to.offset)

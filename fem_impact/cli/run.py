@@ -8,8 +8,9 @@ import sys
 from collections.abc import Mapping
 from contextlib import closing
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from fem_impact.answers.friction_spread import FrictionSpread, friction_spread
 from fem_impact.cli.options import Options, add_out, add_text, stated_budget
 from fem_impact.cli.parser import CommandParser
 from fem_impact.cli.paths import checked_out, shown_path, told_kept
@@ -19,7 +20,8 @@ from fem_impact.errors import RunError, SceneError, UsageError
 from fem_impact.files.run_directory import is_resumable
 from fem_impact.jobs.executors import cores
 from fem_impact.options import CHECKPOINT_INTERVAL, FIDELITIES, RunOptions
-from fem_impact.outcome.keys import Num, Unknown, or_none
+from fem_impact.outcome.keys import Key, Num, Unknown, or_none
+from fem_impact.outcome.limitation import WRONG_NUMBERS, by_weight
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.outcome.shares import ABOVE, ADDED, EnergyShare, above_modes, shares
 from fem_impact.progress import clock_text
@@ -27,7 +29,7 @@ from fem_impact.scene.impact import FIRST
 from fem_impact.scene.types import OWN, Scene
 from fem_impact.scene.write import digest
 from fem_impact.tables.table import Table
-from fem_impact.tables.text import with_band, wrapped
+from fem_impact.tables.text import plain, with_band, wrapped
 
 if TYPE_CHECKING:
     from fem_impact.case.case import Case
@@ -113,7 +115,9 @@ def run(options: Options) -> int:
     if options.json:
         sys.stdout.write(outcome.to_json().rstrip("\n") + "\n")
     else:
-        print_outcome(outcome, out, own_tests=(scene.measured or "").endswith(OWN))
+        own_tests = (scene.measured or "").endswith(OWN)
+        spread = friction_spread(scene, case.fidelity) if outcome.validity.finished else None
+        print_outcome(outcome, out, own_tests, spread)
         if scene.impact.until != FIRST:
             from fem_impact.cli.strikes import print_strikes
 
@@ -136,9 +140,9 @@ def _say_comparison(scene: Scene, outcome: Outcome, options: Options) -> None:
     if tests is None:
         return
     head = ("", "model", "measured", "SD", "")
-    numbers = "model", "measured_mean", "measured_sd"
+    numbers = "measured_mean", "measured_sd"
     rows = [
-        (row["quantity"], *(f"{row[key]:.4g}" for key in numbers), row["verdict"])
+        (row["quantity"], _told(row), *(f"{row[key]:.3g}" for key in numbers), row["verdict"])
         for row in (compare(outcome, tests) if outcome.validity.finished else [])
         if row["measured_mean"] is not None and row["model"] is not None
     ]
@@ -149,6 +153,12 @@ def _say_comparison(scene: Scene, outcome: Outcome, options: Options) -> None:
     else:
         sys.stdout.write(f"{measured}: no number that was measured is known of this run\n")
     sys.stdout.writelines(f"{line}\n" for one in doubtful_tests(scene) for line in wrapped(f"warning: {one}"))
+
+
+def _told(row: Mapping[str, Any]) -> str:
+    """Return the model's number of a comparison, with its half-width where it has one."""
+    value, band = row["model"], row["band"]
+    return plain(value) if band is None else with_band(value, band)
 
 
 def _one_mesh_refused(case: Case) -> str:
@@ -203,39 +213,50 @@ _BARRIER = (
 )
 HEATING = "friction + top 0.1 mm of both"
 """Label of the work that can heat the contact."""
-LEAST_SHOWN = 1e-3
-"""Half-width of a share in per cent, below which it is shown as so much."""
+SKIN, PEAK, FLASH = (KEY_TABLE[name] for name in ("W_skin_over_E_0", "peak_force_N", "flash_temperature_K"))
 _IF_ON = ("damping", "contact", "plate", "barrier")
 """Shares that are left out where they are not known: their effects are off."""
 
 
-def print_outcome(outcome: Outcome, out: Path, own_tests: bool = False) -> None:
+def print_outcome(
+    outcome: Outcome, out: Path, own_tests: bool = False, spread: FrictionSpread | None = None
+) -> None:
     """Print the motion after impact, where the energy went, and every limitation.
 
     ``own_tests``: the scene names tests of the user's own, with whose arms e is worked out if they state any.
+    ``spread``: what the interval of friction changes, told beside each number.
     """
     lines = [headed(outcome.provenance.scene_id, outcome.provenance.scene_title), ""]
+    spread = spread or FrictionSpread("", {})
+    lines += [*wrapped(spread.said), ""] if spread.said else []
     rows = _motion_rows(outcome, own_tests)
-    lines += [_motion_line(outcome, *row) for row in rows]
+    lines += [_motion_line(outcome, *row, spread) for row in rows]
+    wrong = [one for one in by_weight(outcome.validity.limitations) if one.kind in WRONG_NUMBERS]
+    lines += ["", *limitation_lines(wrong)] if wrong else []
     of = "" if isinstance(outcome.validity.mesh_limit, Unknown) else ", extrapolated from the levels"
     if not outcome.validity.finished:
         of = ", at the stop of this unfinished run"
     gravity = or_none(ADDED.of(outcome.energy))
-    added = "" if gravity is None else f", to which gravity added {100 * gravity:.3f} %"
+    added = "" if gravity is None else f", to which gravity added {outcome.told(ADDED.key, 100.0)} %"
     lines += ["", *wrapped(f"of the initial energy, E_0 = {_number(outcome.energy.E_0)} J{added}{of}:")]
     listed = _listed_shares(outcome)
-    lines += [_share_line(label, *share) for label, share in listed.items()]
-    lines += [_share_line("not accounted for", outcome.energy.residual)]
-    heating = outcome.estimate(KEY_TABLE["W_skin_over_E_0"])
-    lines += ["", _share_line(HEATING, *heating)]
+    lines += [
+        _line(label, outcome.told(key, 100.0), "%", spread.told(key, 100.0)) for label, key in listed.items()
+    ]
+    if above := above_modes(outcome.energy):
+        lines += [_line(ABOVE, plain(100 * above), "%")]
+    missing = 100 * outcome.energy.residual
+    lines += [_line("not accounted for", plain(missing, 2) if abs(missing) >= 1e-3 else "under 0.001", "%")]
+    lines += ["", _line(HEATING, outcome.told(SKIN, 100.0), "%", spread.told(SKIN, 100.0))]
+    lines += _contact_lines(outcome, spread)
     if or_none(outcome.energy.below_floor):
         floor = _value(outcome.energy.vibration_floor)
         lines += [f"  vibration is below its numerical floor (fraction {floor})"]
     lines += _accuracy_lines(outcome)
-    motion = {label: KEY_TABLE[name].of(outcome) for label, name, _ in rows}
-    known_or_not = {label: value for label, (value, _) in {**listed, HEATING: heating}.items()}
-    lines += _unknown_lines({**motion, **known_or_not})
-    lines += ["", *limitation_lines(outcome.validity.limitations)]
+    told = {**{label: KEY_TABLE[name] for label, name, _ in rows}, **listed, HEATING: SKIN}
+    lines += _unknown_lines({label: key.of(outcome) for label, key in told.items()})
+    others = [one for one in by_weight(outcome.validity.limitations) if one not in wrong]
+    lines += ["", *limitation_lines(others)]
     sys.stdout.write("\n".join([*lines, f"results: {out}"]) + "\n")
 
 
@@ -252,16 +273,14 @@ def _motion_rows(outcome: Outcome, own_tests: bool) -> list[tuple[str, str, str]
     return rows
 
 
-def _listed_shares(outcome: Outcome) -> dict[str, tuple[Num, float | None]]:
-    """Return the shares of E_0 in this run by their labels, with their half-widths where they have one."""
-    energy, listed = outcome.energy, dict[str, tuple[Num, float | None]]()
-    for share in shares("terminal"):
-        name, (value, band) = share.key.path[-1], outcome.estimate(share.key)
-        if not (isinstance(value, Unknown) and name in _IF_ON):
-            listed[_label(share, energy)] = value, band
-        if name == "vibration" and (above := above_modes(energy)):
-            listed[ABOVE] = above, None
-    return listed
+def _listed_shares(outcome: Outcome) -> dict[str, Key]:
+    """Return the keys of the listed shares of E_0 by their labels."""
+    energy = outcome.energy
+    return {
+        _label(share, energy): share.key
+        for share in shares("terminal")
+        if not (share.key.path[-1] in _IF_ON and isinstance(share.of(energy), Unknown))
+    }
 
 
 def _label(share: EnergyShare, energy: Energy) -> str:
@@ -297,23 +316,24 @@ def _percent(value: Num) -> str:
     return f"not known: {value.reason}" if isinstance(value, Unknown) else f"{100 * value:.2g} %"
 
 
-def _motion_line(outcome: Outcome, label: str, name: str, unit: str) -> str:
-    value, band = outcome.estimate(KEY_TABLE[name])
-    if isinstance(value, Unknown):
-        return f"  {label:<30} not known"
-    text = _number(value) if band is None else with_band(value, band)
-    return f"  {label:<30} {text} {unit}".rstrip()
+def _motion_line(outcome: Outcome, label: str, name: str, unit: str, spread: FrictionSpread) -> str:
+    key = KEY_TABLE[name]
+    return _line(label, outcome.told(key), unit, spread.told(key))
 
 
-def _share_line(label: str, share: Num, band: float | None = None) -> str:
-    """Return a line with a share of E_0 in per cent, and its half-width where it has one."""
-    if isinstance(share, Unknown):
-        text = f"{'not known':>11}"
-    elif band is None:
-        text = f"{100 * share:9.3f} %".replace("-0.000", " 0.000")
-    else:
-        text = f"{with_band(100 * share, max(100 * band, LEAST_SHOWN)):>19} %"
-    return f"  {label:<30} {text}"
+def _contact_lines(outcome: Outcome, spread: FrictionSpread) -> list[str]:
+    """Return peak force and flash temperature, of those that are known."""
+    return [
+        _line(label, outcome.told(key), key.unit, spread.told(key))
+        for label, key in (("peak force", PEAK), ("flash temperature", FLASH))
+        if not isinstance(key.of(outcome), Unknown)
+    ]
+
+
+def _line(label: str, told: str, unit: str, spread: str = "") -> str:
+    """Return a line of a number, its unit, and what friction changes of it."""
+    unit = "" if told == "not known" else unit
+    return f"  {label:<31}{told:>19} {unit:<6}{spread}".rstrip()
 
 
 def _unknown_lines(listed: Mapping[str, Num]) -> list[str]:

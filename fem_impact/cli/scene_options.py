@@ -8,6 +8,7 @@ import shlex
 import sys
 import tomllib
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fem_impact.cli.options import Options, add_text
@@ -62,7 +63,7 @@ def changed_scene(id_or_path: str, changes: Sequence[str]) -> Scene:
     scene = load_to_change(id_or_path, given)
     if not given:
         return scene
-    changed = replace_all(scene, given)
+    changed = replace_all(scene, given, "--set")
     shown = {key: value for key, value in given.items() if key.split(".")[0] in TITLED}
     if not shown or changed.title != scene.title:
         return changed
@@ -70,7 +71,7 @@ def changed_scene(id_or_path: str, changes: Sequence[str]) -> Scene:
 
 
 def read_changes(changes: Sequence[str]) -> dict[str, Any]:
-    """Return key and value of each ``key=value``; a value is TOML where it can be, text otherwise."""
+    """Return key and value of each ``key=value``: the table of ``@FILE``, TOML where it can be, else text."""
     read = [_change(text) for text in changes]
     keys = [key for key, _ in read]
     if twice := [key for key in keys if keys.count(key) > 1]:
@@ -85,6 +86,10 @@ def _change(change: str) -> tuple[str, Any]:
         raise UsageError("is not of the form key=value.", key="--set", value=change, remedy=remedy)
     if key == "effects" and not text.startswith("[") and "," in text:
         return key, [name.strip() for name in text.split(",")]
+    if text.startswith("@"):
+        from fem_impact.scene.read import read_tables
+
+        return key, read_tables(Path(text[1:]))
     try:
         return key, tomllib.loads(f"value = {text}")["value"] if "\n" not in text else text
     except (ValueError, RecursionError):

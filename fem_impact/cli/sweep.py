@@ -15,6 +15,7 @@ from fem_impact.cli.paths import checked_out, told_kept
 from fem_impact.cli.scene_options import add_scene, changed_scene, command_line, read_changes
 from fem_impact.cli.terminal import chosen_meter, print_json, print_markdown
 from fem_impact.errors import RunError, SceneError, UsageError
+from fem_impact.files.atomic import read_text
 from fem_impact.jobs.executors import cores, on_scheduler
 from fem_impact.options import FIDELITIES
 
@@ -45,8 +46,8 @@ def add_options(parser: CommandParser) -> None:
 
 
 def sweep(options: Options) -> int:
-    """Compute all combinations, write table, figures and report, and print the findings."""
-    from fem_impact.answers.sweep import FIDELITY, cases_digest, publish_sweep
+    """Compute all combinations, write table and figures, and print the findings."""
+    from fem_impact.answers.sweep import FIDELITY, cases_digest
     from fem_impact.answers.sweep import sweep as swept
     from fem_impact.answers.sweep_results import require_columns
     from fem_impact.answers.vary import cases
@@ -62,15 +63,14 @@ def sweep(options: Options) -> int:
     out = checked_out(options.out or Path("results") / f"sweep-{scene.id}-{about[:8]}")
     lent = on_scheduler(options.scheduler) if options.scheduler else nullcontext()
     with told_kept(out, options), closing(chosen_meter(options)) as meter, lent as executor:
-        results = swept(scene, vary, fidelity, out, workers, meter, executor)
         line = command_line(options, "sweep", "vary", "fidelity", "columns")
-        made = publish_sweep(results, scene.title, line, out, columns, about)
+        results = swept(scene, vary, fidelity, out, workers, meter, executor, columns, line)
     if options.json:
         print_json(_document(results, out))
     else:
-        print_markdown(made.text, options)
+        print_markdown(read_text(out / "summary.md"), options)
         sys.stdout.write(f"results: {out}\nreport: fem-impact report {out}\n")
-    return RunError.exit_code if made.document["failures"] else 0
+    return RunError.exit_code if any(row.outcome is None for row in results) else 0
 
 
 def _vary(options: Options) -> dict[str, list[Any]]:

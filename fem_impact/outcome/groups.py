@@ -114,10 +114,15 @@ class BarrierMotion:
     mass: Num = key("barrier_mass_kg", "kg", "Mass of a barrier that is free to move.")
     v_bn: float = key("v_bn_m_per_s", "m/s", "Normal velocity of the barrier at first contact.")
     v_bt: float = key("v_bt_m_per_s", "m/s", "Tangential velocity of the barrier at first contact.")
-    V_bn: Num = key("V_bn_m_per_s", "m/s", "Normal velocity of the barrier after the last separation.")
-    V_bt: Num = key("V_bt_m_per_s", "m/s", "Tangential velocity of the barrier after the last separation.")
+    V_bn: Num = key("V_bn_m_per_s", "m/s", "Normal velocity of the barrier after the last separation.", True)
+    V_bt: Num = key(
+        "V_bt_m_per_s", "m/s", "Tangential velocity of the barrier after the last separation.", True
+    )
     Omega_b: Num = key(
-        "barrier_Omega_rad_per_s", "rad/s", "Spin of a free barrier after the last separation, from n to t."
+        "barrier_Omega_rad_per_s",
+        "rad/s",
+        "Spin of a free barrier after the last separation, from n to t.",
+        True,
     )
     angular_momentum_error: Num = key(
         "angular_momentum_error",
@@ -340,9 +345,11 @@ class Contact:
 class Heat:
     """What friction heats the contact to."""
 
-    patch: Num = key("contact_patch_m2", "m2", "Largest true contact patch, whole contact.")
-    power: Num = key("friction_power_W", "W", "Highest friction power, whole contact.")
-    flux: Num = key("friction_flux_W_per_m2", "W/m2", "Highest friction power over the true contact patch.")
+    patch: Num = key("contact_patch_m2", "m2", "Largest true contact patch, whole contact.", True)
+    power: Num = key("friction_power_W", "W", "Highest friction power, whole contact.", True)
+    flux: Num = key(
+        "friction_flux_W_per_m2", "W/m2", "Highest friction power over the true contact patch.", True
+    )
     rise: Num = key(
         "flash_rise_K",
         "K",
@@ -355,7 +362,9 @@ class Heat:
     ignition: Num = key(
         "ignition_temperature_K", "K", "Temperature that the contact must not reach, from the scene."
     )
-    time_above_ignition: Num = key("time_above_ignition_s", "s", "How long the patch is hotter than that.")
+    time_above_ignition: Num = key(
+        "time_above_ignition_s", "s", "How long the patch is hotter than that.", True
+    )
     bound: Num = key(
         "flash_bound_K",
         "K",

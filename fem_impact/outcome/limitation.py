@@ -38,6 +38,17 @@ def limitations(kind: LimitationKind, *texts: str) -> tuple[Limitation, ...]:
     return tuple(Limitation(kind=kind, text=text) for text in texts if text)
 
 
+HEAVIEST_FIRST: tuple[LimitationKind, ...] = ("run", "resolution", "result", "input", "range", "model")
+"""Kinds in the order in which they are told: what makes a number wrong before what the model leaves out."""
+WRONG_NUMBERS = HEAVIEST_FIRST[:3]
+"""Kinds that may make the numbers of this run wrong, told beside them."""
+
+
+def by_weight(of: Iterable[Limitation]) -> tuple[Limitation, ...]:
+    """Return limitations with the heaviest first, those of a kind in the order given."""
+    return tuple(sorted(of, key=lambda one: HEAVIEST_FIRST.index(one.kind)))
+
+
 def texts(of: Iterable[Limitation], *kinds: LimitationKind) -> tuple[str, ...]:
     """Return the sentences of limitations, of some ``kinds`` or, where none is named, of all."""
     return tuple(one.text for one in of if not kinds or one.kind in kinds)

@@ -32,6 +32,7 @@ from fem_impact.outcome.keys import Key, Num, Unknown, keys_of, or_none
 from fem_impact.outcome.strikes import Strikes
 from fem_impact.plugins import providers
 from fem_impact.tables.table import Missing, Table
+from fem_impact.tables.text import plain, with_band
 from fem_impact.version import __version__
 
 PACKAGES = ("numpy", "scipy", "scikit-fem", "numba")
@@ -78,8 +79,8 @@ class Outcome:
         check_record(self.to_dict(), KEYS, "outcome")
 
     def __repr__(self) -> str:
-        numbers = self.restitution.edge.e, self.restitution.mu, self.motion.Omega, self.energy.vibration
-        e, mu, Omega, vibration = ("not known" if isinstance(v, Unknown) else f"{v:.4g}" for v in numbers)
+        names = ("e_edge", "mu", "Omega_rad_per_s", "E_vib_over_E_0")
+        e, mu, Omega, vibration = map(self.told, names)
         unit = "" if isinstance(self.motion.Omega, Unknown) else " rad/s"
         return (
             f"Outcome({self.provenance.scene_id!r}, {self.provenance.fidelity}: e={e}, "
@@ -92,7 +93,7 @@ class Outcome:
         rows = [
             (
                 f"`{key.name}`",
-                Missing(value.reason) if isinstance(value, Unknown) else value,
+                Missing(value.reason) if isinstance(value, Unknown) else self.told(key),
                 key.unit,
                 key.meaning,
             )
@@ -111,13 +112,29 @@ class Outcome:
 
         ``key`` is that of the number or its name, such as ``"e_edge"`` (UsageError: there is none).
         """
-        if isinstance(key, str):
-            if key not in KEY_TABLE:
-                hint = did_you_mean(key, KEY_TABLE, "The table of keys in the documentation lists them.")
-                raise UsageError("is no key of an outcome.", key="key", value=key, remedy=hint)
-            key = KEY_TABLE[key]
+        key = _key_named(key)
         limits, bands = (or_none(v) or {} for v in (self.validity.mesh_limit, self.validity.mesh_band))
         return (limits[key.name], bands[key.name]) if key.name in bands else (key.of(self), None)
+
+    def told(self, key: Key | str, scale: float = 1.0) -> str:
+        """Return a number times ``scale`` as text: with its half-width to the digits that hold.
+
+        One that may have a half-width and has none is told to three digits; "not known" stands for `Unknown`.
+
+        Examples
+        --------
+        >>> from fem_impact.run.simulate import simulate
+        >>> from fem_impact.scene.shipped import load
+        >>> simulate(load("t5b"), "rigid").told("mu")
+        '0.57'
+        """
+        key = _key_named(key)
+        value, band = self.estimate(key)
+        if isinstance(value, Unknown):
+            return "not known"
+        if band is not None:
+            return with_band(scale * value, scale * band)
+        return plain(scale * value, 3 if key.banded else 4)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the flat keys with plain JSON values."""
@@ -188,6 +205,16 @@ KEYS: tuple[Key, ...] = (
 
 KEY_TABLE: Mapping[str, Key] = MappingProxyType({key.name: key for key in KEYS})
 """The keys by name."""
+
+
+def _key_named(key: Key | str) -> Key:
+    """Return the key of a name. Raises UsageError where there is none."""
+    if isinstance(key, Key):
+        return key
+    if key not in KEY_TABLE:
+        hint = did_you_mean(key, KEY_TABLE, "The table of keys in the documentation lists them.")
+        raise UsageError("is no key of an outcome.", key="key", value=key, remedy=hint)
+    return KEY_TABLE[key]
 
 
 def utc_now() -> str:

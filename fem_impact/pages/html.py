@@ -20,7 +20,7 @@ from fem_impact.errors import MissingLibraryError, ResultError
 from fem_impact.figures.live import live
 from fem_impact.figures.panels import Picture
 from fem_impact.figures.still import draw
-from fem_impact.tables.table import Table, number
+from fem_impact.tables.table import Table
 from fem_impact.tables.text import markup
 
 
@@ -71,9 +71,9 @@ def table(rows: Table, caption: str = "", compact: bool = False) -> Markup:
     return Markup(rows.html(caption, compact))
 
 
-def with_band(value: float | None, width: float | None) -> str:
-    """Return a value with its half-width, where it has one."""
-    return number(value) if width is None or value is None else f"{number(value)} ± {width:.2g}"
+def signed(text: str) -> str:
+    """Return a number as text with the signs of a page: ± and a true minus."""
+    return text.replace("+-", "±").replace("-", "−")
 
 
 def versions_text(versions: Mapping[str, str]) -> str:

@@ -10,6 +10,7 @@ from math import cos, sin
 from pathlib import Path
 from typing import Any
 
+from fem_impact.answers.friction_spread import FrictionSpread, friction_spread
 from fem_impact.answers.verdict.assess import Verdict
 from fem_impact.answers.verdict.chart import chart
 from fem_impact.answers.verdict.screening import screening
@@ -34,7 +35,7 @@ from fem_impact.scene.inputs import inputs
 from fem_impact.scene.read import read_toml
 from fem_impact.scene.types import Scene
 from fem_impact.scene.write import to_toml
-from fem_impact.tables.table import Cell, Table, number
+from fem_impact.tables.table import DASH, Cell, Table, number
 from fem_impact.tables.text import markup
 from rigid.strikes import outline
 
@@ -138,9 +139,9 @@ def run_page(folder: Path) -> str:
     costs = sections.key_table(outcome, _keys("cost"))
     body = (
         *([screening_box(scene, str(folder / "scene.toml"))] if scene else ()),
-        _cards(outcome, rigid),
-        sections.film_section(folder),
+        _cards(outcome, rigid, friction_spread(scene, outcome.provenance.fidelity) if scene else None),
         sections.notices([outcome], sections.mismatches(outcome, folder)),
+        sections.film_section(folder),
         sections.beside_tests(outcome, scene, folder),
         html.section(f"Where the energy went{stop}", shares, _folded(outcome, "shares", ENERGY, rigid)),
         html.section("Motion", _folded(outcome, "velocities and impulse ratios", MOTION, rigid)),
@@ -214,27 +215,33 @@ def _heat(outcome: Outcome, rigid: Outcome | None) -> Markup:
     return html.details("Work, power and temperatures, and the bound for a safety case", shown)
 
 
-def _cards(outcome: Outcome, rigid: Outcome | None) -> Markup:
-    """Return numbers with their bands, or why they have none, and what rigid theory predicts."""
+def _cards(outcome: Outcome, rigid: Outcome | None, friction: FrictionSpread | None) -> Markup:
+    """Return numbers with their bands, or why they have none; what rigid theory predicts and f changes."""
     tests = outcome.restitution.tests_state_arms
     restitution = ("e, the tests' arms", "e_paper", "") if tests else ("e, the tip's arms", "e_edge", "")
     shown = [restitution, ("impulse ratio µ", "mu", ""), ("Ω", "Omega_rad_per_s", " rad/s")]
+    more = [("peak force", "peak_force_N", " N"), ("flash temperature", "flash_temperature_K", " K")]
+    shown += [one for one in more if not isinstance(KEY_TABLE[one[1]].of(outcome), Unknown)]
     bands, numbers = outcome.validity.mesh_band, []
     missing = bands.reason if isinstance(bands, Unknown) else ""
     for label, name, unit in shown:
         key = KEY_TABLE[name]
         predicted = None if rigid is None else or_none(key.of(rigid))
         theory = "" if predicted is None else f"rigid theory: {number(predicted)}{unit}"
-        note = ". ".join(sentence for sentence in (theory, missing) if sentence)
+        changed = friction.told(key) if friction else ""
+        by_friction = f"interval of f: {changed}" if changed else ""
+        note = ". ".join(sentence for sentence in (by_friction, theory, missing) if sentence)
         numbers.append(sections.card(label, sections.estimated(outcome, key) + unit, note))
     residual = number(outcome.energy.residual, 2)
     last = sections.card("ledger residual", residual, "of E₀; a run must stay below 1e-4")
-    return sections.cards(*numbers, _vibration_card(outcome, rigid), last)
+    said = friction.said.replace("At the right", "Interval of f") if friction else ""
+    all_cards = sections.cards(*numbers, _vibration_card(outcome, rigid), last)
+    return html.join([all_cards, html.paragraph(said, "note")])
 
 
 def _vibration_card(outcome: Outcome, rigid: Outcome | None) -> Markup:
     energy = outcome.energy
-    share, floor = or_none(outcome.estimate(KEY_TABLE["E_vib_over_E_0"])[0]), or_none(energy.vibration_floor)
+    share, floor = outcome.told("E_vib_over_E_0", 100.0), or_none(energy.vibration_floor)
     notes = (
         *(["rigid theory: none"] if rigid else []),
         *([] if floor is None else [f"less than {percent(floor)} is not resolved"]),
@@ -242,7 +249,8 @@ def _vibration_card(outcome: Outcome, rigid: Outcome | None) -> Markup:
     note = ". ".join(notes)
     if or_none(energy.below_floor):
         return sections.card("vibration, of E₀", "below floor", note)
-    return sections.card("vibration, of E₀", "–" if share is None else percent(share), note)
+    value = DASH if share == "not known" else f"{html.signed(share)} %"
+    return sections.card("vibration, of E₀", value, note)
 
 
 def _arms(outcome: Outcome) -> Markup:

@@ -16,7 +16,7 @@ from fem_impact.files.waves import read_waves
 from fem_impact.films.movement import FRAMES, QUICK_FRAMES, STUDY_FRAMES
 from fem_impact.outcome.groups import EffectChoice
 from fem_impact.outcome.keys import Key, Unknown, or_none
-from fem_impact.outcome.limitation import LimitationKind, texts
+from fem_impact.outcome.limitation import WRONG_NUMBERS, LimitationKind, texts
 from fem_impact.outcome.record import KEYS, Outcome
 from fem_impact.pages import html
 from fem_impact.pages.html import Markup
@@ -62,8 +62,8 @@ def _short_history(outcome: Outcome, folder: Path) -> list[str]:
 
 
 def notices(rows: list[Outcome], more: Sequence[str] = ()) -> Markup:
-    """Return a highlighted block of what `validity` does not list, nothing when there is none."""
-    warned = _sentences(rows, "input", "resolution", "result", "run")
+    """Return a highlighted block of what `validity` does not list, heaviest first; nothing if it is empty."""
+    warned = [one for kind in (*WRONG_NUMBERS, "input") for one in _sentences(rows, kind)]
     cut = [
         f"{row.provenance.scene_id} was cut off: {row.validity.stopped_because}"
         for row in rows
@@ -154,9 +154,11 @@ def cards(*shown: Markup) -> Markup:
 
 
 def estimated(outcome: Outcome, key: Key) -> str:
-    """Return a number as text; of two meshes the limit with its band."""
-    value, band = outcome.estimate(key)
-    return html.with_band(or_none(value), band)
+    """Return a number as text, with its half-width where it has one."""
+    value = key.of(outcome)
+    if isinstance(value, Unknown):
+        return DASH
+    return number(value) if isinstance(value, int) else html.signed(outcome.told(key))
 
 
 def contacts_table(outcome: Outcome) -> Markup:

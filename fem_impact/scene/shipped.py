@@ -84,13 +84,14 @@ def replace(scene: Scene, key: str, value: Any) -> Scene:
     return replace_all(scene, {key: value})
 
 
-def replace_all(scene: Scene, changes: Mapping[str, Any], source: str = "--set") -> Scene:
+def replace_all(scene: Scene, changes: Mapping[str, Any], source: str = "") -> Scene:
     """Return a checked copy of the scene with dotted keys changed, checked together at the end.
 
     A new angle leaves a fall a fall, see `restated`. A changed friction makes the surface custom, a changed
     property renames its material, and with a changed rod, impact or surface state the scene is not a
     measured set, which the title says: a name never stands for other values. Friction, materials, effects
-    and accuracy are the model's side and leave ``measured`` as it is. ``source`` is named in every message.
+    and accuracy are the model's side and leave ``measured`` as it is. A value may be a path or a number or
+    array of numpy. ``source`` is named in every message.
 
     Raises
     ------
@@ -107,7 +108,7 @@ def _changed(scene: Scene, changes: Mapping[str, Any]) -> dict[str, Any]:
     """Return the tables of a scene with its changes, and with what follows from them."""
     data = to_dict(scene)
     for key, value in changes.items():
-        _change(data, key, value)
+        _change(data, key, plain_value(value))
     if undone := next((key for key in changes if not _stands(data, key)), ""):
         remedy = "Keep one of the two."
         raise SceneError("is taken out again by another change of the same call.", key=undone, remedy=remedy)
@@ -125,6 +126,22 @@ def _changed(scene: Scene, changes: Mapping[str, Any]) -> dict[str, Any]:
     if LENGTH & changes.keys() and "projectile.bore" not in changes:
         _open_at_tail(data["projectile"], scene.projectile)
     return data
+
+
+def named(value: Any) -> str:
+    """Return a stated value as a text; a table that has a name, such as a material, is told by it."""
+    return str(value.get("name", value)) if isinstance(value, Mapping) else str(value)
+
+
+def plain_value(value: Any) -> Any:
+    """Return a value as a scene's file holds it: paths as texts, numbers and arrays of numpy as Python's."""
+    if isinstance(value, Mapping):
+        return {key: plain_value(part) for key, part in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain_value(part) for part in value]
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    return os.fspath(value) if isinstance(value, os.PathLike) else value
 
 
 def _stands(data: dict[str, Any], key: str) -> bool:
@@ -204,7 +221,7 @@ def _title(title: str, measured: str, changes: Mapping[str, Any]) -> str:
 def titled(title: str, changes: Mapping[str, Any]) -> str:
     """Return a title that tells changed values, after those that it tells already."""
     told = ", ".join(
-        f"another {key}" if isinstance(value, Mapping) else f"{key} = {value}"
+        f"another {key}" if isinstance(value, Mapping) and "name" not in value else f"{key} = {named(value)}"
         for key, value in changes.items()
     )
     return f"{title}{', ' if _CHANGED in title else _CHANGED}{told}"[:_LONGEST]

@@ -44,10 +44,10 @@ def rounded_up(value: float, places: int) -> str:
 
     Examples
     --------
-    >>> rounded_up(0.0034, 2), rounded_up(0.03, 2)
-    ('0.01', '0.03')
+    >>> rounded_up(0.0034, 2), rounded_up(0.03, 2), rounded_up(21240.0, -3)
+    ('0.01', '0.03', '22000')
     """
-    return f"{ceil(round(value * 10**places, 6)) / 10**places:.{places}f}"
+    return f"{ceil(round(value * 10.0**places, 6)) / 10.0**places:.{max(0, places)}f}"
 
 
 def with_band(value: float, band: float) -> str:
@@ -57,11 +57,16 @@ def with_band(value: float, band: float) -> str:
     --------
     >>> with_band(0.36787, 0.01801), with_band(16.54, 14.38), with_band(0.25, 0.0)
     ('0.368 +- 0.019', '17 +- 15', '0.25 +- 0')
+    >>> with_band(53737.0, 21240.0), with_band(5.43e9, 1.2e8)
+    ('54000 +- 22000', '(5.43 +- 0.12)e9')
     """
     if band <= 0.0:
         return f"{value:.4g} +- 0"
-    places = max(0, 1 - floor(log10(band)))
-    return f"{value:.{places}f} +- {rounded_up(band, places)}"
+    power = floor(log10(max(abs(value), band)))
+    if not -5 < power < 6:
+        return f"({with_band(value / 10.0**power, band / 10.0**power)})e{power}"
+    places = 1 - floor(log10(band))
+    return f"{round(value, places):.{max(0, places)}f} +- {rounded_up(band, places)}"
 
 
 GREEK = {"gamma": "γ", "mu": "µ", "Omega": "Ω", "alpha": "α", "tau": "τ"}

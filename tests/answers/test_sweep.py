@@ -1,6 +1,7 @@
 """Sweeps: values with units, cases that fail as rows, a store to go on from, tables and data frames."""
 
 import json
+import tomllib
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -31,6 +32,10 @@ from fem_impact.tables.table import read_csv
         ("accuracy.across=8,12", [8, 12]),
         ("projectile.tip=A,B", ["A", "B"]),
         ("projectile.mesh=../a.msh,b.msh", ["../a.msh", "b.msh"]),
+        (
+            'x={name = "a, b", E = "1 GPa"},rod-steel,[["0 mm", "6 mm"], [1, 2]]',
+            [{"name": "a, b", "E": "1 GPa"}, "rod-steel", [["0 mm", "6 mm"], [1, 2]]],
+        ),
     ],
 )
 def test_lists_and_ranges_with_units(text, values):
@@ -98,6 +103,89 @@ def test_a_value_that_is_set_and_varied_is_refused(cli, changes, vary, words):
     assert not Path("results").exists()
 
 
+BRONZE = 'name = "my-bronze"\nE = "110 GPa"\nnu = 0.34\nrho = "8800 kg/m3"\n'
+
+
+def test_own_materials_are_swept_from_files_and_tables_and_told_by_their_names(cli):
+    Path("bronze.toml").write_text(BRONZE, encoding="utf-8")
+    soft = '{name = "soft", E = "70 GPa", nu = 0.3, rho = "2700 kg/m3"}'
+    vary = f"barrier.material=plate-steel,@bronze.toml,{soft}"
+    line = (
+        "sweep",
+        "t5b",
+        "--vary",
+        vary,
+        "--fidelity",
+        "rigid",
+        "--workers",
+        "1",
+        "--out",
+        "here",
+        "--quiet",
+    )
+    code, out, _ = cli(*line)
+    assert code == 0 and "| case-00002 | my-bronze | yes |" in out
+    table = pandas.read_csv("here/sweep.csv")
+    assert list(table["barrier.material"]) == ["plate-steel", "my-bronze", "soft"]
+    own = replace(
+        load("t5b"), "barrier.material", {"name": "b", "E": "110 GPa", "nu": 0.34, "rho": "8800 kg/m3"}
+    )
+    assert table["e_edge"][1] == fem_impact.simulate(own, "rigid").restitution.edge.e
+    code, out, _ = cli("check", "t5b", "--set", "barrier.material=@bronze.toml")
+    assert code == 0 and "changed: barrier.material = my-bronze" in out
+    assert "there is no such file" in cli("sweep", "t5b", "--vary", "barrier.material=@brass.toml")[2]
+    assert "no table or list in TOML" in cli("sweep", "t5b", "--vary", "barrier.material={name = }")[2]
+
+
+def test_arrays_and_columns_are_values_as_lists_are():
+    scene, f = load("t5b"), [0.1, 0.2]
+    for values in (np.array(f), pandas.Series(f), tuple(f), iter(f)):
+        made = cases(scene, {"surface.friction": values})
+        assert [case.values["surface.friction"] for case in made] == f
+    bore = [["3 mm", np.str_("6 mm")], ["150 mm", "6 mm"]]
+    assert replace(load("tube"), "projectile.bore", np.array(bore)).projectile.bore[0] == (0.003, 0.006)
+
+
+def test_a_wanted_error_is_left_out_where_there_is_no_mesh_and_said_so():
+    told = []
+    scene = replace(load("quick"), "accuracy", "10 %")
+    (row,) = sweep(scene, {"surface.friction": [0.4]}, "rigid", progress=told.append)
+    assert row.outcome.restitution.mu > 0
+    assert "accuracy = 10 % is for finite elements" in told[0].text
+
+
+@pytest.mark.parametrize(
+    ("fidelity", "changes", "why"),
+    [
+        ("rigid", {}, "not known in this sweep: E_vib_over_E_0, W_skin_over_E_0"),
+        (
+            "solid",
+            {"effects": ["barrier-elastic", "friction"]},
+            "flash_temperature_K (the contact-heating effect is off)",
+        ),
+        ("solid", {"barrier.material": tomllib.loads(BRONZE)}, "state heating.barrier_conductivity"),
+    ],
+)
+def test_columns_that_cannot_be_filled_are_told_before_the_runs(fidelity, changes, why, monkeypatch):
+    told = []
+
+    def stop(*_):
+        raise RuntimeError("a run")
+
+    monkeypatch.setattr("fem_impact.answers.sweep.run_jobs", stop)
+    scene = replace_all(load("quick"), changes)
+    with pytest.raises(RuntimeError, match="a run"):
+        sweep(scene, {"surface.friction": [0.4]}, fidelity, progress=told.append)
+    assert why in told[-1].text
+
+
+def test_a_sweep_in_python_writes_what_the_command_does(tmp_path):
+    found = sweep(load("t5b"), {"impact.angle": ["30 deg", "45 deg"]}, "rigid", str(tmp_path / "here"))
+    written = {path.name for path in (tmp_path / "here").rglob("*")}
+    assert {"sweep.csv", "sweep.svg", "summary.md", "study.json", "store.sqlite"} <= written
+    assert len(read_csv(tmp_path / "here" / "sweep.csv")) == len(found)
+
+
 def test_all_combinations_with_the_last_key_changing_fastest():
     made = cases(load("t5b"), {"surface.friction": [0.1, 0.2], "projectile.length": ["80 mm", "90 mm"]})
     stated = [(case.scene.surface.friction, case.scene.projectile.length) for case in made]
@@ -117,10 +205,10 @@ def test_values_of_other_units_come_in_that_of_the_first():
         ({"lenght": ["15 mm"]}, "Did you mean projectile.length"),
         (
             {"projectile.length": ["1 mm", "2 mm"]},
-            "^--vary: Each of the 2 combinations is refused: projectile.shape: .* the body only 1 mm",
+            "^vary: Each of the 2 combinations is refused: projectile.shape: .* the body only 1 mm",
         ),
         ({}, "names no values"),
-        ({"impact.angle": "15 deg"}, "one text, not a list"),
+        ({"impact.angle": "15 deg"}, "one value, not a list"),
         ({"surface.friction": [0.1] * 400, "restitution": [0.1] * 400}, "160000 combinations"),
     ],
 )
@@ -325,6 +413,7 @@ def test_a_data_frame_holds_the_table(swept):
     assert isinstance(frame, pandas.DataFrame)
     assert list(frame["projectile.length [mm]"]) == [80.0, 1.0, 90.0] * 2
     assert frame["mu"].notna().sum() == 4
+    assert frame["flash_temperature_K"].dtype == frame["mu"].dtype == np.float64
     assert "W_radiated_over_E_0" in frame
     assert list(results.to_dataframe(["mu", "e_edge"]).columns)[-2:] == ["mu", "e_edge"]
 
@@ -508,9 +597,14 @@ def test_finite_elements_of_a_sweep_run_on_levels_and_have_bands(monkeypatch, tm
     scene = replace_all(load("quick"), {"save.frames": 0, "accuracy.levels": 2})
     found = sweep(scene, {"surface.friction": [0.2, 0.57]}, "solid", out=tmp_path)
     table = found.to_dataframe(["e_edge", "mu", "contacts"])
-    assert list(table.columns[4:]) == ["e_edge", "e_edge_band", "mu", "mu_band", "contacts"]
-    for row, e, band in zip(found, table["e_edge"], table["e_edge_band"], strict=True):
-        assert row.outcome.estimate("e_edge") == (e, band)
-        assert band > 0
-    assert found.numbers("mu_band") == pytest.approx(table["mu_band"])
-    assert "e_edge_band" not in sweep(scene, {"surface.friction": [0.2]}, "rigid").to_dataframe().columns
+    of_mu = ["mu", "mu_low", "mu_high"]
+    assert list(table.columns[4:]) == ["e_edge", "e_edge_low", "e_edge_high", *of_mu, "contacts"]
+    for row, e, low, high in zip(
+        found, *(table[f"e_edge{end}"] for end in ("", "_low", "_high")), strict=True
+    ):
+        limit, band = row.outcome.estimate("e_edge")
+        assert e == limit and band > 0
+        assert (low, high) == pytest.approx((e - band, e + band))
+    assert found.numbers("mu_low") == pytest.approx(table["mu_low"])
+    assert f"| {found[0].outcome.told('e_edge')} |" in (tmp_path / "summary.md").read_text(encoding="utf-8")
+    assert "e_edge_low" not in sweep(scene, {"surface.friction": [0.2]}, "rigid").to_dataframe().columns

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 import outcome_maker
 import pytest
 
+from fem_impact.answers.friction_spread import FrictionSpread
 from fem_impact.options import RunOptions
 from fem_impact.outcome.record import KEYS
 from fem_impact.progress import Progress
@@ -52,6 +53,7 @@ def stand(monkeypatch):
     table = types.SimpleNamespace(document=document, text="the table", runs=("sets/t4",))
     film = types.SimpleNamespace(path=None, notes=["install libegl1"])
     for place, result in {
+        "fem_impact.cli.run.friction_spread": lambda: FrictionSpread("", {}),
         "fem_impact.answers.simulate.simulate": lambda: stand.outcome or an_outcome(),
         "fem_impact.evidence.runner.run_study": lambda: table,
         "fem_impact.films.film.render": lambda: film,

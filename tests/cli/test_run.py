@@ -28,9 +28,9 @@ def test_run_passes_the_scene_and_prints_the_outcome(cli, stand):
 
 def test_an_own_rod_has_its_restitution_with_the_arms_of_its_tip(cli, stand):
     stand.outcome = stand.an_outcome(e_edge=0.296)
-    assert "restitution e (tip's arms)     0.296\n" in cli("run", "t5b", "--quiet")[1]
+    assert f"restitution e (tip's arms){0.296:>24}\n" in cli("run", "t5b", "--quiet")[1]
     stand.outcome = stand.an_outcome(e_edge=0.296, e_paper=0.327)
-    assert "restitution e (paper's arms)   0.327\n" in cli("run", "t5b", "--quiet")[1]
+    assert f"restitution e (paper's arms){0.327:>22}\n" in cli("run", "t5b", "--quiet")[1]
 
 
 def test_changes_are_applied_and_filed_apart(cli, stand):
@@ -205,13 +205,16 @@ def test_a_body_that_does_not_yield_has_no_residual_stress(cli, stand):
         E_locked_barrier_over_E_0=0.01,
     )
     out = cli("run", "t5b", "--quiet")[1]
-    assert "elastic energy left in rod         0.004 %" in out
-    assert "residual stress in barrier         1.000 %" in out
+    assert f"elastic energy left in rod{'0.004 %':>26}" in out
+    assert f"residual stress in barrier{'1 %':>26}" in out
 
 
-@pytest.mark.parametrize(("fidelity", "levels", "cases"), [("rigid", 3, 1), ("solid", 1, 1), ("solid", 3, 6)])
+@pytest.mark.parametrize(("fidelity", "levels", "cases"), [("rigid", 3, 4), ("solid", 1, 1), ("solid", 3, 6)])
 def test_the_command_compiles_its_scene_once(cli, monkeypatch, fidelity, levels, cases):
-    """For its expected time, run and screening; each level has its own, the first one once more."""
+    """For its expected time, run and screening; each level has its own, the first one once more.
+
+    A finished run has three at the frictions of its interval.
+    """
     made, compiled = [], Case.__init__
     monkeypatch.setattr(Case, "__init__", lambda *case: made.append(case) or compiled(*case))
     code, out, _ = cli(
@@ -232,8 +235,11 @@ def test_the_command_compiles_its_scene_once(cli, monkeypatch, fidelity, levels,
 
 def test_every_limitation_is_printed_after_its_kind(cli, stand):
     limited = [{"kind": "range", "text": "Too fast."}, {"kind": "result", "text": "It comes down again."}]
+    limited += [{"kind": "model", "text": "No waves."}]
     stand.outcome = stand.an_outcome(limitations=limited)
-    assert "\n\nrange: Too fast.\nresult: It comes down again.\n" in cli("run", "t5b", "--quiet")[1]
+    numbers, shares = cli("run", "t5b", "--quiet")[1].split("of the initial energy")
+    assert "\n\nresult: It comes down again.\n" in numbers  # beside what it may make wrong
+    assert "\n\nrange: Too fast.\nmodel: No waves.\n" in shares
 
 
 def test_vibration_above_the_modes_is_listed_so_that_the_shares_add_up(cli):
@@ -244,5 +250,5 @@ def test_vibration_above_the_modes_is_listed_so_that_the_shares_add_up(cli):
     listed = said.split("E_0 = ")[1].split("not accounted")[0]
     shares = [float(part) for part in re.findall(r"([\d.]+) %", listed)]
     assert "vibration above its modes" in said
-    assert sum(shares) == pytest.approx(100, abs=0.02)
+    assert sum(shares) == pytest.approx(100, abs=0.2)  # each is told to three digits
     assert "above its modes" not in cli("run", "quick", "--out", "inclined")[1]

@@ -34,11 +34,11 @@ def test_unknown_shares_give_each_reason_once_and_nothing_runs_over(cli, stand):
     out = cli("run", "t5b", "--quiet")[1]
     motion, shares = out.split("of the initial energy")
     sentences = " ".join(shares.split()).split("later strikes")[0]
-    assert "  restitution e (tip's arms)     not known\n" in motion
+    assert f"  restitution e (tip's arms){'not known':>24}\n" in motion
     assert sentences.count("not in the stand-in") == 1
     assert "residual stress in rod; residual stress in barrier; radiated;" in sentences
-    assert "  friction                          30.000 %\n" in shares
-    assert "  not accounted for                  0.000 %\n" in shares
+    assert f"  friction{'30 %':>44}\n" in shares
+    assert f"  not accounted for{'under 0.001 %':>35}\n" in shares
     assert max(map(len, out.splitlines())) < 80
 
 
@@ -59,9 +59,9 @@ def test_the_printed_shares_add_up_to_the_initial_energy_and_what_gravity_added(
         "impact.height=1 mm",
     )
     _, out, _ = cli(*line)
-    head, listed = re.search(r"of the initial energy, (.*):\n((?:  .* %\n|  .* not known\n)*)", out).groups()
+    head, listed = re.search(r"of the initial energy, (.*):\n((?:  .*\n)*)  not acc", out).groups()
     added = re.fullmatch(r"E_0 = \S+ J, to which gravity added (\S+) %", head)
-    shares = [float(line.split()[-2]) for line in listed.splitlines() if line.endswith("%")]
+    shares = [float(share) for share in re.findall(r"(\S+) %", listed)]
     assert float(added[1]) > 1 and "gravity" not in listed
-    assert sum(shares) == pytest.approx(100 + float(added[1]), abs=0.005)
+    assert sum(shares) == pytest.approx(100 + float(added[1]), abs=0.1)  # three digits
     assert "gravity added" not in cli("run", "t5b", "--fidelity", "modal")[1]

@@ -1,0 +1,82 @@
+"""What the interval of friction changes of a run's numbers, by the same or a quicker model."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from fem_impact.errors import FemImpactError
+from fem_impact.outcome.keys import Key, or_none
+from fem_impact.outcome.record import KEYS, Outcome
+from fem_impact.run.simulate import simulate
+from fem_impact.scene.impact import FIRST
+from fem_impact.scene.types import Scene
+
+LEAST = 1e-4
+"""Least change that is told, over the number."""
+
+
+@dataclass(frozen=True, slots=True)
+class FrictionSpread:
+    """What the ends of the interval of friction change.
+
+    Attributes
+    ----------
+    said : the interval and the model that computed its ends, as a sentence; empty where there is no interval
+    changes : least and largest change of each number from that at the stated friction, in its unit
+    """
+
+    said: str
+    changes: Mapping[Key, tuple[float, float]]
+
+    def told(self, key: Key, scale: float = 1.0) -> str:
+        """Return the changes of a number times ``scale`` as text, empty where there are none."""
+        low, high = self.changes.get(key, (0.0, 0.0))
+        return f"{scale * low:+.2g} to {scale * high:+.2g}" if high > low else ""
+
+
+def friction_spread(scene: Scene, fidelity: str) -> FrictionSpread:
+    """Return what the stated interval of friction changes of the first impact.
+
+    Finite elements take the reduced model for it, a body that has none the rigid theory.
+    """
+    surface = scene.surface
+    if surface.friction_low < surface.friction_high:
+        for model in ("rigid",) if fidelity == "rigid" else ("modal", "rigid"):
+            try:
+                stated, *ends = (
+                    _at(scene, f, model)
+                    for f in (surface.friction, surface.friction_low, surface.friction_high)
+                )
+            except FemImpactError:
+                continue
+            by = "rigid theory" if model == "rigid" else "the reduced model"
+            interval = (
+                f"f = {surface.friction_low:g} to {surface.friction_high:g} instead of {surface.friction:g}"
+            )
+            return FrictionSpread(f"At the right: what {interval} changes, by {by}.", _changes(stated, ends))
+    return FrictionSpread("", {})
+
+
+def _at(scene: Scene, friction: float, model: str) -> Outcome:
+    """Return the first impact at one friction."""
+    changed = replace(
+        scene,
+        surface=replace(scene.surface, friction=friction),
+        impact=replace(scene.impact, until=FIRST),
+        accuracy=replace(scene.accuracy, target=None),
+    )
+    return simulate(changed, model)
+
+
+def _changes(stated: Outcome, ends: list[Outcome]) -> dict[Key, tuple[float, float]]:
+    """Return least and largest change of each number that all three know."""
+    found = {}
+    for key in KEYS:
+        values = [or_none(key.of(one)) for one in (stated, *ends)] if key.banded else [None]
+        numbers = [value for value in values if value is not None]
+        if len(numbers) == 1 + len(ends):
+            low, high = min(numbers) - numbers[0], max(numbers) - numbers[0]
+            if high - low > LEAST * abs(numbers[0]):
+                found[key] = low, high
+    return found
