@@ -53,6 +53,12 @@ def pressed(record):
     return replace(record, sites=(site,), resolved=True)
 
 
+def fake_levels(scene, fidelity, options, case):
+    """A run of a level: the pilot, whose cells are the largest, resolves nothing."""
+    record = pressed(case.record)
+    return run(scene), replace(record, resolved=case.record.sites != ()) if not case.record.sites else record
+
+
 class Here(Executor):
     """Runs every job at once in this process and remembers it."""
 

@@ -19,7 +19,6 @@ from fem_impact.files.atomic import make_directory, read_text, write_text
 from fem_impact.files.digests import read_signed, signed
 from fem_impact.files.run_directory import set_aside
 from fem_impact.jobs.job import Failure
-from fem_impact.jobs.run import JobResults
 from fem_impact.outcome.keys import or_none
 from fem_impact.outcome.record import Outcome
 from fem_impact.outcome.shares import shares
@@ -79,7 +78,7 @@ class StudyResult:
     runs: tuple[Path, ...] = ()
 
 
-def failures_of(results: JobResults) -> list[dict[str, str]]:
+def failures_of(results: Mapping[str, object]) -> list[dict[str, str]]:
     """Return one row per failed job: its name and reason."""
     failed = (result for result in results.values() if isinstance(result, Failure))
     return [{"scene_id": failure.name, "error": failure.reason} for failure in failed]
@@ -149,7 +148,7 @@ class StudyReport:
     runs: Sequence[Path] = ()
 
 
-def publish(report: StudyReport, request: Request, results: JobResults) -> StudyResult:
+def publish(report: StudyReport, request: Request, results: Mapping[str, object]) -> StudyResult:
     """Write study.json, summary.md, a CSV a sheet, and each picture (SVG, PNG, JSON) with its data.
 
     A run, another study, or a report of other cases that stands in the directory is set aside.
@@ -193,7 +192,7 @@ def _stands_another(out: Path, document: Mapping[str, Any]) -> bool:
     return any(old.get(key, "") != document[key] for key in ("study", "about"))
 
 
-def _document(report: StudyReport, request: Request, results: JobResults) -> dict[str, Any]:
+def _document(report: StudyReport, request: Request, results: Mapping[str, object]) -> dict[str, Any]:
     drawn = {picture.name for picture in report.pictures}
     return {
         "schema": SCHEMA,

@@ -19,13 +19,12 @@ from fem_impact.tables.text import wrapped
 
 if TYPE_CHECKING:
     from fem_impact.answers.cost.measure import CostStudy
-    from fem_impact.answers.refine.levels import MeshLevel
     from fem_impact.answers.report import StudyReport
     from fem_impact.scene.types import Scene
 
 
 PAPER, PAGE = "paper", "report.html"
-STATED = ("target", "budget", "of", "finest")
+STATED = ("target", "budget", "of", "finer")
 """Options that the page repeats."""
 
 
@@ -38,13 +37,18 @@ def add_options(parser: CommandParser) -> None:
         (
             "--budget",
             "TIME",
-            "run no more than fits into so much wall time, such as '30 s', and name the best setting within "
-            "it; here one run at a time on one core, where `run` uses two",
+            "begin no level that so much wall time, such as '30 s', would not hold, and name the best "
+            "setting within it; here one run at a time on one core, where `run` uses two",
         ),
         ("--of", "NAMES", "quantities that count, as --of e,mu (default: e,E_vib)"),
-        ("--finest", "SIZE", "smallest element at the tip, such as '0.25 mm' (default: three meshes)"),
     ):
         add_text(parser, option, metavar, text)
+    parser.add_argument(
+        "--finer",
+        default="",
+        choices=("0", "1", "2", "3"),
+        help="levels beyond those of the default run (default: 1)",
+    )
     parser.add_argument("--stored", action="store_true", help="judge what has run so far, and run nothing")
     add_out(parser, "results/cost/SCENE")
     add_page(parser, "with SCENE = paper, also")
@@ -53,7 +57,6 @@ def add_options(parser: CommandParser) -> None:
 def cost(options: Options) -> int:
     """Run a scene with all settings and report errors, costs and the cheapest sufficient setting."""
     from fem_impact.answers.refine.quantities import chosen
-    from fem_impact.case.limits import require_turned
 
     asked = [name.strip() for name in options.of.split(",") if name.strip()]
     target = _share(options.target) if options.target else None
@@ -64,22 +67,18 @@ def cost(options: Options) -> int:
     if options.scene == PAPER:
         return _paper(options, chosen(asked))
     scene = changed_scene(options.scene, options.changes)
-    require_turned(scene.projectile, "a ladder of costs")
-    names, meshes = chosen(asked, scene), _meshes(scene, options.finest)
+    names = chosen(asked, scene)
     if options.page:
         raise UsageError("shows all sets.", key="--page", remedy="Leave it out, or run `cost paper`.")
     out = checked_out(options.out or Path("results") / "cost" / scene.id)
     from fem_impact.answers.cost.document import text_table
-    from fem_impact.answers.cost.judge import group_sentence
     from fem_impact.evidence.studies.cost_report import answers, scene_report
     from fem_impact.files.lock import directory_lock
 
     with directory_lock(out):
-        study = _measured(scene, out, options, meshes, budget or inf)
+        study = _measured(scene, out, options, budget or inf)
         notes = _write(options, study, scene_report(study, names, target, budget), out)
-    advice = [*_left_out(scene, meshes, study, budget), *answers(study, names, target, budget)]
-    if target is not None:
-        advice.append(group_sentence(study.settings, study.quantities, names, target))
+    advice = answers(study, names, target, budget)
     lines = [line for sentence in advice for line in wrapped(sentence)]
     paths = [f"all quantities: {out / 'cost.txt'}", f"page: {out / PAGE}", f"results: {out}"]
     text = "\n".join([*lines, "", text_table(study, names), "", *paths]) + "\n"
@@ -108,44 +107,15 @@ def _share(text: str) -> float:
         raise UsageError(error.problem, key="--target", value=text, remedy=error.remedy) from None
 
 
-def _meshes(scene: Scene, finest: str) -> list[MeshLevel]:
-    """Return the meshes whose tip elements are at least ``finest`` in size, without it the usual three."""
-    from fem_impact.answers.refine.levels import family, mesh_levels
-    from fem_impact.scene.units import option_quantity
-
-    if not finest:
-        return list(family(scene))
-    least, meshes = option_quantity(finest, "length", "--finest"), mesh_levels(scene)
-    sizes = [mesh.sizes(scene)[0] for mesh in meshes]
-    if least > sizes[:2][-1]:
-        raise UsageError(
-            "leaves fewer than two meshes.",
-            key="--finest",
-            value=finest,
-            remedy=f"Give at most {1e3 * sizes[:2][-1]:.3g} mm.",
-        )
-    return [mesh for mesh, size in zip(meshes, sizes, strict=True) if size >= least]
-
-
-def _measured(
-    scene: Scene, out: Path, options: Options, meshes: list[MeshLevel], budget: float = inf
-) -> CostStudy:
+def _measured(scene: Scene, out: Path, options: Options, budget: float = inf) -> CostStudy:
     """Run all settings, or with ``--stored`` read those that have run."""
-    from fem_impact.answers.cost.measure import judge_stored, measure
+    from fem_impact.answers.cost.measure import FINER, judge_stored, measure
 
+    finer = int(options.finer or FINER)
     with closing(chosen_meter(options)) as meter:
         if options.stored:
-            return judge_stored(scene, out, meter, meshes)
-        return measure(scene, out, meter, meshes, budget_s=budget)
-
-
-def _left_out(scene: Scene, meshes: list[MeshLevel], study: CostStudy, budget: float | None) -> list[str]:
-    """Return a sentence that names the settings that the budget left out."""
-    from fem_impact.answers.cost.settings import settings_of
-
-    done = {one.name for one in study.settings} | {failure["setting"] for failure in study.failures}
-    missing = [setting.name for setting in settings_of(scene, meshes) if setting.name not in done]
-    return [f"Not run within {budget:.3g} s: {', '.join(missing)}."] if budget and missing else []
+            return judge_stored(scene, out, meter, finer, budget)
+        return measure(scene, out, meter, finer, budget_s=budget)
 
 
 def _paper(options: Options, names: tuple[str, ...]) -> int:
@@ -160,12 +130,11 @@ def _paper(options: Options, names: tuple[str, ...]) -> int:
 
     stated_page = asked_page(options)
     scenes = {name: changed_scene(name, options.changes) for name in MEASURED_SETS}
-    families = {name: _meshes(scene, options.finest) for name, scene in scenes.items()}
     out = checked_out(options.out or Path("results") / "cost" / PAPER)
     costs: dict[str, CostStudy] = {}
     with directory_lock(out):
         for name, scene in scenes.items():
-            costs[name] = _measured(scene, out / name, options, families[name])
+            costs[name] = _measured(scene, out / name, options)
             _write(options, costs[name], scene_report(costs[name], names), out / name, name)
         document = summarise(costs)
         write_text(out / "summary.json", json.dumps(document, indent=1, allow_nan=False) + "\n")

@@ -52,40 +52,39 @@ class Study:
 STUDIES = {
     "sets": Study(
         "the published series of tests beside the model",
-        "Each of the thirteen measured sets by finite elements on two meshes, with the grid of the plate at "
-        "two places, and again with each uncertain input changed. It compares e, mu, Omega, the velocities "
+        "Each of the thirteen measured sets by finite elements on levels of meshes, with the grid of the plate "
+        "at two places, and on one mesh again with each uncertain input changed. It compares e, mu, Omega, the velocities "
         "and the energies after impact with the tests, says which agree and what could explain those that do "
         "not, and shows where the energy went. A scene file that names your own tests (the key measured) is "
         "taken like a set.",
-        "130 runs, some 10 min",
-        "three sets, one place of the grid: 6 runs, under 1 min",
-        130,
-        6,
+        "104 runs, some 10 min",
+        "three sets, one place of the grid: 3 runs, under 1 min",
+        104,
+        3,
         "all thirteen",
     ),
     "convergence": Study(
         "their limits for vanishing elements",
-        "Measured sets on three meshes, each at several places of the plate's grid, and what "
-        "vanishing elements would give: the limit of each quantity, its order, and the band of two meshes "
+        "Measured sets on the levels of a run and a finer one, at two places of the plate's grid, and what "
+        "vanishing elements would give: the limit of each quantity, its order, and the bands of fewer levels "
         "beside it.",
-        "40 runs, some 15 min",
-        "a coarser mesh for the finest, one place of the grid: 12 runs, some 2 min",
-        40,
-        12,
+        "4 sets with all their levels, some 6 min",
+        "the levels of a default run: 4 sets, some 1 min",
+        4,
+        4,
         "t3-machined, t3-contaminated, t5b, t6-17",
     ),
     "gamma": Study(
         "vibration against slenderness",
         "Which share of the energy vibration takes, against the slenderness gamma from 10 to 120: steel rods "
         "of 19 mm at 45 degrees and 2.1 m/s, elastic and yielding, for every state of the surface; then "
-        "other diameters, speeds and angles, and strength from hardness. Finite elements on two meshes, "
+        "other diameters, speeds and angles, and strength from hardness. Finite elements on levels, "
         "three measured sets and the reduced model beside them. It says what the published limit, gamma = "
         "26.45, means.",
-        "1407 runs, most with finite elements, some 50 min; where the band is wide a finer mesh follows, as "
-        "at half of the points of the full study, and at a fifth of them a second: some 2.5 h in all",
-        "five rods on coarse elements: 61 runs, some 2 min",
-        1407,
-        61,
+        "870 runs, 358 of them finite elements, some 60 min",
+        "five rods, one place of the grid: 48 runs, some 3 min",
+        870,
+        48,
     ),
     "criterion": Study(
         "when a rod may be called rigid",
@@ -93,10 +92,10 @@ STUDIES = {
         "cannot: by how much rigid theory is wrong, against the slenderness gamma and against the ratio of "
         "bending period to contact time, T1/tau. It says where the published limit and its exponent come "
         "from.",
-        "2629 runs, 680 of them finite elements, some 70 min",
-        "a few rods and angles: 195 runs, under 1 min",
-        2629,
-        195,
+        "2035 runs, 86 of them levels of finite elements, some 20 min",
+        "a few rods and angles: 182 runs, some 1 min",
+        2035,
+        182,
     ),
     "effects": Study(
         "effects chosen by the scene beside everything on, and what each costs",
@@ -149,20 +148,20 @@ STUDIES = {
         "The caption of Table 3 says tip B. Which arms of the contact point fit the rotation of its rows by "
         "momentum alone, and what finite elements give with either tip, beside the tests. Tip A is shown "
         "beside the measured sets and counted in none of their numbers.",
-        "24 runs, some 5 min",
-        "the machined rod on coarse elements: 4 runs, under 1 min",
-        24,
-        4,
+        "6 runs, some 2 min",
+        "the machined rod, one place of the grid: 2 runs, under 1 min",
+        6,
+        2,
     ),
     "validation": Study(
         "errors of the model with every uncertainty (ASME V&V 20), and what causes them",
         "The difference between model and tests of each measured set beside the standard uncertainties of "
         "mesh, inputs and measurement, and which input causes how much of it. All inputs vary together, in "
         "64 runs a set.",
-        "884 runs, some 50 min",
-        "t5b with 16 runs a set: 18 runs, under 1 min",
-        884,
-        18,
+        "845 runs, some 50 min",
+        "t5b with 16 runs a set: 17 runs, under 1 min",
+        845,
+        17,
         "all thirteen",
     ),
 }

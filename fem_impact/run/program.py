@@ -21,8 +21,9 @@ if TYPE_CHECKING:
 ROOMS = (
     *("fem_impact/scene", "fem_impact/physics", "fem_impact/case", "fem_impact/fem", "fem_impact/solid"),
     *("fem_impact/modal", "fem_impact/run", "fem_impact/outcome", "meshes", "rigid"),
+    *("fem_impact/answers/refine", "fem_impact/answers/simulate.py"),
 )
-"""Packages whose code determines the numbers of an outcome."""
+"""Packages and modules whose code determines the numbers of an outcome."""
 DATA = ("fem_impact/scene/data", "fem_impact/case/data/summary.json", "rigid/experiments/data")
 """Files, and folders of files, that this code reads (expected times of effects are no result)."""
 KINDS = (".toml", ".csv", ".json")

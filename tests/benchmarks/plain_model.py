@@ -19,9 +19,11 @@ import sys
 from math import exp, log
 from pathlib import Path
 
-from fem_impact.answers.refine.extrapolate import MeshRuns, target_limits
-from fem_impact.answers.refine.levels import FAMILY, FEW_OFFSETS, GRID_OFFSETS, MeshLevel
+from fem_impact.answers.refine.chain import GRID_OFFSETS
+from fem_impact.answers.refine.extrapolate import MeshRuns, quantity_limits
+from fem_impact.answers.refine.level_meshes import LevelMeshes
 from fem_impact.answers.refine.quantities import QUANTITIES, TARGETED
+from fem_impact.case.case import Case
 from fem_impact.outcome.record import Outcome
 from fem_impact.scene.shipped import load
 
@@ -29,20 +31,24 @@ PRESENT = Path(__file__).parents[2]
 SETS = ("t5b", "t3-machined", "t6-17")
 # what the plain model has: its block always radiates, and nothing hardens with the rate
 EFFECTS = "vibration, friction, rod-plasticity, barrier-elastoplastic, gravity, large-rotation, radiation"
-COMPARED = (MeshLevel(-1), MeshLevel(0))
+FINER = (-1, 0, 1)  # splits of the meshes beyond those that resolve the estimated contact
+COMPARED = FINER[:2]
 NAMED = {quantity.name: quantity for quantity in QUANTITIES}
 
 
-def outcome(model, name, mesh, out, place=0.0):
+def outcome(model, name, finer, out, place=0.0):
     """Return the file of a set's outcome, made by one model in its own process unless it lies in ``out``."""
     kind = "present" if model == PRESENT else "plain"
-    folder = out / f"{kind}-{name}-{mesh.finer}{f'-at-{place:g}' if place else ''}"
+    folder = out / f"{kind}-{name}-{finer}{f'-at-{place:g}' if place else ''}"
     if not (folder / "outcome.json").exists():
-        tip, barrier = (f"{size * 1e3:.9g} mm" for size in mesh.sizes(load(name)))
-        changes = [f"accuracy.across={mesh.across}", f"accuracy.tip_size={tip}", "save.frames=0"]
+        meshes = LevelMeshes(Case(load(name)))
+        stated = meshes.at(meshes.usual + finer).accuracy
+        tip, barrier = (f"{size * 1e3:.9g} mm" for size in (stated.tip_size, stated.barrier_size))
+        changes = [f"accuracy.across={stated.across}", f"accuracy.tip_size={tip}", "save.frames=0"]
         if model == PRESENT:
             changes += [
                 f"effects={EFFECTS}",
+                "accuracy.levels=1",
                 f"accuracy.grid_shift={place}",
                 f"accuracy.barrier_size={barrier}",
             ]
@@ -74,9 +80,10 @@ def off(run, quantity, limit):
 
 def told(name, plain, out):
     """Return the lines of one set."""
-    paths = [[outcome(PRESENT, name, mesh, out, at) for at in GRID_OFFSETS[:FEW_OFFSETS]] for mesh in FAMILY]
-    limits = target_limits([MeshRuns.of(map(Outcome.read, of_mesh)) for of_mesh in paths])
-    files = {model: [outcome(model, name, mesh, out) for mesh in COMPARED] for model in (plain, PRESENT)}
+    paths = [[outcome(PRESENT, name, finer, out, at) for at in GRID_OFFSETS] for finer in FINER]
+    runs = [[Outcome.read(path) for path in of_mesh] for of_mesh in paths]
+    limits = quantity_limits([MeshRuns(of_mesh[0].cost.tip_size, of_mesh) for of_mesh in runs])
+    files = {model: [outcome(model, name, finer, out) for finer in COMPARED] for model in (plain, PRESENT)}
     runs = {model: [json.loads(path.read_text("utf-8")) for path in paths] for model, paths in files.items()}
     lines = []
     for quantity in TARGETED:
@@ -86,7 +93,7 @@ def told(name, plain, out):
         cells = [f"{100 * found:.1f} %, {cpu:.1f} s" for pair in pairs for found, cpu in pair]
         same = " / ".join(f"{theirs[1] / ours[1]:.2g}" for theirs, ours in pairs)
         equal = at_equal_error(points[plain], points[PRESENT])
-        known = f"{limit.value:.4f} ± {limit.uncertainty:.1g}"
+        known = f"{limit.value:.4f} ± {limit.band:.1g}"
         lines.append(f"| {name} | {quantity} | {known} | {' | '.join(cells)} | {same} | {equal} |")
     return lines
 

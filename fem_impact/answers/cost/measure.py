@@ -1,8 +1,8 @@
-"""Measurement of the cost of one scene: its settings are run, stored and judged."""
+"""Measurement of the cost of one scene: its models and levels are run, stored and judged."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from contextlib import nullcontext
 from dataclasses import asdict, dataclass, replace
@@ -10,30 +10,38 @@ from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fem_impact.answers.cost.judge import Judged, front, judge
-from fem_impact.answers.cost.settings import Setting, settings_of
-from fem_impact.answers.refine.extrapolate import ExtrapolatedValue, MeshRuns, target_limits
-from fem_impact.answers.refine.levels import MeshLevel, family, on_mesh
+from fem_impact.answers.cost.judge import Judged, SettingKind, front, judged_levels, judged_model
+from fem_impact.answers.refine.extrapolate import MeshRuns, QuantityLimit, quantity_limits
 from fem_impact.answers.refine.quantities import QUANTITIES
+from fem_impact.answers.refine.work import Levels, LevelsJob
 from fem_impact.case.case import Case
-from fem_impact.errors import RunError, UsageError
-from fem_impact.fem.kernels import compiled_before
+from fem_impact.errors import RunError
 from fem_impact.files.lock import directory_lock
 from fem_impact.jobs.executors import LocalProcesses
-from fem_impact.jobs.job import Failure, Job, compute
-from fem_impact.jobs.run import JobResults, run_jobs, stored_results
+from fem_impact.jobs.job import Failure, Job, Work
+from fem_impact.jobs.run import run_jobs, stored_results
 from fem_impact.jobs.store import STORE, Store
 from fem_impact.outcome.record import Outcome, installed_versions, utc_now
+from fem_impact.scene.shipped import replace_all
 from fem_impact.scene.write import to_dict
-from fem_impact.tables.text import plain
 
 if TYPE_CHECKING:
     from fem_impact.progress import ProgressMeter
     from fem_impact.scene.types import Scene
 
-
-SCHEMA = "fem-impact/cost/5"
-BRIEF = 5e-6  # s, end of the run that compiles the kernels: within the first contact
+SCHEMA = "fem-impact/cost/6"
+FINER = 1  # levels beyond those of the default run
+PLACES: Mapping[int, SettingKind] = {1: "levels", 2: "two places"}
+"""Places of the barrier's grid at which levels run."""
+VARIANTS: dict[str, dict[str, Any]] = {
+    "without savings": {"accuracy.mass_scaling": 1, "accuracy.fine_zone": "even"},
+    "fully integrated": {"accuracy.element": "full"},
+    "mean dilatation": {"accuracy.element": "bbar"},
+    "with half the default step": {"accuracy.step": 0.45},
+}
+"""Changes of the default run, whose effect on its numbers is measured, beside that of `STIFF`."""
+STIFF = "without vibration"
+CostRuns = Mapping[str, "Outcome | Levels | Failure"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,33 +51,19 @@ class CostStudy:
     Attributes
     ----------
     scene : Scene
-    limits : limit of each quantity that the finite-element runs give
-    settings : judged, in order of CPU time
-    failures : settings without a result, with the reason
-    runs : their results by the name of the run
+    limits : of each quantity, those of the levels that tell the narrowest band of e
+    levels : by number of places, as they ran
+    settings : judged, in order of processor time
+    failures : jobs without a result, with the reason
+    runs : results by the name of the job
     """
 
     scene: Scene
-    limits: dict[str, ExtrapolatedValue]
+    limits: dict[str, QuantityLimit]
+    levels: dict[int, Levels]
     settings: list[Judged]
     failures: list[dict[str, str]]
-    runs: JobResults
-
-    @property
-    def quantities(self) -> dict[str, dict[str, Any]]:
-        """Return unit, limit, order, uncertainty and scale of every quantity."""
-        return {
-            quantity.name: {
-                "unit": quantity.unit,
-                "limit": limit.value,
-                "order": limit.order,
-                "uncertainty": limit.uncertainty,
-                "scatter": limit.scatter,
-                "scale": limit.scale,
-            }
-            for quantity in QUANTITIES
-            if (limit := self.limits.get(quantity.name))
-        }
+    runs: CostRuns
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain data."""
@@ -81,69 +75,64 @@ class CostStudy:
             "versions": installed_versions(),
             "machine": yardsticks(),
             "scene": to_dict(self.scene),
-            "quantities": self.quantities,
+            "quantities": {
+                quantity.name: {"unit": quantity.unit, **asdict(limit)}
+                for quantity in QUANTITIES
+                if (limit := self.limits.get(quantity.name))
+            },
             "settings": [asdict(setting) for setting in self.settings],
             "failures": self.failures,
         }
+
+
+def jobs_of(scene: Scene, finer: int, budget_s: float) -> list[Work[Outcome | Levels]]:
+    """Return models, levels at one place and at two, and, without a budget, variants of the default run."""
+    scene = replace_all(scene, {"save.frames": 0})
+    scene = replace(scene, accuracy=replace(scene.accuracy, target=None, offsets=None))
+    jobs: list[Work[Outcome | Levels]] = [
+        Job(f"{scene.id}: {fidelity}", scene, fidelity) for fidelity in ("rigid", "modal")
+    ]
+    for places, kind in PLACES.items():
+        at = replace(scene, accuracy=replace(scene.accuracy, offsets=places))
+        jobs.append(LevelsJob(f"{scene.id}: {kind}", at, finer, budget_s=budget_s))
+    if budget_s == inf:
+        active = Case(scene).active
+        stiff = [name for name in active if name != "vibration"]
+        variants = VARIANTS | ({STIFF: {"effects": stiff}} if "vibration" in active else {})
+        changed = {name: replace_all(scene, changes) for name, changes in variants.items()}
+        jobs += [LevelsJob(f"{scene.id}: {name}", one) for name, one in changed.items()]
+    return jobs
 
 
 def measure(
     scene: Scene,
     out: Path,
     progress: ProgressMeter,
-    meshes: Sequence[MeshLevel] = (),
+    finer: int = FINER,
     executor: Executor | None = None,
     budget_s: float = inf,
 ) -> CostStudy:
-    """Run what is not stored in ``out`` yet, one run at a time so that times are times.
+    """Run what is not stored in ``out`` yet, one job at a time so that times are times.
 
-    Settings that do not fit into a processor time of ``budget_s``, s, as `RunSize` expects it, are left out.
+    Levels end ``finer`` ones beyond those of the default run, or where a wall time of ``budget_s``, s, would
+    not hold another.
 
     Raises
     ------
     OutputPathError
         Another process writes to ``out``, or it cannot be written.
     RunError
-        Fewer than two meshes gave a result, so nothing is known of the limit.
+        No two levels gave a result, so nothing is known of the limit.
     """
-    settings = affordable(settings_of(scene, meshes), budget_s)
-    jobs = _jobs(settings)
-    # a process of its own for every run: its peak memory is its own
+    # a process of its own for every job: its peak memory is its own
     processes = LocalProcesses(1, reuse=False) if executor is None else nullcontext(executor)
     with directory_lock(out), processes as process:
-        _compile(scene, process)
-        results = run_jobs(jobs, out / STORE, progress, process)
-    return conclude(scene, settings, results)
-
-
-def affordable(settings: Sequence[Setting], budget_s: float) -> list[Setting]:
-    """Return the settings that fit into a processor time, s, taken in their order."""
-    taken: list[Setting] = []
-    spent: dict[str, float] = {}
-    for setting in settings:
-        new = {job.name: _planned_s(job) for job in _jobs([setting]) if job.name not in spent}
-        if sum(spent.values()) + sum(new.values()) <= budget_s:
-            spent |= new
-            taken.append(setting)
-    if sum(setting.kind == "mesh" for setting in taken) < 2:
-        meshes = [setting for setting in settings if setting.kind == "mesh"]
-        need = sum(map(_planned_s, _jobs(meshes[:2])))
-        raise UsageError(
-            "is too short for two meshes.",
-            key="--budget",
-            value=f"{budget_s:.3g} s",
-            remedy=f"Give some {plain(need, 2)} s or more.",
-        )
-    return taken
-
-
-def _planned_s(job: Job) -> float:
-    """Return the processor time, s, that a run is expected to take; 0 of a reduced model."""
-    return Case.of(job.scene).size.time if job.fidelity == "solid" else 0.0
+        results = run_jobs(jobs_of(scene, finer, budget_s), out / STORE, progress, process)
+    return conclude(scene, results)
 
 
 def judge_stored(
-    scene: Scene, out: Path, progress: ProgressMeter, meshes: Sequence[MeshLevel] = ()
+    scene: Scene, out: Path, progress: ProgressMeter, finer: int = FINER, budget_s: float = inf
 ) -> CostStudy:
     """Judge what `measure` has stored in ``out`` so far, and run nothing.
 
@@ -152,75 +141,52 @@ def judge_stored(
     RunError
         As `measure`, and where nothing is stored.
     """
-    settings = settings_of(scene, meshes)
     with Store.open(out / STORE) as base:
-        results = stored_results(base, _jobs(settings), progress)
+        results = stored_results(base, jobs_of(scene, finer, budget_s), progress)
     if not results:
         raise RunError(
             f"{out}: holds no run of {scene.id} by this version of the program. "
             "Leave out --stored to run its settings."
         )
-    return conclude(scene, settings, results)
+    return conclude(scene, results)
 
 
-def _jobs(settings: Sequence[Setting]) -> list[Job]:
-    """Return the runs of settings without repetition: several meshes use the runs of each."""
-    jobs = (job for setting in settings for on_mesh in setting.runs for job in on_mesh)
-    return list({job.name: job for job in jobs}.values())
+def conclude(scene: Scene, results: CostRuns) -> CostStudy:
+    """Judge the results; what lacks one is left out.
 
-
-def _compile(scene: Scene, executor: Executor) -> None:
-    """Compile the kernels by a run of a few steps, so that compilation is no part of a measured time."""
-    if not compiled_before():
-        coarse = on_mesh(scene, family(scene)[0])
-        brief = replace(coarse, accuracy=replace(coarse.accuracy, max_time=BRIEF))
-        executor.submit(compute, Job("compilation", brief)).result()
-
-
-def conclude(scene: Scene, settings: Sequence[Setting], results: JobResults) -> CostStudy:
-    """Judge the runs of settings; those that lack one are left out.
-
-    Settings are in order of CPU time, each with the quantities on whose Pareto front it lies.
+    Settings are in order of processor time, each with the quantities on whose Pareto front it lies.
     """
-    runs = {setting.name: _runs(setting, results) for setting in settings}
+    named = {name.removeprefix(f"{scene.id}: "): result for name, result in results.items()}
     failures = [
-        {"setting": name, "reason": reason}
-        for name, result in results.items()
-        if (reason := _failure(result)) is not None
+        {"setting": name, "reason": result.reason}
+        for name, result in named.items()
+        if isinstance(result, Failure)
     ]
-    meshes = {s.meshes[0]: runs[s.name][0] for s in settings if s.kind == "mesh" and runs[s.name]}
-    if len(meshes) < 2:
+    levels = {n: found for n, kind in PLACES.items() if isinstance(found := named.get(kind), Levels)}
+    told = [limits for found in levels.values() if (limits := quantity_limits(found.meshes))]
+    if not told:
         reasons = " ".join(dict.fromkeys(failure["reason"] for failure in failures))
-        raise RunError(f"{scene.id}: no two meshes gave a result. {reasons}".strip())
-    on_meshes = list(meshes.values())
-    limits, finest = target_limits(on_meshes), target_limits(on_meshes[-2:])
-    judged = []
-    for setting in settings:
-        of_effect = setting.kind == "effect"  # left out at the first offset of its mesh
-        whole = meshes.get(setting.meshes[0]) if of_effect else None
-        if runs[setting.name] and not (of_effect and whole is None):
-            first = MeshRuns(whole.size, whole.runs[:1]) if whole else None
-            judged.append(judge(setting, runs[setting.name], limits, finest, first))
+        raise RunError(
+            f"{scene.id}: no two levels gave a result that resolves the contact. {reasons}".strip()
+        )
+    finest, judged = told[-1], list[Judged]()  # those at two places, where they tell any
+    for places, found in levels.items():
+        for n in range(2, len(found.meshes) + 1):
+            first, is_default = found.meshes[:n], places == 1 and n == found.default
+            judged.append(judged_levels(_name(first, places), PLACES[places], first, finest, is_default))
+    default = quantity_limits(levels[1].meshes[: levels[1].default]) if 1 in levels else {}
+    for name, result in named.items():
+        if isinstance(result, Outcome) and result.validity.finished:
+            judged.append(judged_model("rigid" if name == "rigid" else "modal", result, finest))
+        elif isinstance(result, Levels) and name in (*VARIANTS, STIFF):
+            judged.append(judged_levels(f"default run {name}", "variant", result.meshes, default))
     fronts = {q.name: {one.name for one in front(judged, [q.name])} for q in QUANTITIES}
     marked = [
         replace(one, front=[name for name, members in fronts.items() if one.name in members])
         for one in sorted(judged, key=lambda one: one.cpu_s)
     ]
-    return CostStudy(scene, limits, marked, failures, results)
+    return CostStudy(scene, finest, levels, marked, failures, results)
 
 
-def _failure(result: Outcome | Failure) -> str | None:
-    """Return why a run cannot be judged."""
-    if isinstance(result, Failure):
-        return result.reason
-    return None if result.validity.finished else result.validity.stopped_because
-
-
-def _runs(setting: Setting, results: JobResults) -> list[MeshRuns]:
-    """Return the outcomes of a setting on each mesh, none if one is missing."""
-    good = [
-        [run for job in jobs if isinstance(run := results.get(job.name), Outcome) and _failure(run) is None]
-        for jobs in setting.runs
-    ]
-    complete = [len(runs) for runs in good] == [len(jobs) for jobs in setting.runs]
-    return [MeshRuns.of(runs) for runs in good] if complete else []
+def _name(levels: Sequence[MeshRuns], places: int) -> str:
+    return f"{len(levels)} levels to {1e3 * levels[-1].size:.3g} mm" + ", two places" * (places == 2)

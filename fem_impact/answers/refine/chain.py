@@ -20,16 +20,10 @@ from pathlib import Path
 from time import perf_counter
 
 from fem_impact.answers.refine.budget import LONGER, about_s, in_turns, longest_s
-from fem_impact.answers.refine.level import (
-    STAMP,
-    UNRESOLVED,
-    LevelRun,
-    limits_of,
-    relative_errors,
-    simulate_level,
-)
+from fem_impact.answers.refine.extrapolate import UNRESOLVED, level_limits, quantity_limits
+from fem_impact.answers.refine.level import STAMP, LevelRun, simulate_level
 from fem_impact.answers.refine.level_meshes import LevelMeshes, steps_between
-from fem_impact.answers.refine.levels import GRID_OFFSETS
+from fem_impact.answers.refine.quantities import TARGETED
 from fem_impact.case.case import Case
 from fem_impact.case.cells import contact_edge
 from fem_impact.case.record import together
@@ -50,6 +44,8 @@ from fem_impact.scene.types import Scene
 from fem_impact.scene.write import digest, to_toml
 from fem_impact.tables.text import plain
 
+# shifts of a meshed barrier's grid along t, in cells at the contact, at which a level runs: one or both
+GRID_OFFSETS = (0.0, 0.5)
 MOST_REPEATS = 2  # of a level, each with twice the room
 # levels beyond those asked for, where the last has not resolved the contact: it would have no numbers
 MORE = 1
@@ -123,14 +119,14 @@ class LevelChain:
         return outcome
 
     def refine(self) -> None:
-        """Run levels from coarse to fine until one is enough or the budget is used up.
+        """Run levels, finer than those that have run, until one is enough or the budget is used up.
 
         Raises
         ------
         SceneError, RunError, ResultError, OutputPathError
             As `run`.
         """
-        splits: int | None = self.meshes.first
+        splits = self._next if self.done else self.meshes.first
         while splits is not None and self._ran(splits):
             splits = self._next
 
@@ -177,7 +173,17 @@ class LevelChain:
             return False
         if self.decides is not None:
             return self.decides(self.done)
-        return self._reached(relative_errors(self.done))
+        return self._reached(self._errors)
+
+    @property
+    def _errors(self) -> dict[str, float]:
+        """Half-widths over their scales of what a wanted error is about, by name.
+
+        What has no band is left out: all where the last level does not resolve its contact, and the vibration
+        of a rod that is rigid.
+        """
+        limits = quantity_limits([level.runs for level in self.done[: self.counted]])
+        return {name: limits[name].error for name in TARGETED if name in limits}
 
     def _reached(self, errors: Mapping[str, float]) -> bool:
         """Say whether relative errors, by quantity, are what the scene asks for; those of none are not."""
@@ -332,7 +338,7 @@ class LevelChain:
         """Return the outcome of the level that counts, of the scene as stated, with limits and bands."""
         upto = self.done[: self.counted]
         counted, beyond = upto[-1], self.done[self.counted :]
-        limits, bands = limits_of(upto)
+        limits, bands = level_limits([level.runs for level in upto])
         radius = patch_radius(counted.record.rod)
         wanted = self.meshes.wanted(radius) - counted.splits
         short = (
@@ -346,7 +352,7 @@ class LevelChain:
         outcome = self._without_unresolved(counted)
         said, missed = outcome.validity, ""
         if self.scene.accuracy.target:
-            errors = relative_errors(upto)
+            errors = self._errors
             missed = self._missed(errors)
             said = replace(
                 said,

@@ -1,12 +1,10 @@
-"""One level of a run: the runs that share its mesh, what they found, and the limits of several levels."""
+"""One level of a run: the runs that share its mesh, and what they found."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from fem_impact.answers.refine.extrapolate import NARROW, MeshNumbers, MeshRuns, level_limits
-from fem_impact.answers.refine.quantities import QUANTITIES, TARGETED
+from fem_impact.answers.refine.extrapolate import NARROW, MeshRuns
 from fem_impact.case.case import Case
 from fem_impact.case.record import ContactRecord
 from fem_impact.files.atomic import read_text, write_text
@@ -20,7 +18,6 @@ from fem_impact.run.simulate import simulate_recorded
 # of nodes across the narrow side of a contact, on levels whose values are extrapolated: a line of contact one
 # cell wide is pressed as hard as its cells are large, and two levels of it may agree and be wrong together
 ROWS = 4
-UNRESOLVED = Unknown("the last level did not resolve the contact; accuracy.levels = 4 adds a finer one")
 STAMP = "level.stamp"
 """File of a level's directory that says what was computed there."""
 
@@ -53,11 +50,6 @@ class LevelRun:
         return self.outcomes[0]
 
     @property
-    def is_wide(self) -> bool:
-        """Whether it resolves its contact, also across its narrow side."""
-        return self.record.resolved and self.record.rows >= ROWS
-
-    @property
     def left(self) -> str:
         """Say that contact or flow left its zones, empty where they did not."""
         if not self.record.left:
@@ -88,37 +80,10 @@ class LevelRun:
 
     @property
     def runs(self) -> MeshRuns:
-        """Its runs beside the size of its cells."""
-        return MeshRuns(self.size, list(self.outcomes))
-
-
-def limits_of(levels: Sequence[LevelRun]) -> tuple[MeshNumbers, MeshNumbers]:
-    """Return limits and half-widths, by key, of levels from coarse to fine, or why there are none.
-
-    They need two levels, of which the last resolves the contact.
-    """
-    if len(levels) < 2 or not levels[-1].record.resolved:
-        return UNRESOLVED, UNRESOLVED
-    return level_limits([level.runs for level in levels], [level.is_wide for level in levels])
-
-
-def relative_errors(levels: Sequence[LevelRun]) -> dict[str, float]:
-    """Return the half-widths over their scales of what a wanted error is about (`TARGETED`), by name.
-
-    What has no band is left out: all where the last level does not resolve its contact, and the vibration of
-    a rod that is rigid.
-    """
-    limits, bands = limits_of(levels)
-    if isinstance(limits, Unknown) or isinstance(bands, Unknown):
-        return {}
-    errors = {}
-    for quantity in QUANTITIES:
-        (key, *_), finest = quantity.keys, levels[-1].runs.mean(quantity.keys)
-        if quantity.name in TARGETED and key.name in bands and finest is not None:
-            # the larger of limit and finest value, so that a limit near zero does not inflate the errors
-            size = max(abs(limits[key.name]), abs(finest))
-            errors[quantity.name] = bands[key.name] / quantity.scale(size, levels[-1].outcome)
-    return errors
+        """What its limits follow from."""
+        resolved = self.record.resolved
+        wide = resolved and self.record.rows >= ROWS
+        return MeshRuns(self.size, list(self.outcomes), resolved, wide, self.repeats)
 
 
 def simulate_level(case: Case, options: RunOptions) -> tuple[Outcome, ContactRecord]:

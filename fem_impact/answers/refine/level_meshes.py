@@ -47,7 +47,7 @@ class LevelMeshes:
         of_side = rod.own_mesh is None and expected.touched[:, 2].max() > SLICES * rod.diameter
         least = int(of_side and not rod.is_ball)
         if self.is_sized:
-            return max(least, self._usual - (JUMP if self._levels > JUMP else 1))
+            return max(least, self.usual - (JUMP if self._levels > JUMP else 1))
         return max(least, min(1, self.wanted(patch_radius(expected)) - 1))
 
     def last(self, found: ContactRecord | None) -> int:
@@ -57,7 +57,7 @@ class LevelMeshes:
         each finer mesh. ``found`` is what the finest level so far recorded, None before the first.
         """
         if self.is_sized or found is None:
-            wanted = self._usual
+            wanted = self.usual
         else:  # levels that were asked for are run, however well the pilot resolves its contact
             wanted = max(self.wanted(patch_radius(found.rod)), self.first + 1)
         least = self.first + (0 if self.is_sized else LEVELS - 1)
@@ -77,7 +77,7 @@ class LevelMeshes:
     def at(self, splits: int) -> Scene:
         """Return the scene on cells that are split so often; rod and barrier are split alike."""
         sizes = zip(self._cells, self._splits, strict=True)
-        rod, barrier = (cell / 2 ** (usual + splits - self._usual) for cell, usual in sizes)
+        rod, barrier = (cell / 2 ** (usual + splits - self.usual) for cell, usual in sizes)
         # a user's cells may be larger than a scene may state: they are left as they are
         rod = min(rod, self.case.scene.projectile.diameter / 4)
         accuracy = replace(self.case.scene.accuracy, tip_size=rod, target=None)
@@ -87,7 +87,7 @@ class LevelMeshes:
 
     def expected(self, splits: int) -> ContactRecord:
         """Return what may touch on cells that are split so often."""
-        more = splits - self._usual
+        more = splits - self.usual
         sizes = zip(self._cells, self._splits, strict=True)
         return expected_record(self._bodies, *(cell / 2 ** max(0, usual + more) for cell, usual in sizes))
 
@@ -110,7 +110,8 @@ class LevelMeshes:
         return levels_of(self._bodies)
 
     @property
-    def _usual(self) -> int:
+    def usual(self) -> int:
+        """Splits that resolve the contact estimated, or that the stated size asks for."""
         return self._splits[1] if self._bodies.contact.compliant else self._splits[0]
 
 

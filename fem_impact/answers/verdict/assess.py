@@ -205,7 +205,7 @@ def _solid(
     """
 
     def decides(levels: Sequence[LevelRun]) -> bool:
-        effect = solid_effect(levels)
+        effect = solid_effect([level.runs for level in levels])
         return effect is not None and effect.answer(tolerance) != "undecided"
 
     begun = set[str]()
@@ -223,7 +223,7 @@ def _solid(
         if least == LEAST_LEVELS or not has_quick:
             raise
         return None, [f"Finite elements have no answer here: {refused}"], ""
-    effect = solid_effect(levels.done)
+    effect = solid_effect([level.runs for level in levels.done])
     if effect is not None and effect.answer(tolerance) != "undecided":
         return effect, [], ""
     note, more = _stopped(levels)
@@ -232,7 +232,7 @@ def _solid(
 
 def _nothing(levels: Sequence[LevelRun]) -> str:
     """Say why levels tell nothing of the change of e."""
-    failed = unfinished(pair_of(levels[-1]))
+    failed = unfinished(pair_of(levels[-1].runs))
     if failed:
         return f"Finite elements have no answer here: {failed}"
     if len(levels) < LEAST_LEVELS:

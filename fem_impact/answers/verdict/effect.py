@@ -15,7 +15,6 @@ from fem_impact.answers.refine.extrapolate import (
     level_limits,
     vibration_floor,
 )
-from fem_impact.answers.refine.level import LevelRun, limits_of
 from fem_impact.answers.verdict.reliability import known_error
 from fem_impact.answers.verdict.twins import twins
 from fem_impact.case.case import Case
@@ -132,22 +131,22 @@ def modal_effect(scene: Scene, pair: Pair) -> VibrationEffect:
     )
 
 
-def solid_effect(levels: Sequence[LevelRun]) -> VibrationEffect | None:
+def solid_effect(levels: Sequence[MeshRuns]) -> VibrationEffect | None:
     """Return what finite elements say on the levels of a scene and its twin, from coarse to fine.
 
     It is None where fewer than two levels give a coefficient of both, or the last does not resolve its
     contact.
     """
     useful = [level for level in levels if not unfinished(pair_of(level))]
-    if isinstance(limits_of(useful)[0], Unknown):
+    used = useful[-3:]
+    limits, bands = level_limits([replace(level, runs=level.runs[:1]) for level in used])
+    if isinstance(limits, Unknown) or isinstance(bands, Unknown):
         return None
-    coarse, fine = useful[-2:]
-    (free, stiff), used = pair_of(fine), useful[-3:]
-    changes, wide = [[_difference(pair_of(level))] for level in used], [level.is_wide for level in used]
+    coarse, fine = used[-2:]
+    free, stiff = pair_of(fine)
+    changes, wide = [[_difference(pair_of(level))] for level in used], [level.wide for level in used]
     value, band = level_limit([level.size for level in used], changes, wide)
-    with_vibration = [MeshRuns(level.size, [pair_of(level)[0]]) for level in used]
-    limits, bands = (known(of) for of in level_limits(with_vibration, wide))
-    E_vib, E_vib_band = (of[VIBRATION[0].name] for of in (limits, bands))
+    E_vib, E_vib_band = (of[VIBRATION.name] for of in (limits, bands))
     errors = {
         key.path[-1]: abs(limits[key.name] - known(key.of(free))) + bands[key.name]
         for key in (*(share.key for share in SHARES), KEY_TABLE["W_skin_over_E_0"])
@@ -172,13 +171,13 @@ def solid_effect(levels: Sequence[LevelRun]) -> VibrationEffect | None:
     )
 
 
-def pair_of(level: LevelRun) -> Pair:
+def pair_of(level: MeshRuns) -> Pair:
     """Return the outcomes with vibration and without it on a level."""
-    free, stiff = level.outcomes
+    free, stiff = level.runs
     return free, stiff
 
 
-def _size(level: LevelRun) -> str:
+def _size(level: MeshRuns) -> str:
     return f"{level.size * 1e3:.3g} mm"
 
 

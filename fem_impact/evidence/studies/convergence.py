@@ -1,32 +1,30 @@
-"""Convergence with the mesh: measured sets on a family of meshes, extrapolated to vanishing elements."""
+"""Convergence with the mesh: levels of measured sets and a finer one, extrapolated to vanishing elements."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import astuple
-from itertools import combinations
 from statistics import fmean
 from typing import Any
 
-from fem_impact.answers.refine.extrapolate import limit, pair_limit
-from fem_impact.answers.refine.levels import FAMILY, MeshLevel, at_offsets, family
+from fem_impact.answers.refine.extrapolate import MeshRuns, level_limits
+from fem_impact.answers.refine.work import Levels, LevelsJob
 from fem_impact.answers.report import Request, Sheet, StudyReport
+from fem_impact.evidence.studies.order import limit
 from fem_impact.figures.panels import Panel, Picture, Series
-from fem_impact.jobs.job import Job
-from fem_impact.jobs.run import JobResults
-from fem_impact.outcome.keys import known
-from fem_impact.outcome.record import KEY_TABLE, Outcome
+from fem_impact.jobs.job import Failure
+from fem_impact.outcome.keys import Unknown, known
+from fem_impact.outcome.record import KEY_TABLE
 from fem_impact.outcome.shares import shares
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.tables.table import Cell, Table
 
 Row = dict[str, Any]
-
-QUICK = (MeshLevel(-2), *FAMILY[:-1])
-"""Meshes of the quick study: a coarser one for the finest, since a limit takes three."""
+Results = Mapping[str, Levels | Failure]
 
 SETS = ("t3-machined", "t3-contaminated", "t5b", "t6-17")
-USUAL_TIP_SIZE = 0.019 / 8 / 2**3  # m, of the measured sets' own scenes
+FINER = 1  # levels beyond those of the default run
+LEAST = 3  # levels that a fit takes
 STATED = ("e", "mu", "vibration/E_0")  # quantities with a sentence in the findings
 CAPTION = (
     "Each quantity against the size of the elements, with the range over places of the barrier's grid; "
@@ -42,63 +40,77 @@ QUANTITIES = {
 }
 
 
-def jobs_of(name: str, quick: bool) -> list[list[Job]]:
-    """Return the jobs of a set: per mesh, from coarse to fine, one per position of the barrier's grid.
+def job_of(name: str, quick: bool) -> LevelsJob:
+    """Return the levels of a set, each but the first at two places of the grid.
 
-    The quick study takes the meshes of `QUICK` at the first position.
+    If quick they are those of the default run.
     """
-    plain = replace_all(load(name), {"save.frames": 0})
-    meshes, positions = (QUICK, 1) if quick else (family(plain), None)
-    return [
-        [
-            Job(f"{name}-{1e3 * mesh.sizes(plain)[0]:.3f}-{scene.accuracy.grid_shift:g}", scene)
-            for scene in at_offsets(plain, mesh)[:positions]
-        ]
-        for mesh in meshes
-    ]
+    places = {} if quick else {"accuracy.offsets": 2}
+    return LevelsJob(name, replace_all(load(name), {"save.frames": 0, **places}), 0 if quick else FINER)
 
 
-def plan(request: Request, results: JobResults) -> list[Job]:
+def plan(request: Request, results: Results) -> list[LevelsJob]:
     """Return the jobs of the requested sets, by default of `SETS`."""
-    return [job for name in request.ids or SETS for mesh in jobs_of(name, request.quick) for job in mesh]
+    return [job_of(name, request.quick) for name in request.ids or SETS]
 
 
-def conclude(request: Request, results: JobResults) -> StudyReport:
+def conclude(request: Request, results: Results) -> StudyReport:
     """Extrapolate every quantity of every set; write table, data and figure."""
-    rows = []
-    for name in request.ids or SETS:
-        runs = [[results[job.name] for job in mesh] for mesh in jobs_of(name, request.quick)]
-        done = [[run for run in mesh if isinstance(run, Outcome)] for mesh in runs]
-        rows += convergence_rows(name, [mesh for mesh in done if mesh])
+    done = {name: results[name] for name in request.ids or SETS}
+    rows = [
+        row
+        for name, levels in done.items()
+        if isinstance(levels, Levels)
+        for row in convergence_rows(name, levels)
+    ]
     panels = tuple(_panel(name, rows) for name in QUANTITIES)
     return StudyReport(
         "convergence",
         "What vanishing elements would give",
-        [*_answer(rows), *(_sentence(row) for row in rows if row["quantity"] in STATED), *_pairs(rows)],
+        [*_answer(rows), *(_sentence(row) for row in rows if row["quantity"] in STATED), *_held(rows)],
         (Picture("convergence", CAPTION, panels),) if rows else (),
         (_sheet(rows),),
-        ("Order, limit and band: Eca and Hoekstra 2014, doi:10.1016/j.jcp.2014.01.006.",),
+        (
+            "Levels are those of a run and one finer, each made from the record of the one before.",
+            "Order, limit and band: Eca and Hoekstra 2014, doi:10.1016/j.jcp.2014.01.006.",
+        ),
         ("convergence",),
         [("convergence", _sentence(row)) for row in rows if row["quantity"] == "e"],
     )
 
 
-def convergence_rows(name: str, meshes: Sequence[Sequence[Outcome]]) -> list[Row]:
-    """Return one row per quantity; none with fewer than three meshes.
+def convergence_rows(name: str, levels: Levels) -> list[Row]:
+    """Return one row per quantity; none with fewer than `LEAST` levels.
 
-    ``meshes`` holds, from coarse to fine, the outcomes of each mesh at its positions of the barrier's grid.
+    ``told`` are limit and half-width that the first two levels tell, the first three and so on.
     """
-    if len(meshes) < 3:
+    meshes = levels.meshes
+    if len(meshes) < LEAST:
         return []
-    sizes, rows = [known(runs[0].cost.tip_size) for runs in meshes], []
+    sizes, rows = [mesh.size for mesh in meshes], []
     for quantity, key in QUANTITIES.items():
-        values = [[known(key.of(run)) for run in runs] for runs in meshes]
+        values = [[known(key.of(run)) for run in mesh.runs] for mesh in meshes]
         means = [fmean(on_mesh) for on_mesh in values]
-        row = {"set": name, "quantity": quantity, "tip_size_m": sizes, "values": means}
-        apart = [max(on_mesh) - min(on_mesh) for on_mesh in values]
-        places = min(map(len, values))
-        rows.append({**row, "fit": limit(sizes, means), "apart": apart, "places": places})
+        row = {
+            "set": name,
+            "quantity": quantity,
+            "tip_size_m": sizes,
+            "values": means,
+            "default": levels.default - 1,
+            "apart": [max(on_mesh) - min(on_mesh) for on_mesh in values],
+            "fit": limit(sizes, means),
+            "told": [told for n in range(2, len(meshes)) if (told := _told(meshes[:n], key.name))],
+        }
+        rows.append(row)
     return rows
+
+
+def _told(meshes: Sequence[MeshRuns], name: str) -> tuple[float, float] | None:
+    """Return limit and half-width that levels tell of a number; None where they tell none."""
+    limits, bands = level_limits(meshes)
+    if isinstance(limits, Unknown) or isinstance(bands, Unknown) or name not in bands:
+        return None
+    return limits[name], bands[name]
 
 
 def _answer(rows: Sequence[Row]) -> list[str]:
@@ -107,36 +119,35 @@ def _answer(rows: Sequence[Row]) -> list[str]:
     if not of_e:
         return []
     away = max(abs(row["values"][-1] - row["fit"].value) for row in of_e)
-    size, band = 1e3 * of_e[0]["tip_size_m"][-1], max(row["fit"].band for row in of_e)
+    band = max(row["fit"].band for row in of_e)
     return [
-        f"On the finest mesh, {size:.3g} mm at the tip, e (paper's arms) of {len(of_e)} sets lies at most "
-        f"{away:.2g} from its limit for vanishing elements; the bands of the limits reach ± {band:.2g}."
+        f"On the finest level e (paper's arms) of {len(of_e)} sets lies at most {away:.2g} from its limit "
+        f"for vanishing elements; the bands of the limits reach ± {band:.2g}."
     ]
 
 
 def _sentence(row: Row) -> str:
-    """Return the sentence of a row: value on the finest mesh, limit, distance of the usual mesh from it."""
+    """Return the sentence of a row: value on the finest level, limit, distance of the default run from it."""
     size, value, fit = row["tip_size_m"][-1] * 1e3, row["values"][-1], row["fit"]
-    nearest = min(range(len(row["values"])), key=lambda i: abs(row["tip_size_m"][i] - USUAL_TIP_SIZE))
+    at = row["default"]
     order = "no clear order" if fit.order is None else f"order {fit.order:.1f}"
     return (
         f"{row['set']}, {row['quantity']}: {value:.4g} ± {fit.band:.2g} at {size:.3g} mm, "
-        f"limit {fit.value:.4g} ({order}); at {USUAL_TIP_SIZE * 1e3:.3g} mm, the usual mesh, "
-        f"{row['values'][nearest] - fit.value:+.2g} off the limit."
+        f"limit {fit.value:.4g} ({order}); the last level of a default run, at "
+        f"{row['tip_size_m'][at] * 1e3:.3g} mm, is {row['values'][at] - fit.value:+.2g} off the limit."
     )
 
 
-def _pairs(rows: list[Row]) -> list[str]:
-    """Return the sentence on how many pairs of meshes have the limit of all meshes in their band."""
-    inside = []
-    for row in rows:
-        meshes = zip(row["tip_size_m"], row["values"], strict=True)
-        for (coarse_size, coarse), (fine_size, fine) in combinations(meshes, 2):
-            extrapolated, band = pair_limit(fine, coarse, coarse_size / fine_size, row["places"])
-            inside.append(abs(extrapolated - row["fit"].value) <= band + 1e-9 * abs(extrapolated))
+def _held(rows: Sequence[Row]) -> list[str]:
+    """Return the sentence on how many bands of fewer levels hold the limit of all."""
+    inside = [
+        abs(value - row["fit"].value) <= half + 1e-9 * abs(value)
+        for row in rows
+        for value, half in row["told"]
+    ]
     if not inside:
         return []
-    return [f"Two meshes, extrapolated: {sum(inside)} of {len(inside)} bands hold the limit of all."]
+    return [f"Told by fewer levels: {sum(inside)} of {len(inside)} bands hold the limit of all."]
 
 
 def _sheet(rows: list[Row]) -> Sheet:
@@ -150,7 +161,7 @@ def _sheet(rows: list[Row]) -> Sheet:
         lines.append([row["set"], row["quantity"], *by_size, *fit, row["apart"][-1]])
     return Sheet(
         "convergence",
-        "Values by the element at the tip, means over places of the barrier's grid; order – is none; "
+        "Values by the element at the contact, means over places of the barrier's grid; order – is none; "
         "places apart: their largest difference on the finest mesh",
         Table.of((*head, "limit", "order", "band", "scatter", "places apart"), lines),
     )
@@ -165,4 +176,4 @@ def _panel(name: str, rows: list[Row]) -> Panel:
         lines.append(Series(row["set"], sizes, row["values"], "joined", at, halves if any(halves) else None))
         fit = row["fit"]
         limits.append(Series(f"{row['set']}, limit", [0.0], [fit.value], "rings", at, [fit.band]))
-    return Panel(name, "element at the tip, mm", name, (*lines, *limits))
+    return Panel(name, "element at the contact, mm", name, (*lines, *limits))

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from statistics import fmean
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fem_impact.answers.refine.extrapolate import limit_of
+from fem_impact.answers.refine.work import Levels, LevelsJob
 from fem_impact.answers.report import Request, Sheet, StudyReport
+from fem_impact.answers.verdict.effect import solid_effect
 from fem_impact.evidence.studies import criterion_figures as figures
 from fem_impact.evidence.studies import criterion_findings as findings
 from fem_impact.evidence.studies.criterion_findings import (
@@ -20,15 +21,13 @@ from fem_impact.evidence.studies.criterion_findings import (
     crossing,
     exponent,
 )
-from fem_impact.evidence.studies.pairs import COARSER, PLACES
 from fem_impact.evidence.studies.rod_runs import (
     RESTITUTION,
     RodRun,
     among,
     as_table,
+    contacts,
     longest_first,
-    mesh_levels,
-    mesh_runs,
     run_table,
 )
 from fem_impact.evidence.studies.rod_theory import spring_bounce, static_restitution, whole_ratio
@@ -42,8 +41,9 @@ from fem_impact.evidence.studies.rods import (
     DroppedRod,
     length_of,
 )
-from fem_impact.jobs.job import Job
-from fem_impact.jobs.run import JobResults
+from fem_impact.jobs.job import Failure, Job
+from fem_impact.outcome.keys import known
+from fem_impact.outcome.record import Outcome
 from fem_impact.tables.table import Table
 from rigid import LIMIT
 
@@ -60,7 +60,6 @@ FRICTIONS = np.round(np.arange(0.0, 0.951, 0.05), 3)
 SOLID_GAMMAS, QUICK_SOLID_GAMMAS = (10.0, 15.0, 20.0, LIMIT, 35.0, 50.0, 80.0), (15.0, 35.0)
 SOLID_ANGLES, QUICK_SOLID_ANGLES = (5.0, 20.0, 35.0, 45.0, 60.0, 75.0), (20.0, 45.0)  # degrees
 SURFACES, QUICK_SURFACES = ("contaminated", "machined"), ("machined",)
-SIZES, QUICK_SIZES = (1.0, COARSER), (COARSER, COARSER**2)  # of elements over the scene's own
 END_GAMMAS, QUICK_END_GAMMAS = (10.0, 45.0), (14.0,)  # of elastic rods that confirm the modal fidelity
 
 MODAL = {
@@ -72,12 +71,13 @@ MODAL = {
 SPRING = "linear spring"
 BLIND, ENDS = "over friction", "elastic, by finite elements"
 """Families of elastic rods over friction, and of those that confirm the modal fidelity."""
+Results = Mapping[str, Outcome | Levels | Failure]
 
 ASSUMPTIONS = (
     *DROP_NOTES,
     MODAL_NOTE,
-    "Yielding, contaminated and machined: finite elements on two meshes at two places; the band is that of "
-    "the difference of e with and without vibration. All other families: modes, without a band.",
+    "Yielding, contaminated and machined: finite elements, both rods on the same levels of meshes; the band "
+    "is that of the difference of e with and without vibration. All other families: modes, without a band.",
     "Error of rigid theory: change of e, at the worst of the angles from 1 to 80 degrees, against a "
     "rod that cannot vibrate on the same contact. At 0 degrees a flat face has no one contact point.",
     "Linear spring: bending and stretching modes of the slender rod, one stiffness for all rods, as "
@@ -109,71 +109,81 @@ def rods_over_angles(rod: DroppedRod, quick: bool) -> list[DroppedRod]:
 
 
 def families(quick: bool) -> dict[str, list[RodRun]]:
-    """Return the runs of vibrating rods, by family: each kind of contact, `BLIND` and `ENDS`."""
-    sizes, offsets = (QUICK_SIZES, (0.0,)) if quick else (SIZES, PLACES)
+    """Return the runs of vibrating rods by the modal fidelity: each kind of contact, and `BLIND`."""
+    frictions = FRICTIONS[::5] if quick else FRICTIONS
+    return {
+        **{name: [RodRun(r) for r in rods_over_angles(rod, quick)] for name, rod in MODAL.items()},
+        BLIND: [RodRun(DroppedRod(l, friction=float(f))) for l in PAPER_RODS.values() for f in frictions],
+    }
+
+
+def solid_rods(quick: bool) -> dict[str, list[DroppedRod]]:
+    """Return the vibrating rods of finite elements, by family: surface states, and `ENDS`."""
     gammas, angles = (QUICK_SOLID_GAMMAS, QUICK_SOLID_ANGLES) if quick else (SOLID_GAMMAS, SOLID_ANGLES)
-    modal = {name: [RodRun(r) for r in rods_over_angles(rod, quick)] for name, rod in MODAL.items()}
-    solid = {
+    yielding = {
         f"yielding, {state}": [
-            run
-            for gamma in gammas
-            for angle in angles
-            for run in mesh_runs(DroppedRod(length_of(gamma), angle, STATES[state], True), sizes, offsets)
+            DroppedRod(length_of(gamma), angle, STATES[state], True) for gamma in gammas for angle in angles
         ]
         for state in (QUICK_SURFACES if quick else SURFACES)
     }
-    frictions = FRICTIONS[::5] if quick else FRICTIONS
-    return {
-        **modal,
-        **solid,
-        BLIND: [RodRun(DroppedRod(l, friction=float(f))) for l in PAPER_RODS.values() for f in frictions],
-        ENDS: [
-            run
-            for gamma in (QUICK_END_GAMMAS if quick else END_GAMMAS)
-            for run in mesh_runs(DroppedRod(length_of(gamma)), sizes[:1], offsets)
-        ],
-    }
+    ends = [DroppedRod(length_of(gamma)) for gamma in (QUICK_END_GAMMAS if quick else END_GAMMAS)]
+    return {**yielding, ENDS: ends}
 
 
-def plan(request: Request, results: JobResults) -> list[Job]:
+def levels_job(rod: DroppedRod) -> LevelsJob:
+    """Return the levels of a rod, and of the same rod that cannot vibrate, on the same meshes."""
+    return LevelsJob(f"{rod.name}-levels", rod.scene(), twin=replace(rod, vibrates=False).scene())
+
+
+def plan(request: Request, results: Results) -> list[Job | LevelsJob]:
     """Return the jobs, the longest first: every rod, and the same rod without vibration."""
     runs_of = families(request.quick)
     twins = [run.twin for name, runs in runs_of.items() if name != BLIND for run in runs]
-    return longest_first([*(run for runs in runs_of.values() for run in runs), *twins])
+    solid = [levels_job(rod) for rods in solid_rods(request.quick).values() for rod in rods]
+    modal = longest_first([*(run for runs in runs_of.values() for run in runs), *twins])
+    return [*sorted(solid, key=lambda job: job.planned_s, reverse=True), *modal]
 
 
 def angle_rows(table: DataFrame) -> list[dict[str, Any]]:
-    """Return one row per family, rod and angle: e with and without vibration, and T1/tau.
+    """Return one row per family, rod and angle by modes: e with and without vibration, and T1/tau.
 
-    Values of finite elements are limits of two meshes, and so is the difference of e, whose half-width is
-    ``band_of_change``: what the mesh changes of both alike does not count; 0 without a second mesh. T1/tau is
-    the first bending period over the contact time of the rod that cannot vibrate. Angles at which one of the
-    runs has no e are left out.
+    T1/tau is the first bending period over the contact time of the rod that cannot vibrate. Angles at which
+    one of the runs has no e are left out.
+    """
+    return [
+        _angle(row.family, row.rod_run.rod, row.e_edge, row.e_edge_rigid, row.tau_s)
+        for row in table.itertuples()
+        if None not in (row.tau_s, row.e_edge, row.e_edge_rigid)
+    ]
+
+
+def solid_rows(rods: Mapping[str, Sequence[DroppedRod]], results: Results) -> list[dict[str, Any]]:
+    """Return the rows of `angle_rows` by finite elements.
+
+    The change of e, and ``band_of_change``, its half-width, are those of the levels: what a mesh changes of
+    both rods alike does not count. Rods whose levels give none are left out.
     """
     rows = []
-    for (contact, _), runs in table.groupby(["family", "point"], sort=False):
-        rod, tau = runs.iloc[0].rod_run.rod, mesh_levels(runs, "tau_s")[-1][0]
-        if tau is None or runs[[RESTITUTION, "e_edge_rigid"]].isna().any(axis=None):
-            continue
-        runs = runs.assign(change=runs[RESTITUTION] - runs.e_edge_rigid)
-        values = {
-            "e": _limit(runs, RESTITUTION)[0],
-            "e_rigid": _limit(runs, "e_edge_rigid")[0],
-            "band_of_change": _limit(runs, "change")[1],
-            "T1_over_tau": rod.first_period / tau,
-            "T1_over_tau_whole": whole_ratio(replace(rod, angle=45.0)),
-        }
-        rows.append({**rod.inputs, "contact": contact, "rod": rod, **values})
+    for contact, rod in ((contact, rod) for contact, of in rods.items() for rod in of):
+        levels = results.get(levels_job(rod).name)
+        effect = solid_effect(levels.meshes) if isinstance(levels, Levels) else None
+        if effect is not None and (touches := contacts(effect.stiff)):
+            e = known(effect.free.restitution.edge.e)
+            rows.append(_angle(contact, rod, e, e - effect.value, touches[0].duration, effect.band))
     return rows
 
 
-def _limit(runs: DataFrame, column: str) -> tuple[float, float]:
-    """Return the limit of a column over the meshes and its half-width; of one mesh the mean, and 0."""
-    levels = mesh_levels(runs, column)
-    if len(levels) == 1:
-        return fmean(levels[0]), 0.0
-    limit = limit_of(sorted(set(runs.element_size), reverse=True), levels)
-    return limit.value, limit.uncertainty
+def _angle(
+    contact: str, rod: DroppedRod, e: float, e_rigid: float, tau: float, band: float = 0.0
+) -> dict[str, Any]:
+    values = {
+        "e": e,
+        "e_rigid": e_rigid,
+        "band_of_change": band,
+        "T1_over_tau": rod.first_period / tau,
+        "T1_over_tau_whole": whole_ratio(replace(rod, angle=45.0)),
+    }
+    return {**rod.inputs, "contact": contact, "rod": rod, **values}
 
 
 def rods_of(angles: DataFrame) -> DataFrame:
@@ -199,18 +209,19 @@ def rods_of(angles: DataFrame) -> DataFrame:
     )
 
 
-def conclude(request: Request, results: JobResults) -> StudyReport:
+def conclude(request: Request, results: Results) -> StudyReport:
     """Return the study: error of rigid theory per rod, where it passes `LEVELS`, and its governing group."""
     from pandas import DataFrame
 
-    table = run_table(families(request.quick), results)
-    modal, blind = table.fidelity == "modal", table[table.family == BLIND]
+    outcomes = {name: run for name, run in results.items() if not isinstance(run, Levels)}
+    table, solid = run_table(families(request.quick), outcomes), solid_rods(request.quick)
+    blind = table[table.family == BLIND]
     on_spring = [
         {**rod.inputs, "contact": SPRING, "rod": rod, **spring_bounce(rod)}
         for rod in rods_over_angles(MODAL[HERTZ[1]], request.quick)
     ]
-    computed = [angle_rows(table[rows]) for rows in (modal & (table.family != BLIND), ~modal)]
-    every = DataFrame([*computed[0], *on_spring, *computed[1]])
+    by_modes = angle_rows(table[table.family != BLIND])
+    every = DataFrame([*by_modes, *on_spring, *solid_rows(solid, results)])
     angles, ends = every[every.contact != ENDS], every[every.contact == ENDS]
     upright = among(angles, contact=YIELDING, diameter_m=BODY)
     upright = upright[upright.angle_deg <= STEEPEST]
@@ -219,8 +230,8 @@ def conclude(request: Request, results: JobResults) -> StudyReport:
     )
     rods = rods_of(angles)
     body = rods[rods.diameter_m == BODY]
-    solid = [*dict.fromkeys(table[~modal & (table.family != ENDS)].family)]
-    sentences = findings.by_picture(angles, ends, rods, solid, upright, blind)
+    yielding = [name for name in solid if name != ENDS]
+    sentences = findings.by_picture(angles, ends, rods, yielding, upright, blind)
     return StudyReport(
         "criterion",
         "When a rod may be called rigid",

@@ -13,7 +13,6 @@ import numpy as np
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.evidence.studies import gamma_figures as figures
 from fem_impact.evidence.studies.gamma_figures import plain_line
-from fem_impact.evidence.studies.pairs import COARSER, PLACES
 from fem_impact.evidence.studies.rod_runs import (
     CLOSE,
     LEAST,
@@ -22,9 +21,8 @@ from fem_impact.evidence.studies.rod_runs import (
     RodRun,
     among,
     as_table,
+    cut_job,
     longest_first,
-    mesh_runs,
-    more_jobs,
     points_of,
     run_table,
 )
@@ -58,24 +56,18 @@ DIAMETERS, SPEEDS = (0.010, 0.030), (1.3, 4.2)  # m and m/s, beside those of the
 ANGLES = (5.0, 15.0, 25.0, 35.0, 60.0, 75.0)  # degrees, beside that of the curve
 REDUCED = tuple(10.0 + 2.0 * i for i in range(56))  # gammas of the modal fidelity
 QUICK_REDUCED = REDUCED[::11]
-SIZES, QUICK_SIZES = (COARSER, 1.0, 0.5, 0.25), (COARSER**2, COARSER)
-"""Sizes of the elements at the contact over the scene's own, coarsest first.
-
-Every point has the first two, and its rod that cannot vibrate the first. Each further one is for points whose
-band of vibration is wider than wanted on the meshes before it.
-"""
+PLACES = 2  # of the barrier's grid, of a rod that can vibrate
 ONE_PERCENT = 0.01  # of E_0: beyond it vibration counts as large
 ALIKE = 0.1  # m^-0.3815, difference of gammas that are called one
 
 NOTES = (
     *DROP_NOTES,
     "The paper's rods have tip B here, as in its Tables 3 to 6; tip A (nose) of Table 2 is another contact.",
-    "Limits of vanishing elements and their bands by the rule of the measured sets, from the two finest "
-    "meshes of a point: all orders of convergence from 3/4 up.",
-    "tau: contact time of the same rod if it could not vibrate, on the coarser mesh. T1: first bending "
-    "period.",
-    "Measured sets: their own scenes, with their own speeds, on the meshes of the study of the sets; the "
-    "curve is that of one speed, 2.1 m/s.",
+    "Finite elements run as users run them, on levels from coarse to fine; limits of vanishing elements and "
+    "their bands are those of the levels.",
+    "tau: contact time of the same rod if it could not vibrate. T1: first bending period.",
+    "Measured sets: their own scenes, with their own speeds, as in the study of the sets; the curve is that "
+    "of one speed, 2.1 m/s.",
     MODAL_NOTE,
 )
 
@@ -122,12 +114,11 @@ def reduced(quick: bool) -> list[DroppedRod]:
 
 
 def families(quick: bool) -> dict[str, list[RodRun]]:
-    """Return all runs of vibrating rods, also on meshes that only some points need, by family."""
-    sizes, offsets = (QUICK_SIZES, (0.0,)) if quick else (SIZES, PLACES)
+    """Return all runs of vibrating rods, by family."""
+    places = 1 if quick else PLACES
     rods = {"curve": line(quick), "other inputs": others(quick)}
-    solid = {name: [r for rod in of for r in mesh_runs(rod, sizes, offsets)] for name, of in rods.items()}
-    # measured sets keep the meshes of their own study
-    sets = [r for name in SETS for r in mesh_runs(_most_like(load(name)), sizes[:2], offsets, name)]
+    solid = {name: [RodRun(rod, "solid", places) for rod in of] for name, of in rods.items()}
+    sets = [RodRun(_most_like(load(name)), "solid", places, name) for name in SETS]
     return {**solid, "measured sets": sets, "modes": [RodRun(rod) for rod in reduced(quick)]}
 
 
@@ -139,18 +130,11 @@ def _most_like(scene: Scene) -> DroppedRod:
 
 
 def plan(request: Request, results: JobResults) -> list[Job]:
-    """Return the jobs, the longest first; with results also those that these call for."""
-    runs_of = families(request.quick)
-    coarse, scene_size = (QUICK_SIZES if request.quick else SIZES)[:2]
-    every = [run for family in runs_of.values() for run in family]
-    runs = [run for run in every if run.fidelity == "modal" or run.size >= scene_size]
-    twins = [run.twin for run in runs if (run.fidelity, run.size, run.offset) == ("solid", coarse, 0.0)]
-    more = []
-    if results:
-        table = run_table(runs_of, results)
-        points = table[table.fidelity == "solid"].groupby("point")
-        more = [job for _, runs in points for job in more_jobs(runs, results)]
-    return longest_first([*runs, *twins], more)
+    """Return the jobs, the longest first; with results also those that are cut after a first contact."""
+    runs = [run for family in families(request.quick).values() for run in family]
+    solid = [run for run in runs if run.fidelity == "solid"]
+    cut = [job for run in solid if run.name in results and (job := cut_job(run, results[run.name]))]
+    return longest_first([*runs, *(run.twin for run in solid)], cut)
 
 
 def conclude(request: Request, results: JobResults) -> StudyReport:
@@ -212,7 +196,7 @@ def _with_band(value: float | None, band: float | None, scale: float, places: in
 
 
 def contact_table(points: DataFrame) -> Table:
-    """Return one row per contact of every point, of its finest mesh."""
+    """Return one row per contact of every point, of its last level."""
     rows = [
         [p.point, p.gamma, at, touch.start, touch.end, touch.impulse_n, touch.impulse_t]
         for p in points.itertuples()
@@ -364,7 +348,7 @@ def how_sure(points: DataFrame) -> str:
     doubted = points.doubted & ~close
     residuals = points.residual_over_E_0.dropna().astype(float).abs()
     return (
-        f"Two meshes give vibration of {close.sum()} of {len(points)} points within {CLOSE:.0%} of itself or "
+        f"Levels give vibration of {close.sum()} of {len(points)} points within {CLOSE:.0%} of itself or "
         f"{LEAST:g} of E_0; in {doubted.sum()} of the others its two counts, by modes and without "
         f"them, differ by more. {(points.reason != '').sum()} points have no value or no band. The largest "
         f"residual of their ledgers is {max(residuals, default=0.0):.1g} of E_0."

@@ -17,6 +17,8 @@ import numpy as np
 
 from fem_impact import replace_all
 from fem_impact.answers.compare import COMPARED, MEASURED, UNSEEN, ComparisonRow
+from fem_impact.answers.refine.level_meshes import LevelMeshes
+from fem_impact.case.case import Case
 from fem_impact.case.effects.plasticity import hardening_of
 from fem_impact.jobs.job import Failure, Job
 from fem_impact.outcome.keys import Num, known
@@ -31,6 +33,7 @@ if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
 
 
+ONE_MESH = "one-mesh"  # name of the run that inputs are changed in
 ANGLE = radians(0.5)  # half the range of the inclination (assumed)
 CONTACT = Errors().contact  # m, half the range of the contact point's position
 TRACKING = Errors().tracking  # relative error of a tracked speed (paper)
@@ -237,20 +240,33 @@ ARMS = {"arms-edge": "arms of the tip's edge radius", "arms-impulse": "arms of t
 DESCRIPTIONS = {i.name: i.description for i in INPUT_CHANGES} | ARMS
 
 
-def sensitivity_jobs(coarse: Job, out: Path) -> dict[str, Job]:
-    """Return the job of the coarser mesh with each input changed, by the change's name."""
-    jobs = {}
+def one_mesh(scene: Scene) -> Scene:
+    """Return a scene on one mesh about its estimated contact, with cells twice as large as advised there.
+
+    Their sizes are stated, so that the mesh stays where inputs are changed, which differences need. What it
+    does not resolve is reported all the same.
+    """
+    meshes = LevelMeshes(Case(scene))
+    stated = meshes.at(max(meshes.usual - 1, 0))
+    accuracy = replace(stated.accuracy, levels=1, offsets=None, unresolved="report")
+    return replace(stated, accuracy=accuracy, save=replace(stated.save, frames=0))
+
+
+def sensitivity_jobs(scene: Scene, out: Path) -> dict[str, Job]:
+    """Return the job of a scene on `one_mesh`, and that with each input changed, by the change's name."""
+    plain = one_mesh(scene)
+    jobs = {ONE_MESH: Job(f"{scene.id}-{ONE_MESH}", plain, out=out / f"{scene.id}-{ONE_MESH}")}
     for change in INPUT_CHANGES:
-        name, scene = f"{coarse.name}-{change.name}", coarse.scene
-        jobs[change.name] = Job(name, replace_all(scene, change.changes(scene)), out=out / name)
+        name = f"{scene.id}-{change.name}"
+        jobs[change.name] = Job(name, replace_all(plain, change.changes(plain)), out=out / name)
     return jobs
 
 
 def sensitivity_rows(
-    coarse: Outcome | Failure, changed: Mapping[str, Outcome | Failure]
+    plain: Outcome | Failure, changed: Mapping[str, Outcome | Failure]
 ) -> list[ComparisonRow]:
     """Return one row per input and quantity: set, input, quantity, base and changed value."""
-    if not isinstance(coarse, Outcome):
+    if not isinstance(plain, Outcome):
         return []
     values: list[tuple[str, str, Num]] = [
         (name, quantity, key.of(run))
@@ -258,14 +274,14 @@ def sensitivity_rows(
         if isinstance(run, Outcome)
         for quantity, key in SHOWN.items()
     ]
-    for name, arms in (("arms-edge", coarse.restitution.edge), ("arms-impulse", coarse.restitution.impulse)):
+    for name, arms in (("arms-edge", plain.restitution.edge), ("arms-impulse", plain.restitution.impulse)):
         values += [(name, "e", arms.e), (name, "E_ln/E_0", arms.E_ln), (name, "E_lt/E_0", arms.E_lt)]
     return [
         {
-            "set": coarse.provenance.scene_id,
+            "set": plain.provenance.scene_id,
             "input": name,
             "quantity": quantity,
-            "base": known(SHOWN[quantity].of(coarse)),
+            "base": known(SHOWN[quantity].of(plain)),
             "changed": known(value),
         }
         for name, quantity, value in values
@@ -279,7 +295,7 @@ def explanations(
 
     The miss is measured mean less model; an input's share is its change of the result over the miss: 1 brings
     the model to the mean, below 0 takes it further away. An input could explain the miss if its change
-    reaches the interval. Changes are those of the coarser mesh, applied to the model's value.
+    reaches the interval. Changes are those on one mesh, applied to the model's value.
     """
     changes_of: dict[tuple[str, str], dict[str, float]] = {}
     for row in sensitivities:

@@ -1,26 +1,27 @@
-"""The measured sets, each on two meshes, beside the experiments, and what uncertain inputs could explain.
+"""The measured sets as users run them, beside the experiments, and what uncertain inputs could explain.
 
-Both meshes run with the barrier's grid at two places half a cell apart, so that a band holds the scatter by
-the place too; the run at the first place of the finer mesh is the one that is kept with its fields.
+Levels run with the barrier's grid at two places half a cell apart, so that a band holds the scatter by the
+place too; the run at the first place of the last level is the one that is kept with its fields.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from fem_impact import load, replace_all
 from fem_impact.answers.compare import COMPARED, ComparisonRow, compare
 from fem_impact.answers.report import Request, Sheet, StudyReport
+from fem_impact.answers.simulate import simulate
 from fem_impact.evidence.studies.inputs import (
     DESCRIPTIONS,
     INPUT_CHANGES,
+    ONE_MESH,
     explanations,
     sensitivity_jobs,
     sensitivity_rows,
 )
-from fem_impact.evidence.studies.pairs import PLACES, finer_and_coarser, shifted, with_limits
 from fem_impact.jobs.job import Job
 from fem_impact.jobs.run import JobResults
 from fem_impact.outcome.keys import known, or_none
@@ -33,33 +34,22 @@ from fem_impact.tables.text import plain
 
 QUICK = {"save.frames": 40}  # a third of the frames
 QUICK_SETS = ("t3-machined", "t4", "t5b")
-HALF_CELL = "half-cell"  # jobs with the grid of the barrier half a cell further along t
+TWO_PLACES = {"accuracy.offsets": 2}
 
 
 def jobs_of(name: str, quick: bool, out: Path) -> dict[str, Job]:
-    """Return the jobs of a set: those of its meshes and, unless quick, "coarse" with each input changed."""
-    meshes = mesh_jobs(name, quick, out)
-    return meshes if quick else meshes | sensitivity_jobs(meshes["coarse"], out)
+    """Return the jobs of a set: its run and, unless quick, one mesh with each input changed."""
+    jobs = {"run": set_job(name, quick, out)}
+    return jobs if quick else jobs | sensitivity_jobs(jobs["run"].scene, out)
 
 
-def mesh_jobs(name: str, quick: bool, out: Path) -> dict[str, Job]:
-    """Return the jobs of a set, or of a scene file with own tests, on two meshes: "fine" and "coarse".
+def set_job(name: str, quick: bool, out: Path) -> Job:
+    """Return the run of a set, or of a scene file with own tests, as users run it.
 
-    Unless quick, both run again with the barrier's grid half a cell further.
+    Unless quick, each level but the first runs at two places of the barrier's grid.
     """
-    scene = load(name)
-    set_id = scene.id
-    if quick:
-        scene = replace_all(scene, QUICK)
-    fine, coarse = finer_and_coarser(scene)
-    coarse_job = Job(f"{set_id}-coarse", coarse, out=out / f"{set_id}-coarse")
-    meshes = {"fine": Job(set_id, fine, out=out / set_id), "coarse": coarse_job}
-    if quick:
-        return meshes
-    return meshes | {
-        f"{kind}-{HALF_CELL}": Job(f"{job.name}-{HALF_CELL}", shifted(job.scene, PLACES[1]))
-        for kind, job in meshes.items()
-    }
+    scene = replace_all(load(name), QUICK if quick else TWO_PLACES)
+    return Job(scene.id, scene, out=out / scene.id, way=simulate)
 
 
 def chosen(request: Request) -> tuple[str, ...]:
@@ -74,29 +64,19 @@ def plan(request: Request, results: JobResults) -> list[Job]:
 
 
 def conclude(request: Request, results: JobResults) -> StudyReport:
-    """Return the study of sets and measurements, with the runs of the finer mesh to be presented."""
+    """Return the study of sets and measurements, with their runs to be presented."""
     outcomes, comparison, changed = list[Outcome](), list[ComparisonRow](), list[ComparisonRow]()
     for name in chosen(request):
         jobs = jobs_of(name, request.quick, request.out)
-        if run := limited(jobs, results):
-            scene = load(name)
-            run.write(request.out / scene.id / "outcome.json")
+        run = results[jobs["run"].name]
+        if isinstance(run, Outcome):
             outcomes.append(run)
-            comparison += compare(run, tests_of(scene))
+            comparison += compare(run, tests_of(load(name)))
         if not request.quick:
             inputs = {i.name: results[jobs[i.name].name] for i in INPUT_CHANGES}
-            changed += sensitivity_rows(results[jobs["coarse"].name], inputs)
+            changed += sensitivity_rows(results[jobs[ONE_MESH].name], inputs)
     report = sets_report(outcomes, comparison, changed)
     return replace(report, runs=[request.out / outcome.provenance.scene_id for outcome in outcomes])
-
-
-def limited(jobs: Mapping[str, Job], results: JobResults) -> Outcome | None:
-    """Return the finer mesh's run with limits and bands by all runs of `mesh_jobs`; None if it failed."""
-    fine, coarse = (
-        [results[jobs[kind].name] for kind in (mesh, f"{mesh}-{HALF_CELL}") if kind in jobs]
-        for mesh in ("fine", "coarse")
-    )
-    return with_limits(fine, coarse) if isinstance(fine[0], Outcome) else None
 
 
 SENSITIVITY = ("set", "quantity", "input", "base", "changed")
@@ -105,7 +85,7 @@ SENSITIVITY = ("set", "quantity", "input", "base", "changed")
 def sets_report(
     outcomes: Sequence[Outcome], comparison: Sequence[ComparisonRow], changed: Sequence[ComparisonRow]
 ) -> StudyReport:
-    """Return the study: comparison, energy shares, limits of two meshes, and what changed inputs explain."""
+    """Return the study: comparison, energy shares, limits of the levels, and what changed inputs explain."""
     explained = explanations(comparison, changed)
     sentences = [inside_sentence(comparison), *([miss_sentence(explained)] if explained else [])]
     cells = {(row["set"], row["quantity"]): _cell(row) for row in comparison if row["quantity"] in COMPARED}
@@ -163,11 +143,11 @@ BESIDE = (
 
 
 def _banded(outcomes: Sequence[Outcome]) -> str:
-    """Return which sets have the band of two meshes."""
+    """Return which sets have the band of their levels."""
     without = [o.provenance.scene_id for o in outcomes if or_none(o.validity.mesh_band) is None]
     if len(without) == len(outcomes):
-        return " on one mesh, without a band,"
-    return ", with the band of its two meshes" + (f" (one mesh: {', '.join(without)})," if without else ",")
+        return ", without a band,"
+    return ", with the band of its levels" + (f" (none: {', '.join(without)})," if without else ",")
 
 
 def with_spread(value: float, spread: float | None, digits: int) -> str:
@@ -187,7 +167,7 @@ def _cell(row: ComparisonRow) -> str:
 
 
 def _shares(outcomes: Sequence[Outcome]) -> Table:
-    """Return one row per set with its shares of E_0; with two meshes their limits with bands."""
+    """Return one row per set with its shares of E_0, limits with bands where there are."""
     listed = (*shares("report"), ADDED)
     rows = [
         (
@@ -214,7 +194,7 @@ def _percent(outcome: Outcome, share: EnergyShare) -> str | None:
 
 
 def _limits(outcomes: Sequence[Outcome]) -> list[Sheet]:
-    """Return one row per set with two meshes: limits and bands of e and E_vib, CPU time of the finer mesh."""
+    """Return one row per set with bands: limits of e and E_vib, CPU time of the last level."""
     rows = []
     for outcome in outcomes:
         if or_none(outcome.validity.mesh_band):
@@ -225,14 +205,14 @@ def _limits(outcomes: Sequence[Outcome]) -> list[Sheet]:
                 cells += [f"{scale * limit:.3f} ± {scale * band:.3f}", plain(100 * band / abs(limit), 2)]
             rows.append([*cells, f"{outcome.cost.cpu:.0f}"])
     head = ("set", "e, limit", "of e, %", "E_vib / E_0, %, limit", "of E_vib, %", "CPU s")
-    caption = "Limits for vanishing elements, their bands, these in per cent, and time of the finer mesh"
+    caption = "Limits for vanishing elements, their bands, these in per cent, and time of the last level"
     return [Sheet("limits", caption, Table.of(head, rows))] if rows else []
 
 
 def _input_sheets(changed: Sequence[ComparisonRow], explained: Sequence[ComparisonRow]) -> list[Sheet]:
     return [
         Sheet("sensitivity", "Values with each changed input", Table.of(SENSITIVITY, changed), shown=False),
-        Sheet("changes", "Changes by each input alone, on the coarser mesh", _changes(changed)),
+        Sheet("changes", "Changes by each input alone, on one mesh", _changes(changed)),
         Sheet(
             "explanations",
             "What could explain a quantity outside its interval; in brackets the share of the miss that an "
@@ -243,7 +223,7 @@ def _input_sheets(changed: Sequence[ComparisonRow], explained: Sequence[Comparis
 
 
 def _changes(changed: Sequence[ComparisonRow]) -> Table:
-    """Return one row per set and quantity: value on the coarser mesh and its change by each input."""
+    """Return one row per set and quantity: value on one mesh and its change by each input."""
     by_quantity: dict[tuple[str, str], dict[str, ComparisonRow]] = {}
     for row in changed:
         by_quantity.setdefault((row["set"], row["quantity"]), {})[row["input"]] = row
@@ -252,7 +232,7 @@ def _changes(changed: Sequence[ComparisonRow]) -> Table:
         base = next(iter(by_input.values()))["base"]
         shown = {name: f"{row['changed'] - row['base']:+.2g}" for name, row in by_input.items()}
         rows.append((*key, f"{base:.3g}", *(shown.get(name, "") for name in DESCRIPTIONS)))
-    return Table.of(("set", "quantity", "coarser mesh", *DESCRIPTIONS), rows)
+    return Table.of(("set", "quantity", "one mesh", *DESCRIPTIONS), rows)
 
 
 def _explanations(explained: Sequence[ComparisonRow]) -> Table:

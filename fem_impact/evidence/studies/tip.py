@@ -18,9 +18,10 @@ from fem_impact import load, replace_all
 from fem_impact.answers.compare import MEASURED, compare
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.arrays import Array
-from fem_impact.evidence.studies.sets import limited, mesh_jobs
+from fem_impact.evidence.studies.sets import set_job
 from fem_impact.jobs.job import Job
 from fem_impact.jobs.run import JobResults
+from fem_impact.outcome.record import Outcome
 from fem_impact.run.tests import tests_of
 from fem_impact.tables.table import Cell, Table
 from rigid.experiments import MeasuredSet, measured_set
@@ -82,8 +83,8 @@ def readings() -> tuple[Reading, ...]:
 
 
 def plan(request: Request, results: JobResults) -> list[Job]:
-    """Return the runs of Table 3 with either tip, two meshes at two places; one set if quick."""
-    return [job for tip in TIPS for name in _sets(request) for job in _jobs(name, tip, request).values()]
+    """Return the runs of Table 3 with either tip; of one set if quick."""
+    return [_job(name, tip, request) for tip in TIPS for name in _sets(request)]
 
 
 def conclude(request: Request, results: JobResults) -> StudyReport:
@@ -104,9 +105,9 @@ def _sets(request: Request) -> tuple[str, ...]:
     return SETS[:1] if request.quick else SETS
 
 
-def _jobs(name: str, tip: str, request: Request) -> dict[str, Job]:
-    jobs = mesh_jobs(TIPS[tip].format(name), request.quick, request.out)
-    return {k: Job(job.name, replace_all(job.scene, {"save.frames": 0})) for k, job in jobs.items()}
+def _job(name: str, tip: str, request: Request) -> Job:
+    job = set_job(TIPS[tip].format(name), request.quick, request.out)
+    return replace(job, scene=replace_all(job.scene, {"save.frames": 0}), out=None)
 
 
 def _compared(tip: str, request: Request, results: JobResults) -> Compared:
@@ -114,7 +115,7 @@ def _compared(tip: str, request: Request, results: JobResults) -> Compared:
     return {
         (name, str(row["quantity"])): row
         for name in _sets(request)
-        if (run := limited(_jobs(name, tip, request), results))
+        if isinstance(run := results[_job(name, tip, request).name], Outcome)
         for row in compare(run, tests_of(load(TIPS[tip].format(name))))
         if row["quantity"] in COUNTED
     }

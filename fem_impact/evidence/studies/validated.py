@@ -39,8 +39,8 @@ class Comparison:
 
     Attributes
     ----------
-    S, D : computed value, the limit of two meshes at the nominal inputs; measured mean
-    u_num : half of the two-mesh band
+    S, D : computed value, the limit of the levels at the nominal inputs; measured mean
+    u_num : half of the half-width of its band
     u_input : root mean square change over the uncertain inputs, each uniform over its interval, from the
         nominal ones: they stand at the end of some intervals
     u_D : standard error of the mean, and of the tracked velocities
@@ -93,8 +93,8 @@ class ValidatedSet:
     Attributes
     ----------
     name, measured : id of the set, and its tests
-    surface : `OUTPUTS` over the uncertain inputs, on the coarser mesh
-    shift : (outputs,) float64, limit of two meshes less the surface, at the nominal inputs; the sample stands
+    surface : `OUTPUTS` over the uncertain inputs, on one coarse mesh
+    shift : (outputs,) float64, limit of the levels less the surface, at the nominal inputs; the sample stands
         at one place of the barrier's grid, whose other place differs by up to .07 in e
     all_inputs, tests : (n, outputs) float64, drawn over all inputs, over those that vary between tests
     comparisons : one a measured quantity
@@ -122,8 +122,8 @@ def compared(
 
     Parameters
     ----------
-    S : (quantities,) float64, limits of two meshes at the nominal inputs
-    bands : half-widths of the two-mesh bands
+    S : (quantities,) float64, limits of the levels at the nominal inputs
+    bands : half-widths of their bands
     u_input : (outputs,) float64, root mean square changes over the uncertain inputs
     """
     statistics, tracking = measured.statistics(), tracking_uncertainty(measured)

@@ -1,19 +1,21 @@
 """Validation in the terms of ASME V&V 20: the model's error beside every uncertainty of its comparison.
 
-Each measured set runs on two meshes as in the study of the sets, and on the coarser one also over a sample of
-all uncertain inputs at once (`.inputs`). Response surfaces through that sample give the uncertainty by the
+Each measured set runs on levels as in the study of the sets, and on one coarse mesh also over a sample of all
+uncertain inputs at once (`.inputs`). Response surfaces through that sample give the uncertainty by the
 inputs, the share of each input in it, and the spread from test to test.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
-from fem_impact import replace_all
+from fem_impact import load, replace_all
 from fem_impact.answers.report import Request, StudyReport
-from fem_impact.evidence.studies.inputs import UNCERTAIN_INPUTS, changes, sample_values
+from fem_impact.evidence.studies.inputs import UNCERTAIN_INPUTS, changes, one_mesh, sample_values
 from fem_impact.evidence.studies.response import fit
-from fem_impact.evidence.studies.sets import limited, mesh_jobs
+from fem_impact.evidence.studies.sets import set_job
 from fem_impact.evidence.studies.validated import (
     DRAWN,
     KEYS,
@@ -37,10 +39,8 @@ FEWEST = 2 * len(UNCERTAIN_INPUTS)  # finished runs of a sample
 
 
 def plan(request: Request, results: JobResults) -> list[Job]:
-    """Return the jobs of the requested sets: two meshes at two places, and the sample."""
-    return [
-        job for name in _sets(request) for job in (*_meshes(name, request).values(), *_sample(name, request))
-    ]
+    """Return the jobs of the requested sets: the run of each, and its sample."""
+    return [job for name in _sets(request) for job in (_nominal(name, request), *_sample(name, request))]
 
 
 def conclude(request: Request, results: JobResults) -> StudyReport:
@@ -54,15 +54,15 @@ def _sets(request: Request) -> tuple[str, ...]:
     return request.ids or (("t5b",) if request.quick else MEASURED_SETS)
 
 
-def _meshes(name: str, request: Request) -> dict[str, Job]:
-    """Return the jobs at nominal inputs by mesh and place, without their fields."""
-    jobs = mesh_jobs(name, request.quick, request.out)
-    return {k: Job(job.name, replace_all(job.scene, {"save.frames": 0})) for k, job in jobs.items()}
+def _nominal(name: str, request: Request) -> Job:
+    """Return the run at nominal inputs, without its fields."""
+    job = set_job(name, request.quick, request.out)
+    return replace(job, scene=replace_all(job.scene, {"save.frames": 0}), out=None)
 
 
 def _sample(name: str, request: Request) -> list[Job]:
-    """Return one job per row of the sample of a set, on the coarser mesh."""
-    scene, measured = _meshes(name, request)["coarse"].scene, measured_set(name)
+    """Return one job per row of the sample of a set, on one mesh."""
+    scene, measured = one_mesh(load(name)), measured_set(name)
     unit = unit_sample(QUICK_SIZE if request.quick else SIZE)
     return [
         Job(f"{name}-{at}", replace_all(scene, changes(scene, row)))
@@ -71,12 +71,11 @@ def _sample(name: str, request: Request) -> list[Job]:
 
 
 def _validated(name: str, request: Request, results: JobResults) -> ValidatedSet | None:
-    """Return the set from its runs; None where one of its meshes or too much of its sample failed."""
-    measured = measured_set(name)
-    nominal = limited(_meshes(name, request), results)
+    """Return the set from its runs; None where its own or too much of its sample failed."""
+    measured, nominal = measured_set(name), results[_nominal(name, request).name]
     runs = [results[job.name] for job in _sample(name, request)]
     finished = {i: run for i, run in enumerate(runs) if isinstance(run, Outcome)}
-    if nominal is None or len(finished) < FEWEST:
+    if not isinstance(nominal, Outcome) or len(finished) < FEWEST:
         return None
     limits, bands = nominal.validity.mesh_limit, nominal.validity.mesh_band
     if isinstance(limits, Unknown) or isinstance(bands, Unknown):

@@ -7,8 +7,7 @@ import pytest
 
 from fem_impact.answers.refine import level as level_module
 from fem_impact.answers.refine.chain import LevelChain
-from fem_impact.answers.refine.extrapolate import MeshRuns, level_limits, mesh_limits
-from fem_impact.answers.refine.level import limits_of
+from fem_impact.answers.refine.extrapolate import MeshRuns, level_limits
 from fem_impact.answers.simulate import compiled, simulate
 from fem_impact.case.case import Case
 from fem_impact.case.record import ContactRecord
@@ -144,8 +143,11 @@ def test_no_band_is_narrower_than_the_changes_from_level_to_level():
         runs = (replace(outcome, restitution=replace(outcome.restitution, edge=edge)) for edge in edges)
         return [MeshRuns(2.0**-at, [run]) for at, run in enumerate(runs)]
 
-    def band(meshes, *resolved):
-        return known(level_limits(meshes, resolved)[1])["e_edge"]
+    def band(meshes, *wide):
+        return known(level_limits(narrowed(meshes, wide))[1])["e_edge"]
+
+    def narrowed(meshes, wide):
+        return [replace(mesh, wide=is_wide) for mesh, is_wide in zip(meshes, wide, strict=True)]
 
     chance = levels(0.4, 0.3, 0.3001)
     assert band(chance, True, True, True) == pytest.approx(0.1)
@@ -153,10 +155,14 @@ def test_no_band_is_narrower_than_the_changes_from_level_to_level():
     twice = [MeshRuns(mesh.size, mesh.runs * 2) for mesh in chance]
     assert band(twice, True, True, True) == pytest.approx(0.05)
     falling = levels(0.4, 0.3, 0.25)
-    limits, bands = level_limits(falling, (False, False, True))
+    limits, bands = level_limits(narrowed(falling, (False, False, True)))
     assert known(limits)["e_edge"] == 0.25  # nothing is extrapolated from a level that resolves nothing
     assert known(bands)["e_edge"] == pytest.approx(1.5 * 0.05)
-    assert band(falling, False, True, True) == known(mesh_limits(falling[-2:])[1])["e_edge"] > 0.05
+    assert band(falling, False, True, True) == known(level_limits(falling[-2:])[1])["e_edge"] > 0.05
+
+
+def limits_of(*levels):
+    return level_limits([level.runs for level in levels])
 
 
 def test_a_contact_a_few_nodes_wide_has_three_times_the_largest_change_as_its_band(quick):
@@ -168,7 +174,7 @@ def test_a_contact_a_few_nodes_wide_has_three_times_the_largest_change_as_its_ba
     line = replace(site, low=(0.0, 0.0), high=(h, 20 * h))
     narrow = replace(last, record=replace(last.record, sites=(line,)))
     assert narrow.record.rows == 2
-    limits, bands = map(known, limits_of([pilot, before, narrow]))
+    limits, bands = map(known, limits_of(pilot, before, narrow))
     values = [known(level.outcome.restitution.mu) for level in (pilot, before, last)]
     assert limits["mu"] == values[-1]
     assert bands["mu"] == pytest.approx(3 * max(abs(np.diff(values))))
@@ -177,7 +183,7 @@ def test_a_contact_a_few_nodes_wide_has_three_times_the_largest_change_as_its_ba
     assert any("is 2 nodes wide across its narrow side" in text for text in told)
     coarse = replace(before, record=replace(before.record, sites=(line,)))
     wide = replace(before, record=last.record)
-    alone = [known(limits_of([one, last])[0])["mu"] for one in (coarse, wide)]
+    alone = [known(limits_of(one, last)[0])["mu"] for one in (coarse, wide)]
     assert alone[0] == values[-1] != alone[1]
 
 

@@ -1,26 +1,26 @@
-"""Limits and bands of two meshes and of more, floors of vibration, and what one mesh alone says."""
+"""Limits and bands of two levels that resolve their contact, floors of vibration, and of one alone none."""
 
-import numpy as np
+from math import hypot, sqrt
+
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from outcome_maker import altered
 from study_fakes import outcome
 
 from fem_impact.answers.refine.extrapolate import (
-    ALONE,
+    EVEN,
     LOWEST,
     ONE_RUN,
+    UNRESOLVED,
     MeshRuns,
-    limit,
-    mesh_limits,
+    level_limits,
     pair_limit,
+    quantity_limits,
 )
-from fem_impact.errors import RunError
 from fem_impact.outcome.record import KEYS
 
 
-def limits_of(*meshes):
-    return mesh_limits([MeshRuns.of(runs) for runs in meshes])
+def limits_of(fine, coarse):
+    return level_limits([MeshRuns(runs[0].cost.tip_size, runs) for runs in (coarse, fine)])
 
 
 @pytest.mark.parametrize("ratio", [2.0, 1.5, 3.0])
@@ -53,7 +53,7 @@ def test_one_run_on_each_mesh_has_a_wider_band_about_the_same_limit():
     assert limits_of([fine] * 2, [coarse])[1]["e_edge"] == bands["e_edge"]
 
 
-def test_what_one_mesh_does_not_know_has_no_limit():
+def test_what_the_finer_level_does_not_know_has_no_limit():
     limits, bands = limits_of([outcome(e_paper=None)], [outcome(tip_size_m=8e-4)])
     assert "e_paper" not in limits
     assert set(limits) == set(bands) == {key.name for key in KEYS if key.banded} - {"e_paper"}
@@ -71,16 +71,31 @@ def test_places_of_the_grid_widen_the_band_by_their_scatter():
     fine = [outcome(mu=mu) for mu in (0.50, 0.52)]
     coarse = [outcome(mu=0.56, tip_size_m=8e-4)] * 2
     limits, bands = limits_of(fine, coarse)
-    value, half = pair_limit(0.51, 0.56, 2.0, offsets=2)
+    weight = 0.5 / (2**LOWEST - 1)
+    value, half = pair_limit([2.0, 1.0], [[0.56] * 2, [0.51] * 2])
+    assert (value, half) == pytest.approx((0.51 - 0.05 * weight, 0.05 * weight))
     assert limits["mu"] == pytest.approx(value)
-    assert bands["mu"] > half
+    assert bands["mu"] == pytest.approx(half + (1 + weight) * EVEN * 0.01)
+    both = pair_limit([2.0, 1.0], [[0.5, 0.52], [0.5, 0.52]])
+    assert both[1] == pytest.approx(hypot(weight, 1 + weight) * EVEN * 0.02 / sqrt(2) / sqrt(2))
 
 
-def test_one_mesh_alone_has_the_means_over_its_offsets_and_no_band_and_one_run_neither():
-    (means, none), alone = limits_of([outcome(mu=mu) for mu in (0.50, 0.52)]), limits_of([outcome()])
-    assert means["mu"] == pytest.approx(0.51)
-    assert none == ALONE
-    assert alone == (ALONE, ALONE)
+def test_one_level_alone_says_nothing_nor_do_two_whose_last_resolves_nothing():
+    fine, coarse = MeshRuns(4e-4, [outcome()]), MeshRuns(8e-4, [outcome(tip_size_m=8e-4)])
+    lost = MeshRuns(fine.size, fine.runs, resolved=False)
+    assert level_limits([fine]) == level_limits([coarse, lost]) == (UNRESOLVED, UNRESOLVED)
+    assert quantity_limits([coarse, lost]) == {}
+
+
+def test_a_quantity_has_the_sum_of_its_parts_and_their_bands_over_its_scale():
+    plastic = {"E_plastic_rod_over_E_0": 0.2, "E_plastic_barrier_over_E_0": 0.3}
+    fine = outcome(e_edge=0.02, **plastic)
+    coarse = altered(fine, tip_size_m=8e-4, e_edge=0.03, E_plastic_rod_over_E_0=0.1)
+    levels = [MeshRuns(8e-4, [coarse] * 2), MeshRuns(4e-4, [fine] * 2)]
+    found, (limits, bands) = quantity_limits(levels), level_limits(levels)
+    assert found["plastic"].value == pytest.approx(limits["E_plastic_rod_over_E_0"] + 0.3)
+    assert found["plastic"].band == bands["E_plastic_rod_over_E_0"] > 0.05
+    assert found["e"].error == pytest.approx(bands["e_edge"] / 0.05)  # its least scale
 
 
 def test_the_band_of_the_vibration_is_no_narrower_than_its_two_counts_on_the_finer_mesh():
@@ -93,44 +108,3 @@ def test_the_band_of_the_vibration_is_no_narrower_than_its_two_counts_on_the_fin
     assert limits["E_vib_over_E_0"] == pytest.approx(0.02)
     assert bands["E_vib_over_E_0"] == pytest.approx(0.0015)
     assert bands["mu"] == pytest.approx(0.0, abs=1e-12)
-
-
-SIZES = np.array([3.0, 2.25, 1.8, 1.5, 1.0])
-
-
-@pytest.mark.parametrize("order", [0.6, 1.0, 1.5, 2.0])
-def test_a_pure_power_gives_its_limit_and_order(order):
-    found = limit(SIZES * 1e-4, 0.4 - 0.02 * SIZES**order)
-    assert found.value == pytest.approx(0.4, abs=1e-6)
-    assert found.order == pytest.approx(order, abs=1e-3)
-    assert found.band == pytest.approx(1.25 * 0.02, rel=1e-3)
-
-
-def test_an_order_beyond_the_method_is_not_believed():
-    found = limit(SIZES, 1 + 0.01 * SIZES**3.5)
-    assert found.order is None
-    assert found.band > 3 * 0.01
-
-
-def test_values_without_a_trend_have_a_band_of_more_than_their_scatter():
-    noise = np.array([0.03, -0.03, 0.03, -0.03, 0.03])
-    found = limit(SIZES, 1 + noise)
-    assert found.band > 0.06
-
-
-def test_equal_values_are_their_own_limit():
-    found = limit(SIZES, np.full(5, 0.7))
-    assert found.value == pytest.approx(0.7)
-    assert found.band == pytest.approx(0.0, abs=1e-12)
-
-
-def test_two_meshes_are_too_few():
-    with pytest.raises(RunError, match="three meshes"):
-        limit([1.0, 2.0, 2.0], [1.0, 2.0, 2.0])
-
-
-@given(st.lists(st.floats(-1, 1), min_size=4, max_size=4), st.floats(-5, 5), st.floats(0.1, 10))
-def test_the_limit_moves_and_scales_with_the_values(values, shift, scale):
-    q = np.array(values)
-    plain, moved = limit(SIZES[:4], q), limit(SIZES[:4], shift + scale * q)
-    assert moved.value == pytest.approx(shift + scale * plain.value, rel=1e-3, abs=1e-3 * scale)

@@ -6,7 +6,7 @@ import pytest
 from own_bodies import box, write
 
 from fem_impact.answers.refine.chain import LevelChain
-from fem_impact.answers.refine.extrapolate import MeshRuns, level_limits
+from fem_impact.answers.refine.extrapolate import level_limits
 from fem_impact.answers.refine.ringing import held_back
 from fem_impact.case.case import Case
 from fem_impact.outcome.keys import Unknown
@@ -61,8 +61,7 @@ def test_flat_landing_without_poisson_effect_has_e_of_one_in_its_band(body, requ
 def test_band_of_the_levels_alone_would_miss_it(bar, monkeypatch):
     chain, outcome = bar
     monkeypatch.setattr("fem_impact.answers.refine.extrapolate.held_back", lambda run: {})
-    meshes = [MeshRuns(level.size, [level.outcome]) for level in chain.done]
-    limits, bands = level_limits(meshes, [level.is_wide for level in chain.done])
+    limits, bands = level_limits([level.runs for level in chain.done])
     assert limits["e_edge"] + bands["e_edge"] < 0.99
     assert bands["e_edge"] < outcome.estimate("e_edge")[1]
 

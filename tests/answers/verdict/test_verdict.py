@@ -10,7 +10,6 @@ import pytest
 from cost_fakes import pressed
 from own_bodies import taper, write
 
-from fem_impact.answers.cost.settings import settings_of
 from fem_impact.answers.refine import level as level_module
 from fem_impact.answers.verdict import assess as assess_module
 from fem_impact.answers.verdict.assess import assess
@@ -334,7 +333,7 @@ def test_a_spin_that_lifts_the_contact_point_at_some_inclinations_leaves_them_ou
 
 def test_a_spin_that_lifts_the_contact_point_is_refused_before_any_work():
     lifted = replace_all(load("t5b"), {"impact.omega": "150 rad/s"})
-    for work in (lambda: assess(lifted), lambda: settings_of(lifted), lambda: Case.of(lifted)):
+    for work in (lambda: assess(lifted), lambda: Case.of(lifted)):
         with pytest.raises(SceneError, match=r"impact\.omega = .* lifts the contact point off the barrier"):
             work()
 

@@ -3,8 +3,8 @@
 import pytest
 
 from fem_impact.answers.cost.judge import Judged
-from fem_impact.answers.cost.measure import CostStudy
-from fem_impact.answers.refine.extrapolate import ExtrapolatedValue
+from fem_impact.answers.cost.measure import PLACES, CostStudy
+from fem_impact.answers.refine.extrapolate import QuantityLimit
 from fem_impact.evidence.studies.cost_report import FRONT, paper_report, scene_report
 from fem_impact.figures import still, style
 from fem_impact.figures.live import live
@@ -13,29 +13,23 @@ from fem_impact.scene.shipped import load
 NAMES = ("e", "mu", "E_vib")
 
 
-def setting(kind, cpu_s, error, band=None):
+def setting(kind, cpu_s, error, name=None, default=False):
     return Judged(
-        name=kind,
+        name=name or kind,
         kind=kind,
-        fidelity=kind,
-        meshes=[dict(finer=1), dict(finer=0)] if band else [],
-        places=4,
+        levels=3 if kind in PLACES.values() else 0,
+        default=default,
         tip_size_m=None,
         value=dict.fromkeys(NAMES, 0.5),
         error=dict.fromkeys(NAMES, error),
-        scatter=dict.fromkeys(NAMES, 0.001),
-        band={} if band is None else dict.fromkeys(NAMES, band),
-        wall_s=cpu_s,
         cpu_s=cpu_s,
         two_cores_s=cpu_s,
-        element_steps=None,
-        peak_memory_MB=None,
     )
 
 
 def study(settings, scene="t5b"):
-    limits = dict.fromkeys(NAMES, ExtrapolatedValue(0.5, 1.0, 0.01, 0.5))
-    return CostStudy(load(scene), limits, sorted(settings, key=lambda one: one.cpu_s), [], {})
+    limits = dict.fromkeys(NAMES, QuantityLimit(0.5, 0.01, 0.5))
+    return CostStudy(load(scene), limits, {}, sorted(settings, key=lambda one: one.cpu_s), [], {})
 
 
 @pytest.fixture
@@ -45,7 +39,7 @@ def drawn(monkeypatch, tmp_path):
     monkeypatch.setattr(style, "save", lambda figure, path: kept.append(figure))
 
     def draw(rigid, mesh, names=("e",)):
-        settings = [setting("rigid", 1e-4, rigid), setting("mesh", 30.0, mesh)]
+        settings = [setting("rigid", 1e-4, rigid), setting("levels", 30.0, mesh)]
         still.draw(scene_report(study(settings), names).pictures[0], tmp_path / "x.svg")
         kept[0].draw_without_rendering()
         return [axes for axes in kept[0].axes if axes.get_visible()]
@@ -78,22 +72,20 @@ def test_every_panel_has_its_times_and_no_panel_is_empty(drawn):
 
 RUNG = [
     setting("rigid", 1e-4, 0.3),
-    setting("default", 4.0, 0.015),
-    setting("mesh", 10.0, 0.04),
-    setting("numerics", 12.0, 0.05),
+    setting("levels", 10.0, 0.04, "3 levels", default=True),
+    setting("two places", 25.0, 0.05),
+    setting("variant", 12.0, 0.01, "default run without savings"),
 ]
 
 
 def test_the_answer_comes_first_and_names_the_default_run():
     (answer,) = scene_report(study(RUNG), ("e", "mu")).findings
     assert answer == (
-        "No setting brings e and mu within 2 %; best: mesh, error 4 % in 10 s. "
-        "The default run takes 4 s of processor time; its error is at most 1.5 % in e and 1.5 % in mu. "
-        "It ran at one place of the grid, so that may be small by chance, and it is not compared with the "
-        "others."
+        "No setting brings e and mu within 2 %; best: 3 levels, error 4 % in 10 s. "
+        "The default run takes 10 s of processor time; its bands are 4 % of e and 4 % of mu."
     )
     (answer,) = scene_report(study(RUNG), ("e",), 0.05).findings
-    assert answer.startswith("Cheapest within 5 % of e: mesh, error 4 % in 10 s. The default run")
+    assert answer.startswith("Cheapest within 5 % of e: 3 levels, error 4 % in 10 s. The default run")
 
 
 def test_a_quantity_is_answered_alone_only_where_another_setting_serves_it():
@@ -101,7 +93,7 @@ def test_a_quantity_is_answered_alone_only_where_another_setting_serves_it():
     quick.error["e"] = 0.01
     (answer,) = scene_report(study([*RUNG, quick]), ("e", "mu"), 0.05).findings
     assert answer.startswith(
-        "Cheapest within 5 % of e and mu: mesh, error 4 % in 10 s. "
+        "Cheapest within 5 % of e and mu: 3 levels, error 4 % in 10 s. "
         "Cheapest within 5 % of e: modal, error 1 % in 0.01 s. The default run"
     )
 
@@ -110,32 +102,27 @@ def test_the_plot_marks_the_front_and_names_each_point():
     (picture,) = scene_report(study(RUNG), ("e",)).pictures
     series = {one.label: one for one in picture.panels[0].series}
     assert (list(series[FRONT].x), list(series[FRONT].y)) == ([1e-4, 10.0], [30.0, 4.0])
-    assert series["default run"].texts == ("default",)
-    names = picture.table().texts("setting")
-    assert names == ["rigid", "default", "mesh", "numerics"]
+    assert series["levels, one place of the grid"].texts == ("3 levels",)
+    assert picture.table().texts("setting") == ["rigid", "3 levels", "two places"]
     (panel,) = live(picture)["panels"]
     assert next(trace["text"] for trace in panel["data"] if "text" in trace) == ["rigid"]
     words = panel["layout"]["xaxis"]["ticktext"]
     assert words == ["0.0001", "0.001", "0.01", "0.1", "1", "10", "100"]
-    assert panel["layout"]["yaxis"]["ticktext"][:4] == ["1", "2", "5", "10"]
 
 
-def test_the_page_over_all_sets_counts_what_several_meshes_reach():
-    one = study([*RUNG, setting("extrapolated", 30.0, 0.02, band=0.015)])
-    two = study([*RUNG, setting("extrapolated", 40.0, 0.03, band=0.025)], "t4")
+def test_the_page_over_all_sets_counts_what_levels_reach():
+    one = study([*RUNG, setting("two places", 30.0, 0.015, "4 levels, two places")])
+    two = study([*RUNG, setting("two places", 40.0, 0.025, "4 levels, two places")], "t4")
     report = paper_report({"t5b": one, "t4": two})
     (answer,) = report.findings
-    assert answer.startswith(
-        "Two or three meshes together give e to 2 % in 1 of 2 sets, in 30 to 30 s on two cores."
-    )
-    assert "One default run takes 4 to 4 s on one core" in answer
+    assert answer.startswith("Levels give e to 2 % in 1 of 2 sets, in 30 to 30 s on two cores.")
+    assert "The default run takes 10 to 10 s on one core; its bands have a median of 4 % of e" in answer
+    assert "without savings takes 1.2 to 1.2 times as long and changes e by at most 1 %" in answer
     assert [panel.title for panel in report.pictures[0].panels] == ["t5b: e", "t5b: E_vib"]
-    assert [sheet.name for sheet in report.sheets] == ["price", "meshes", "settings"]
-    price, meshes, settings = (sheet.table for sheet in report.sheets)
-    assert price.cells("error, %") == ["10", "5", "2", "1"]
+    assert [sheet.name for sheet in report.sheets] == ["price", "settings", "levels"]
+    price, settings, _ = (sheet.table for sheet in report.sheets)
+    assert price.cells("error, %") == ["20", "10", "5", "2"]
     for name in ("e", "E_vib"):
-        assert price.cells(f"{name}: reached in") == ["2 of 2", "2 of 2", "1 of 2", "0 of 2"]
-        assert price.cells(f"{name}: median, s")[:3] == ["35", "35", "30"]
-        assert price.cells(f"{name}: longest, s")[:3] == ["40", "40", "30"]
-    assert meshes.cells("e: band, % (scatter)") == ["**1.5** (0.1)", "2.5 (0.1)"]
-    assert settings.cells("mesh") == ["4 ± 0.1 / 4 ± 0.1, 10 s"] * 2
+        assert price.cells(f"{name}: reached in") == ["2 of 2", "2 of 2", "2 of 2", "1 of 2"]
+        assert price.cells(f"{name}: median, s") == ["10", "10", "10", "30"]
+    assert settings.cells("3 levels") == ["4 / 4, 10 s (default)"] * 2

@@ -10,7 +10,8 @@ import pytest
 from study_fakes import outcome, published
 
 from fem_impact.answers import report as document
-from fem_impact.answers.refine.extrapolate import EVEN
+from fem_impact.answers.refine.extrapolate import MeshRuns
+from fem_impact.answers.refine.work import Levels
 from fem_impact.answers.report import Request
 from fem_impact.case.case import Case
 from fem_impact.evidence.references.hertz import SPAN
@@ -19,17 +20,18 @@ from fem_impact.evidence.studies.criterion import (
     BLIND,
     ENDS,
     MODAL,
-    SIZES,
     angle_rows,
     conclude,
     families,
+    levels_job,
     plan,
     rods_of,
     rods_over_angles,
+    solid_rods,
+    solid_rows,
 )
 from fem_impact.evidence.studies.criterion_findings import HERTZ, crossing, exponent, solid_onsets
-from fem_impact.evidence.studies.pairs import PLACES
-from fem_impact.evidence.studies.rod_runs import mesh_runs, run_table
+from fem_impact.evidence.studies.rod_runs import run_table
 from fem_impact.evidence.studies.rod_theory import (
     blind_ratio,
     contact_time,
@@ -38,7 +40,7 @@ from fem_impact.evidence.studies.rod_theory import (
     static_restitution,
 )
 from fem_impact.evidence.studies.rods import PAPER_RODS, STATES, DroppedRod, length_of
-from fem_impact.jobs.job import Failure
+from fem_impact.jobs.job import Failure, Job
 from fem_impact.modal.impact import solve
 from fem_impact.modal.rod import modal_rod
 from fem_impact.physics.contact_law import contact_law
@@ -167,6 +169,9 @@ def test_the_bending_blind_direction_of_the_papers_rods():
 
 def fake(job):
     """e falls with length and angle where the rod can vibrate; contacts last 100 us."""
+    if getattr(job, "twin", None) is not None:
+        e, rigid = (fake(Job("", scene)).restitution.edge.e for scene in (job.scene, job.twin))
+        return levels_of((e, e), (rigid, rigid))
     lost = 8 * job.scene.projectile.length**2 if "vibration" in job.scene.effects else 0.0
     e = 1.0 - lost * np.sin(job.scene.impact.angle)
     return outcome(e_edge=float(e), contacts=[TOUCH], E_vib_over_E_0=(job.scene.surface.friction - 0.5) ** 2)
@@ -203,7 +208,18 @@ def test_the_study_judges_the_criterion(results, tmp_path, monkeypatch):
     assert "without a loss to vibration" in found.text
     assert set(drawn) == {"angles", "onset", "static-give", "master", "blind-direction"}
     levels = (tmp_path / "levels.csv").read_text().splitlines()
-    assert len(levels) == 1 + 2 * 3 * (len(families(True)) - len((BLIND, ENDS)) + len(("spring",)))
+    assert len(levels) == 1 + 2 * 3 * (
+        len(families(True)) + len(solid_rods(True)) - len((BLIND, ENDS)) + len(("spring",))
+    )
+
+
+def levels_of(e, e_rigid):
+    """Two levels of a rod and its twin."""
+    pairs = [
+        [outcome(e_edge=one, contacts=[TOUCH], E_vib_over_E_0=0.01) for one in pair]
+        for pair in zip(e, e_rigid, strict=True)
+    ]
+    return Levels(tuple(MeshRuns(0.5**n, pair) for n, pair in enumerate(pairs)), 2)
 
 
 def test_every_rod_has_a_rigid_twin_on_the_same_contact(tmp_path):
@@ -216,70 +232,40 @@ def test_every_rod_has_a_rigid_twin_on_the_same_contact(tmp_path):
 
 
 def test_the_yielding_rods_are_those_that_were_promised():
-    every = families(False)
+    every = solid_rods(False)
     for state in ("contaminated", "machined"):
-        rods = {run.rod for run in every[f"yielding, {state}"]}
+        rods = every[f"yielding, {state}"]
         assert {round(d.gamma, 9) for d in rods} == {10.0, 15.0, 20.0, LIMIT, 35.0, 50.0, 80.0}
-        assert len({d.angle for d in rods}) == 6 and len(rods) == 42
+        assert len({d.angle for d in rods}) == 6 and len(set(rods)) == 42
         assert {d.friction for d in rods} == {STATES[state]}
     for quick in (False, True):
         modal = {rod.name for rod in rods_over_angles(MODAL[HERTZ[1]], quick)}
-        assert {run.point for run in families(quick)[ENDS]} <= modal
-
-
-def solid_jobs(quick):
-    runs = [run for of_family in families(quick).values() for run in of_family if run.fidelity == "solid"]
-    return [run.job() for run in (*runs, *(run.twin for run in runs))]
-
-
-def test_the_yielding_rods_fit_their_time():
-    """Of the whole study every twelfth job, as each one's time takes a while to tell."""
-    times = [job.planned_s for job in solid_jobs(False)[::12]]
-    assert 12 * sum(times) < 2 * 3600 * 2
-    assert sum(job.planned_s for job in solid_jobs(True)) < 60 * 2
+        assert {rod.name for rod in solid_rods(quick)[ENDS]} <= modal
+    job = levels_job(YIELDING)
+    assert set(job.scene.effects) ^ set(job.twin.effects) == {"vibration", "-vibration"}
 
 
 YIELDING = DroppedRod(length_of(10.0), 5.0, STATES["machined"], yields=True)
 
 
-def two_meshes(rod, e, e_rigid, apart=0.0):
-    """Results of a rod and its rigid twin on both meshes at two places, the rod's e ``apart``."""
-    results = {}
-    for size, free, stiff in zip(SIZES, e, e_rigid, strict=True):
-        for run, shift in zip(mesh_runs(rod, [size], PLACES), (-apart / 2, apart / 2), strict=True):
-            results[run.name] = outcome(e_edge=free + shift, contacts=[TOUCH])
-            results[run.twin.name] = outcome(e_edge=stiff, contacts=[TOUCH])
-    return results
+def rows_of(**levels):
+    results = {levels_job(YIELDING).name: levels_of(**levels)}
+    return solid_rows({"yielding, machined": [YIELDING]}, results)
 
 
-def solid_rods(results, *rods):
-    runs = [run for rod in rods for run in mesh_runs(rod, SIZES, PLACES)]
-    return angle_rows(run_table({"yielding, machined": runs}, results))
-
-
-def test_a_mesh_that_shifts_both_rods_alike_leaves_no_band():
-    (angle,) = solid_rods(two_meshes(YIELDING, (0.40, 0.38), (0.30, 0.28)), YIELDING)
+def test_levels_that_shift_both_rods_alike_leave_no_band():
+    (angle,) = rows_of(e=(0.38, 0.40), e_rigid=(0.28, 0.30))
     (rod,) = rods([angle]).itertuples()
     assert rod.error_of_e == pytest.approx(0.10) and rod.error_high == pytest.approx(rod.error_low)
-    assert angle["e"] > 0.40 and rod.T1_over_tau == pytest.approx(YIELDING.first_period / 1e-4)
-    (rod,) = rods(solid_rods(two_meshes(YIELDING, (0.40, 0.38), (0.30, 0.30)), YIELDING)).itertuples()
-    half = 0.5 * 0.02 / (2**0.75 - 1)
-    assert (rod.error_of_e, rod.error_high) == pytest.approx((0.10 + half, 0.10 + 2 * half))
+    assert angle["e"] == 0.40 and rod.T1_over_tau == pytest.approx(YIELDING.first_period / 1e-4)
+    (rod,) = rods(rows_of(e=(0.38, 0.40), e_rigid=(0.30, 0.30))).itertuples()
+    half = 0.5 * 0.02 / (2**0.75 - 1)  # three times as wide, as each level runs once
+    assert (rod.error_of_e, rod.error_high) == pytest.approx((0.10 + half, 0.10 + 4 * half))
 
 
-def test_the_band_of_a_rod_holds_the_scatter_over_the_places():
-    results = two_meshes(YIELDING, (0.40, 0.38), (0.30, 0.30), apart=0.01)
-    (rod,) = rods(solid_rods(results, YIELDING)).itertuples()
-    half, weight = 0.5 * 0.02 / (2**0.75 - 1), 0.5 / (2**0.75 - 1)
-    scatter = EVEN[2] * 0.005 * hypot(1 + weight, weight)
-    assert (rod.error_of_e, rod.error_high) == pytest.approx((0.10 + half, 0.10 + 2 * half + scatter))
-
-
-def test_an_angle_whose_run_failed_is_left_out():
-    steep = replace(YIELDING, angle=20.0)
-    results = two_meshes(YIELDING, (0.4, 0.4), (0.3, 0.3)) | two_meshes(steep, (0.5, 0.5), (0.3, 0.3))
-    results[mesh_runs(steep, SIZES[1:], PLACES)[1].name] = Failure("x", "folded")
-    assert [row["angle_deg"] for row in solid_rods(results, YIELDING, steep)] == [YIELDING.angle]
+def test_a_rod_whose_levels_failed_is_left_out():
+    name = levels_job(YIELDING).name
+    assert solid_rows({"any": [YIELDING]}, {name: Failure(name, "folded")}) == []
 
 
 def test_the_onset_has_the_ends_of_its_band():

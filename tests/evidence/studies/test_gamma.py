@@ -11,11 +11,11 @@ from study_fakes import outcome, published
 
 from fem_impact.answers import report as document
 from fem_impact.answers.report import Request
+from fem_impact.answers.simulate import simulate
 from fem_impact.case.case import Case
 from fem_impact.evidence.studies.gamma import (
     ANGLES,
     SETS,
-    SIZES,
     conclude,
     families,
     how_sure,
@@ -23,45 +23,38 @@ from fem_impact.evidence.studies.gamma import (
     plan,
     share,
 )
-from fem_impact.evidence.studies.pairs import with_limits
 from fem_impact.evidence.studies.rod_runs import (
     FIRST,
-    MOST,
     SLACK,
-    mesh_runs,
-    more_jobs,
+    RodRun,
+    cut_job,
     points_of,
     run_table,
 )
 from fem_impact.evidence.studies.rods import PAPER_RODS, STATES, DroppedRod, length_of
-from fem_impact.evidence.studies.sets import HALF_CELL, jobs_of
 from fem_impact.jobs.job import Failure
-from fem_impact.outcome.record import KEY_TABLE
-from fem_impact.run.simulate import simulate
 from fem_impact.scene.library import surfaces
 from fem_impact.scene.shipped import load
-from fem_impact.scene.types import Accuracy, Save
 from rigid import LIMIT, slenderness
 
 TOUCH = {"start_s": 0.0, "end_s": 1e-4, "impulse_n_Ns": 0.1, "impulse_t_Ns": 0.0}
 AGAIN = {**TOUCH, "start_s": 3e-4, "end_s": 4e-4}
-HOURS, CORES = 2.5, 2  # that the whole study may take
 
 
 def fake(job):
-    """Vibration grows with length; elastic drops touch twice and then hold half; coarser meshes see less."""
+    """Vibration grows with length; elastic drops touch twice and then hold half; its band is a fifth."""
     elastic, cut = "barrier-elastic" in job.scene.effects, job.name.startswith(FIRST)
-    size = job.scene.accuracy.tip_size or 0.0
-    share = 0.1 * job.scene.projectile.length * (1 - 50 * size)
+    share = 0.1 * job.scene.projectile.length
     held = 0.5 * share if elastic and not cut else share
     touches = [TOUCH, AGAIN] if elastic and not cut and job.fidelity == "solid" else [TOUCH]
-    return outcome(
-        E_vib_over_E_0=held,
-        contacts=touches,
-        fidelity=job.fidelity,
-        tip_size_m=size or 4e-4,
-        residual_over_E_0=1e-6,
-    )
+    return banded(held, 0.2 * held, contacts=touches, fidelity=job.fidelity, residual_over_E_0=1e-6)
+
+
+def banded(vibration, band, **changed):
+    """An outcome whose vibration has a limit with a band."""
+    name = "E_vib_over_E_0"
+    numbers = {name: vibration, "mesh_limit": {name: vibration}, "mesh_band": {name: band}}
+    return outcome(**numbers | changed)
 
 
 def computed(request, change=lambda name, run: run):
@@ -125,87 +118,39 @@ def test_the_full_study_covers_what_it_promises():
     assert {run.point for run in families(False)["measured sets"]} == set(SETS)
 
 
-@pytest.mark.slow
-def test_the_whole_study_fits_its_time_and_begins_with_the_longest(tmp_path):
-    """Even if every second point but the measured sets asks for a finer mesh, and every fifth for another."""
-    times = [job.planned_s for job in plan(Request(tmp_path), {})]
-    assert times == sorted(times, reverse=True)
-    drawn = [run for name in ("curve", "other inputs") for run in families(False)[name]]
-    finer, finest = (
-        sum(s for run in drawn if run.size == size and (s := run.job().planned_s) <= MOST)
-        for size in SIZES[2:]
-    )
-    assert sum(times) + finer / 2 + finest / 5 < HOURS * 3600 * CORES
-
-
-def test_the_quick_study_fits_a_minute_and_begins_with_the_longest(tmp_path):
+def test_the_longest_runs_begin(tmp_path):
     times = [job.planned_s for job in plan(Request(tmp_path, quick=True), {})]
     assert times == sorted(times, reverse=True)
-    assert sum(times) < 60 * CORES
 
 
-@pytest.mark.parametrize("name", SETS)
-def test_measured_sets_run_on_the_meshes_of_their_own_study(tmp_path, name):
-    mine = [run for run in families(False)["measured sets"] if run.point == name]
-    theirs = jobs_of(name, False, tmp_path)
-    kinds = [kind for mesh in ("coarse", "fine") for kind in (mesh, f"{mesh}-{HALF_CELL}")]
-    for run, kind in zip(mine, kinds, strict=True):
-        scene, other = run.job().scene, theirs[kind].scene
-        apart = {"accuracy": Accuracy(), "save": Save()}
-        assert replace(scene, **apart) == replace(other, **apart)
-        assert Case.of(scene).zones == Case.of(other).zones
-        assert scene.accuracy.grid_shift == other.accuracy.grid_shift
+def test_rods_run_on_levels_at_two_places_and_their_twins_at_one():
+    (run,) = (one for one in families(False)["measured sets"] if one.point == "t5b")
+    job, twin = run.job(), run.twin.job()
+    assert (job.scene.accuracy.offsets, twin.scene.accuracy.offsets) == (2, 1)
+    assert job.way == twin.way == simulate
+    assert job.scene.impact == load("t5b").impact != twin.scene.impact
 
 
-LONG = mesh_runs(DroppedRod(0.24), SIZES, (0.0,))
-NAME = LONG[0].point
+LONG = RodRun(DroppedRod(0.24), "solid")
 
 
-def more_names(results):
-    return [job.name for job in more_jobs(run_table({"curve": LONG}, results), results)]
+def point_of(run, results):
+    return points_of(run_table({"curve": [run]}, results), results).iloc[0]
 
 
-def point_of(runs, results):
-    return points_of(run_table({"curve": runs}, results), results).iloc[0]
-
-
-def test_a_wide_band_asks_for_a_finer_mesh_and_a_second_contact_for_a_cut_run():
-    same = {
-        f"{NAME}-x{at:g}": outcome(E_vib_over_E_0=0.05, contacts=[TOUCH, AGAIN], tip_size_m=at * 1e-4)
-        for at in (1, 2)
-    }
-    (cut,) = more_jobs(run_table({"curve": LONG}, same), same)
-    assert cut.name == f"{FIRST}{NAME}"
+def test_a_second_contact_asks_for_a_cut_run():
+    cut = cut_job(LONG, outcome(contacts=[TOUCH, AGAIN]))
+    assert cut.name == f"{FIRST}{LONG.point}"
     assert cut.scene.accuracy.max_time == TOUCH["end_s"] + SLACK
-    apart = same | {f"{NAME}-x2": outcome(E_vib_over_E_0=0.04, contacts=[TOUCH], tip_size_m=2e-4)}
-    assert more_names(apart) == [f"{NAME}-x0.5", cut.name]
-    still = apart | {f"{NAME}-x0.5": outcome(E_vib_over_E_0=0.06, contacts=[TOUCH], tip_size_m=5e-5)}
-    assert more_names(still) == [f"{NAME}-x0.5", f"{NAME}-x0.25", cut.name]
-    settled = still | {f"{NAME}-x0.5": outcome(E_vib_over_E_0=0.05, contacts=[TOUCH], tip_size_m=5e-5)}
-    assert more_names(settled) == [f"{NAME}-x0.5", cut.name]
+    assert cut_job(LONG, outcome(contacts=[TOUCH])) is None
 
 
-def test_the_band_of_a_point_is_that_of_its_two_finest_meshes():
-    runs = {
-        size: outcome(E_vib_over_E_0=0.05 - 0.01 * size, contacts=[TOUCH], tip_size_m=size * 1e-4)
-        for size in SIZES
-    }
-    results = {f"{NAME}-x{size:g}": run for size, run in runs.items()}
-
-    def estimates(failed=None):
-        lost = {f"{NAME}-x{failed:g}": Failure("x", "folded")} if failed else {}
-        point = point_of(LONG, results | lost)
-        return point.E_vib_over_E_0, point.E_vib_over_E_0_band
-
-    def of_pair(fine, coarse):
-        return with_limits([runs[fine]], [runs[coarse]]).estimate(KEY_TABLE["E_vib_over_E_0"])
-
-    point = point_of(LONG, results)
-    assert (point.E_vib_over_E_0_own_mesh, point.reason) == (0.04, "")
-    assert estimates() == of_pair(0.25, 0.5)
-    assert estimates(failed=0.25) == of_pair(0.5, 1.0)
-    assert estimates(failed=0.5) == of_pair(1.0, 2.0)
-    assert point_of(LONG, results | {f"{NAME}-x1": Failure("x", "folded")}).reason == "folded"
+def test_a_point_has_the_limit_and_the_band_of_its_levels():
+    result = banded(0.05, 0.001, contacts=[TOUCH])
+    point = point_of(LONG, {LONG.name: altered(result, E_vib_over_E_0=0.04)})
+    assert (point.E_vib_over_E_0, point.E_vib_over_E_0_band) == (0.05, 0.001)
+    assert (point.E_vib_over_E_0_own_mesh, point.band_as_wanted, point.reason) == (0.04, "yes", "")
+    assert point_of(LONG, {LONG.name: Failure("x", "folded")}).reason == "folded"
 
 
 def test_the_study_says_how_much_where_and_why(tmp_path, drawn):
@@ -234,22 +179,21 @@ def test_vibration_that_falls_is_explained_by_its_later_contacts(tmp_path, drawn
     fallen = f"yv-{round(length_of(70.0) * 1e6)}"
 
     def alone(name, run):
-        return altered(run, E_vib_over_E_0=1e-3, E_vib_check_over_E_0=1e-3) if fallen in name else run
+        return banded(1e-3, 1e-4) if fallen in name else run
 
     said = published(conclude, request, computed(request, alone)).text
     assert "mostly because the first contact itself leaves less" in said and "no later one follows" in said
 
     def given_back(name, run):
-        if fallen not in name or name.startswith(FIRST) or "-x" not in name:
+        if fallen not in name or name.startswith(FIRST) or "-levels" not in name:
             return run
-        return altered(run, E_vib_over_E_0=1e-3, E_vib_check_over_E_0=1e-3, contacts=[TOUCH, AGAIN])
+        return banded(1e-3, 1e-4, contacts=[TOUCH, AGAIN])
 
     said = published(conclude, request, computed(request, given_back)).text
     assert "mostly because later contacts give energy back" in said
 
     def hardly(name, run):
-        shares = {"x2": 0.0205, "x4": 0.0165}
-        return altered(run, E_vib_over_E_0=shares[name[-2:]]) if fallen in name and "-x" in name else run
+        return banded(0.0205, 0.004) if fallen in name and "-levels" in name else run
 
     said = published(conclude, request, computed(request, hardly)).text
     assert "largest at gamma 57" in said and "beyond it stays within the bands" in said
@@ -258,7 +202,7 @@ def test_vibration_that_falls_is_explained_by_its_later_contacts(tmp_path, drawn
 def test_a_failed_run_leaves_a_gap_with_its_reason(tmp_path, drawn):
     request = Request(tmp_path, quick=True)
     results = computed(request)
-    lost = next(run.name for run in families(True)["curve"] if run.size == 2.0)
+    lost = families(True)["curve"][0].name
     results[lost] = Failure(lost, "folded")
     found = published(conclude, request, results)
     assert found.document["failures"] == [{"scene_id": lost, "error": "folded"}]
@@ -267,19 +211,6 @@ def test_a_failed_run_leaves_a_gap_with_its_reason(tmp_path, drawn):
     points = (tmp_path / "points.csv").read_text().splitlines()
     every = {run.point for runs in families(True).values() for run in runs if run.fidelity == "solid"}
     assert len(points) == 1 + len(every)
-
-
-def test_a_point_by_finite_elements(tmp_path):
-    """The smallest rod on two coarse meshes: a value with a band, a closed ledger, a contact time."""
-    runs = mesh_runs(
-        DroppedRod(length_of(10.0), friction=STATES["machined"], yields=True), (4.0, 2.0), (0.0,)
-    )
-    results = {run.name: simulate(run.job().scene, "solid") for run in (*runs, runs[0].twin)}
-    point = point_of(runs, results)
-    assert point.reason == "" and point.E_vib_over_E_0_band > 0
-    assert abs(point.residual_over_E_0) < 1e-4
-    assert 0.1 < point.T1_over_tau < 0.5
-    assert point.e_edge == pytest.approx(point.e_edge_rigid, abs=0.05)
 
 
 def test_other_inputs_are_listed_beside_the_point_of_the_curve():
@@ -307,13 +238,12 @@ def test_other_inputs_are_listed_beside_the_point_of_the_curve():
 
 
 def test_points_whose_two_counts_of_vibration_differ_are_counted():
-    counts = {"E_vib_over_E_0": 0.05, "E_vib_floor_over_E_0": 1e-6, "contacts": [TOUCH], "tip_size_m": 1e-4}
     runs, results = [], {}
     for length, check in ((0.24, 0.0501), (0.12, 0.0526)):
-        coarse, fine = pair = mesh_runs(DroppedRod(length), SIZES[:2], (0.0,))
-        results[fine.name] = outcome(**counts, E_vib_check_over_E_0=check)
-        results[coarse.name] = altered(outcome(**counts), tip_size_m=2e-4)
-        runs += pair
+        run = RodRun(DroppedRod(length), "solid")
+        counts = {"E_vib_floor_over_E_0": 1e-6, "E_vib_check_over_E_0": check}
+        results[run.name] = banded(0.05, abs(check - 0.05), contacts=[TOUCH], **counts)
+        runs.append(run)
     points = points_of(run_table({"curve": runs}, results), results)
     assert points.doubted.tolist() == [False, True]
     assert (

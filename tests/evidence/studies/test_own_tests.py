@@ -114,14 +114,13 @@ def test_the_arms_of_e_are_called_the_tests_only_where_these_state_them(cli, tmp
     assert f"e, the {told} arms" in html.unescape((tmp_path / "made" / "report.html").read_text())
 
 
-def test_a_study_of_sets_takes_scene_files(tmp_path, monkeypatch):
+def test_a_study_of_sets_takes_scene_files(tmp_path):
     path = write(tmp_path)
-    jobs = sets.jobs_of(str(path), True, tmp_path / "out")
-    assert jobs["fine"].name == "mine" and jobs["fine"].out == tmp_path / "out" / "mine"
+    job = sets.set_job(str(path), True, tmp_path / "out")
+    assert job.name == "mine" and job.out == tmp_path / "out" / "mine"
     request = sets.Request(tmp_path / "out", (str(path),), True)
     run = simulate(read_toml(path), "modal")
-    monkeypatch.setattr(sets, "with_limits", lambda fine, coarse: fine[0])
-    report = sets.conclude(request, {job.name: run for job in jobs.values()})
+    report = sets.conclude(request, {job.name: run})
     measured = {row["quantity"]: row["measured_mean"] for row in report.comparison}
     assert measured["mu"] == pytest.approx(float(np.mean(measured_set("t5b").recomputed()["mu"])))
     json.dumps(report.comparison)
@@ -225,16 +224,15 @@ def test_the_page_of_a_run_sets_it_beside_the_tests(cli, tmp_path):
 
 
 @pytest.mark.parametrize("means", [True, False])
-def test_a_report_over_a_study_of_own_scenes_judges_them_not_the_paper(cli, tmp_path, monkeypatch, means):
+def test_a_report_over_a_study_of_own_scenes_judges_them_not_the_paper(cli, tmp_path, means):
     path = write(tmp_path)
     if means:
         (tmp_path / "my_tests.csv").write_text(means_of())
     request = sets.Request(tmp_path / "results" / "sets", (str(path),), True)
     run = simulate(read_toml(path), "modal")
-    monkeypatch.setattr(sets, "with_limits", lambda fine, coarse: fine[0])
-    jobs = sets.jobs_of(str(path), True, request.out)
     (request.out / "mine").mkdir(parents=True)
-    published(sets.conclude, request, {job.name: run for job in jobs.values()})
+    run.write(request.out / "mine" / "outcome.json")
+    published(sets.conclude, request, {sets.set_job(str(path), True, request.out).name: run})
     code, _, err = cli("study", "report", "--quiet")
     assert (code, err) == (0, "")
     page = (tmp_path / "results" / "report" / "report.html").read_text()

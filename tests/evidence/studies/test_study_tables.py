@@ -88,18 +88,17 @@ def test_shares_are_percent_and_of_two_meshes_their_limits_with_bands():
 def test_a_study_changes_each_input_and_a_quick_one_none(tmp_path):
     jobs = jobs_of("t3-contaminated", False, tmp_path)
     changed = ["friction-low", "friction-high", "hardness", "rate-low", "rate-high", "block"]
-    assert list(jobs) == ["fine", "coarse", "fine-half-cell", "coarse-half-cell", *changed]
-    assert {jobs[f"{mesh}-half-cell"].scene.accuracy.grid_shift for mesh in ("fine", "coarse")} == {0.5}
+    assert list(jobs) == ["run", "one-mesh", *changed]
     gains = [rate_gain(jobs[name].scene.barrier.material, 1e3) for name in ("rate-low", "rate-high")]
     assert gains == pytest.approx([0.1, 0.6])
-    base = jobs["coarse"].scene
+    base = jobs["one-mesh"].scene
     assert jobs["friction-low"].scene.surface.friction == base.surface.friction_low
     assert jobs["friction-high"].scene.surface.friction == base.surface.friction_high
     harder = jobs["hardness"].scene
     assert harder.projectile.material.law == harder.barrier.material.law == "hardness"
     assert jobs["block"].scene.accuracy.block_margin == pytest.approx(9e-3)
     assert len({job.out for job in jobs.values() if job.out}) == 8
-    assert list(jobs_of("t3-contaminated", True, tmp_path)) == ["fine", "coarse"]
+    assert list(jobs_of("t3-contaminated", True, tmp_path)) == ["run"]
 
 
 def changed(name, quantity, value):
