@@ -22,7 +22,6 @@ from fem_impact.evidence.studies.criterion_findings import (
     exponent,
 )
 from fem_impact.evidence.studies.rod_runs import (
-    RESTITUTION,
     RodRun,
     among,
     as_table,

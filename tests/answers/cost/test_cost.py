@@ -1,9 +1,8 @@
-"""What accuracy costs: levels and models against a known limit, Pareto front, choice, stored jobs, documents."""
+"""What accuracy costs: levels and models against a known limit, front, choice, stored jobs, documents."""
 
 import csv
 import json
 import re
-from importlib import import_module
 
 import pytest
 from cost_fakes import LIMIT, Here, fake_levels, run
@@ -71,7 +70,7 @@ def test_the_error_of_levels_is_their_band_or_their_distance_from_the_limit_if_t
         if one.kind in ("levels", "two places"):
             away = abs(one.value["e"] - cost.limits["e"].value) / cost.limits["e"].scale
             assert one.error["e"] >= away * (1 - 1e-9)
-    finest = by_name(cost, max((o.name for o in cost.settings if o.kind == "two places")))
+    finest = by_name(cost, max(o.name for o in cost.settings if o.kind == "two places"))
     assert finest.error["e"] == pytest.approx(cost.limits["e"].error)
     assert abs(cost.limits["e"].value - LIMIT["e_edge"]) < cost.limits["e"].band
 

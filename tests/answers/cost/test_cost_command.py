@@ -38,7 +38,7 @@ def test_cost_prints_table_and_advice(cli, fake):
 
 def test_a_scene_without_vibration_is_judged_by_what_its_runs_know(cli, fake):
     rigid_rod = ("t5b", "--set", 'effects=["auto", "-vibration"]', "--quiet", "--budget", "400 s")
-    code, out, err = cli("cost", *rigid_rod)
+    code, _out, err = cli("cost", *rigid_rod)
     assert (code, err) == (0, "")
     assert "E_vib" not in json.loads(Path("results/cost/t5b/cost.json").read_text())["quantities"]
     code, _, err = cli("cost", *rigid_rod, "--of", "E_vib")

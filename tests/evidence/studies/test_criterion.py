@@ -2,7 +2,7 @@
 
 import re
 from dataclasses import replace
-from math import hypot, pi, sqrt
+from math import pi, sqrt
 
 import numpy as np
 import pandas

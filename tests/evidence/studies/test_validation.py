@@ -12,7 +12,6 @@ import pytest
 from study_fakes import outcome, published
 
 from fem_impact.answers.report import Request
-from fem_impact.case.case import Case
 from fem_impact.case.effects.plasticity import hardening_of
 from fem_impact.errors import RunError
 from fem_impact.evidence.studies import validation as study
