@@ -55,7 +55,7 @@ STUDIES = {
         "Each of the thirteen measured sets by finite elements on levels of meshes, with the grid of the "
         "plate at two places, and on one mesh with each uncertain input changed. It compares e, mu, Omega, "
         "the velocities and the energies with the tests, says which agree and what could explain those that "
-        "do not, and shows where the energy went. A scene file that names your own tests (the key measured) is "
+        "do not, and shows where the energy went. A scene file that names own tests (the key measured) is "
         "taken like a set.",
         "104 runs, some 10 min",
         "three sets, one place of the grid: 3 runs, under 1 min",
