@@ -21,6 +21,22 @@ SAME_PLACE = 1e-6  # of the length, as far as nodes of a user's mesh may lie fro
 
 
 @dataclass(frozen=True, eq=False)
+class LaterStrike:
+    """How a body that has struck before touches again.
+
+    Attributes
+    ----------
+    contact : both as they touch; of its tail, of the body turned over
+    alpha : angle between its axis and the barrier's normal, rad, of any size
+    lowest : (x, z), m, from its tip, of its lowest place
+    """
+
+    contact: ContactPair
+    alpha: float
+    lowest: tuple[float, float]
+
+
+@dataclass(frozen=True, eq=False)
 class Bodies:
     """Projectile and barrier of a scene under effects that are all listed; numbers are made at first use.
 
@@ -28,10 +44,12 @@ class Bodies:
     ----------
     scene : as stated; what it says of effects does not count
     effects : names of the effects in force
+    later : how they touch in a strike after the first; None: as the scene says
     """
 
     scene: Scene
     effects: tuple[str, ...]
+    later: LaterStrike | None = None
 
     @property
     def rod(self) -> ProjectileSpec:
@@ -50,7 +68,9 @@ class Bodies:
 
     @cached_property
     def contact(self) -> ContactPair:
-        """Both as they touch first."""
+        """Both as they touch."""
+        if self.later is not None:
+            return self.later.contact
         barrier, seen = self.scene.barrier, self.scene.relative
         steel, h = barrier.material, barrier.thickness
         return ContactPair(
@@ -131,10 +151,15 @@ class Bodies:
 
         It is that of the impact, but a ball has no axis: it is meshed with its pole at the contact.
         """
+        return self.first_inclination if self.later is None else self.later.alpha
+
+    @property
+    def first_inclination(self) -> float:
+        """The same, rad, in the first strike, for which the mesh was made."""
         return 0.0 if self.scene.projectile.is_ball else self.scene.impact.angle
 
     @cached_property
     def lowest_point(self) -> Array:
         """The projectile's lowest point (3,) in the frame of its mesh, m."""
-        rho, z = self.body.contact_point(self.mesh_inclination)
+        rho, z = self.later.lowest if self.later else self.body.contact_point(self.mesh_inclination)
         return np.array([float(rho), 0.0, float(z)])

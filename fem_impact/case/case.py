@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 
-from fem_impact.case.bodies import Bodies
+from fem_impact.case.bodies import Bodies, LaterStrike
 from fem_impact.case.cells import coarse_tip, thin_cells
 from fem_impact.case.choose import Decision, all_effects, choices, decide, neglected, require_approach
 from fem_impact.case.effects.fill import filled
@@ -15,6 +15,7 @@ from fem_impact.case.effects.slots import ModelSpec
 from fem_impact.case.elastic_only import require_crushing_named
 from fem_impact.case.layers import block_of, require_layers, thin_layer
 from fem_impact.case.limits import (
+    require_carried,
     require_first_part,
     require_followed,
     require_own_mesh,
@@ -51,11 +52,13 @@ class Case:
     fidelity : rigid, modal or solid
     record : where the bodies touched and flowed in a coarser run, or may at first; the zones of the meshes
         follow it. Without one they follow the estimate of one contact
+    later : how the bodies touch in a strike after the first, None in the first
     """
 
     scene: Scene
     fidelity: str = "solid"
     record: ContactRecord | None = None
+    later: LaterStrike | None = None
 
     @classmethod
     def of(cls, scene: Scene, fidelity: str = "solid", record: ContactRecord | None = None) -> Case:
@@ -87,6 +90,7 @@ class Case:
         require_layers(case.bodies, fidelity)
         require_closed_form(case.bodies, slots, fidelity)
         if fidelity == "solid":
+            require_carried(scene, slots)
             case._require_mesh(slots)
         if fidelity == "solid" and "modal" in dict(scene.strikes.stated):
             cls.of(scene, "modal")  # which computes later strikes
@@ -134,7 +138,7 @@ class Case:
     @cached_property
     def _whole(self) -> Bodies:
         """The bodies with all effects in force that the scene does not force off (SceneError: as above)."""
-        bodies = Bodies(self.scene, all_effects(self.scene.effects))
+        bodies = Bodies(self.scene, all_effects(self.scene.effects), self.later)
         require_approach(bodies)
         check_effects(self.scene.effects)
         return bodies
@@ -142,7 +146,9 @@ class Case:
     @cached_property
     def bodies(self) -> Bodies:
         """The bodies with the effects in the model."""
-        return self._whole if self._whole.effects == self.active else Bodies(self.scene, self.active)
+        return (
+            self._whole if self._whole.effects == self.active else Bodies(self.scene, self.active, self.later)
+        )
 
     @property
     def contact(self) -> ContactPair:

@@ -72,7 +72,7 @@ def body_cell(bodies: Bodies) -> float:
     """
     rod = bodies.rod
     plain = rod.is_rod or rod.own_mesh is not None
-    width = rod.diameter if plain else 2 * _contact_radius(rod, bodies.mesh_inclination, bodies.scene.across)
+    width = rod.diameter if plain else 2 * _contact_radius(rod, bodies.first_inclination, bodies.scene.across)
     edge = width / bodies.scene.across
     if edge < FINEST:
         raise SceneError(

@@ -7,6 +7,7 @@ from collections.abc import Collection
 from dataclasses import replace
 
 from fem_impact.case.bodies import Bodies
+from fem_impact.case.effects.slots import ModelSpec
 from fem_impact.case.plates import is_wider, thin_plate
 from fem_impact.errors import SceneError
 from fem_impact.outcome.limitation import Limitation, limitations
@@ -178,6 +179,26 @@ def require_followed(scene: Scene) -> None:
         value=scene.impact.until,
         remedy='Leave out barrier.mass, so that the barrier stands, or use until = "first".',
     )
+
+
+def require_carried(scene: Scene, slots: ModelSpec) -> None:
+    """Refuse finite elements over several strikes where what one leaves is not handed on (SceneError)."""
+    (_, count), *_ = scene.strikes.stages("solid")
+    if scene.impact.until == FIRST or count == 1:
+        return
+    obstacles = {
+        "a rod without vibration, whose nose alone is meshed": not slots.vibrating,
+        "a viscous rod, whose cells remember their strains": slots.contact_loss is not None,
+        "a plate that bends and still swings": scene.barrier.bends,
+    }
+    what = next((what for what, holds in obstacles.items() if holds), "")
+    if what:
+        raise SceneError(
+            f"asks finite elements for more than the first strike of {what}.",
+            key="strikes.fidelity",
+            value=scene.strikes.fidelity,
+            remedy='Write "solid for the first 1, then modal" or "solid for the first 1, then rigid".',
+        )
 
 
 def require_point(bodies: Bodies, fidelity: str) -> None:

@@ -153,8 +153,8 @@ def together(records: Sequence[ContactRecord]) -> ContactRecord:
         return first
     barriers = [record.barrier for record in records if record.barrier is not None]
     return ContactRecord(
-        _joined([record.rod for record in records]),
-        _joined(barriers) if barriers else None,
+        joined([record.rod for record in records]),
+        joined(barriers) if barriers else None,
         first.sites,
         any(record.left for record in records),
         all(record.resolved for record in records),
@@ -162,7 +162,7 @@ def together(records: Sequence[ContactRecord]) -> ContactRecord:
     )
 
 
-def _joined(bodies: Sequence[BodyRecord]) -> BodyRecord:
+def joined(bodies: Sequence[BodyRecord]) -> BodyRecord:
     """Return where a body touched and flowed in one run or another."""
     touched, flowed, strain = (
         np.concatenate([getattr(body, key) for body in bodies]) for key in ("touched", "flowed", "strain")

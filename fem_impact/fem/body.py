@@ -185,17 +185,19 @@ def invert(mass: Array, bodies: list[MeshedBody]) -> Array:
 
 
 class MeshedBodies:
-    """Meshes, numbering and masses of a case's bodies; each part is made at its first use and cached."""
+    """Meshes, numbering and masses of a case's bodies; each part is made at its first use and cached.
 
-    def __init__(self, case: Case) -> None:
-        self.case, self.scene, self.spec = case, case.scene, case.slots
+    A rod that has struck before keeps its ``mesh``.
+    """
+
+    def __init__(self, case: Case, mesh: RodMesh | None = None) -> None:
+        self.case, self.scene, self.spec, self.mesh = case, case.scene, case.slots, mesh
 
     @cached_property
     def geometry(self) -> Geometry:
         """Return the meshes."""
-        return build_geometry(
-            self.case.bodies, self.case.zones, HEIGHT, self.spec.meshed_barrier, self.spec.vibrating
-        )
+        meshed = HEIGHT, self.spec.meshed_barrier, self.spec.vibrating
+        return build_geometry(self.case.bodies, self.case.zones, *meshed, self.mesh)
 
     @cached_property
     def layout(self) -> DofLayout:

@@ -68,23 +68,19 @@ def tail_corners(bodies: Bodies) -> Array:
 
 
 def build_geometry(
-    bodies: Bodies, zones: AnyZones, gap: float, meshed_barrier: bool, vibrating: bool = True
+    bodies: Bodies,
+    zones: AnyZones,
+    gap: float,
+    meshed_barrier: bool,
+    vibrating: bool = True,
+    rod: RodMesh | None = None,
 ) -> Geometry:
-    """Mesh the rod (its nose alone if it cannot vibrate) and, if wanted, the barrier block under it."""
+    """Mesh the rod (its nose alone if it cannot vibrate) and, if wanted, the barrier block under it.
+
+    A ``rod`` that has struck before keeps its mesh.
+    """
     turn, lowest = to_barrier_frame(bodies.mesh_inclination), bodies.lowest_point
-    rod = _rod(bodies, lowest, zones.in_rod(lowest, turn))
-    if isinstance(zones, RecordedZones) and zones.rod_rows:
-        part = zones.pressed(rod.mesh) & _first_segment(bodies, rod.mesh)
-        rod = replace(rod, mesh=meshes.with_thin_rows(rod.mesh, part, zones.tip_size, zones.rod_rows))
-    if not vibrating:
-        if bodies.rod.own_mesh:
-            place = (rod.mesh.points - lowest) @ turn.T
-            near = rod.mesh.cells[zones.rod_flow(rod.mesh, place)]
-            end = float(rod.mesh.points[near, 2].max())  # past all that may yield
-            rod = RodMesh.cut(rod.mesh, max(end, bodies.rod.diameter / 3))
-        if not len(rod.rest_cells):
-            raise no_rest()
-        rod = meshes.without_slices(rod, rest_points(bodies, rod.body_start))
+    rod = rod or _mesh(bodies, zones, vibrating)
     points = (rod.mesh.points - lowest) @ turn.T
     if isinstance(zones, Zones) and bodies.mesh_inclination:  # an upright body has no side that could strike
         _require_tip_first(points, zones.base, bodies.rod.own_mesh is not None)
@@ -102,6 +98,25 @@ def build_geometry(
         *(rod, points, barrier, *sizes, zones.conforming, zones.skin_rows, may_yield, touching),
         middle=zones.middle,
     )
+
+
+def _mesh(bodies: Bodies, zones: AnyZones, vibrating: bool) -> RodMesh:
+    """Return the mesh of the rod, of its nose alone if it cannot vibrate."""
+    turn, lowest = to_barrier_frame(bodies.mesh_inclination), bodies.lowest_point
+    rod = _rod(bodies, lowest, zones.in_rod(lowest, turn))
+    if isinstance(zones, RecordedZones) and zones.rod_rows:
+        part = zones.pressed(rod.mesh) & _first_segment(bodies, rod.mesh)
+        rod = replace(rod, mesh=meshes.with_thin_rows(rod.mesh, part, zones.tip_size, zones.rod_rows))
+    if not vibrating:
+        if bodies.rod.own_mesh:
+            place = (rod.mesh.points - lowest) @ turn.T
+            near = rod.mesh.cells[zones.rod_flow(rod.mesh, place)]
+            end = float(rod.mesh.points[near, 2].max())  # past all that may yield
+            rod = RodMesh.cut(rod.mesh, max(end, bodies.rod.diameter / 3))
+        if not len(rod.rest_cells):
+            raise no_rest()
+        rod = meshes.without_slices(rod, rest_points(bodies, rod.body_start))
+    return rod
 
 
 def rest_points(bodies: Bodies, start: float) -> Array:

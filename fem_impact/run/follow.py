@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
+from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import Unknown, unknown
 from fem_impact.outcome.limitation import Limitation, limitations
 from fem_impact.outcome.strikes import StrikeRecord, Strikes
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from fem_impact.case.case import Case
     from fem_impact.outcome.record import Outcome
     from fem_impact.run.modal_strikes import ModalCourse
+    from fem_impact.solid.run import SolidResult
 
 LATER = "Strikes of a rigid body after those of a finer model do not feel its vibration."
 STILL = "The vibration that finite elements left counts as damped before the next strike."
@@ -26,22 +28,29 @@ CHANGE = (
 )
 
 
-def with_strikes(case: Case, outcome: Outcome) -> Outcome:
-    """Return an outcome with the strikes that its scene asks for, from its first impact on."""
-    strikes, told = _strikes_of(case, outcome)
+def with_strikes(
+    case: Case, outcome: Outcome, end: SolidResult | None = None, options: RunOptions = RunOptions()
+) -> Outcome:
+    """Return an outcome with the strikes that its scene asks for, from its first impact on.
+
+    ``end`` is that of finite elements, whose later strikes tell their progress as the ``options`` say.
+    """
+    strikes, told = _strikes_of(case, outcome, end, options)
     strikes = with_spread(case, strikes)
     validity = replace(outcome.validity, limitations=(*outcome.validity.limitations, *told))
     return replace(outcome, strikes=strikes, validity=validity)
 
 
-def _strikes_of(case: Case, outcome: Outcome) -> tuple[Strikes, tuple[Limitation, ...]]:
+def _strikes_of(
+    case: Case, outcome: Outcome, end: SolidResult | None, options: RunOptions
+) -> tuple[Strikes, tuple[Limitation, ...]]:
     """Return the strikes of a case, whose first impact has an ``outcome``, and what limits trust in them."""
     after = [outcome.motion.V_n, outcome.motion.V_t, outcome.motion.Omega]
     lost = next((v for v in after if isinstance(v, Unknown)), None)
-    if lost is not None:
+    if end is not None and lost is not None:
         none = unknown(Strikes, f"the motion after the first impact is not known: {lost.reason}")
         return replace(none, until=case.scene.impact.until), ()
-    course = _Course.of(case, outcome)
+    course = _Course.of(case, end, options)
     course.follow()
     body = course.body
     strikes = body.strikes(course.state, course.finish, *course.held)
@@ -54,7 +63,8 @@ class _Course:
 
     Attributes
     ----------
-    outcome : of the first impact
+    end : of the first impact by finite elements
+    options : of later ones
     body : with the records of its strikes
     state : its rigid motion after the last of them, at first before it touches
     finish : how the last stage ended
@@ -63,7 +73,8 @@ class _Course:
     """
 
     case: Case
-    outcome: Outcome
+    end: SolidResult | None
+    options: RunOptions
     body: Followed
     state: State
     finish: Finish = Finish.COUNTED
@@ -71,10 +82,10 @@ class _Course:
     told: list[str] = field(default_factory=list)
 
     @classmethod
-    def of(cls, case: Case, outcome: Outcome) -> _Course:
+    def of(cls, case: Case, end: SolidResult | None, options: RunOptions) -> _Course:
         """Return the course before the first strike."""
         body, seen = Followed.of(case), case.scene.relative
-        return cls(case, outcome, body, body.touching(seen.angle, seen.v_n, seen.v_t, seen.omega))
+        return cls(case, end, options, body, body.touching(seen.angle, seen.v_n, seen.v_t, seen.omega))
 
     @property
     def held(self) -> tuple[float, float]:
@@ -114,8 +125,12 @@ class _Course:
         self.state = self.modal.state
 
     def _by_elements(self) -> None:
-        self.body.each.append(self.body.first_record(self.outcome))
-        self.state = self.body.after(self.outcome)
+        from fem_impact.run.solid_strikes import SolidCourse
+
+        assert self.end is not None, "finite elements compute the first strike"
+        course = SolidCourse.at_first(self.body, self.end)
+        self.finish = course.to_the_end(self.options)
+        self.state, self.told = course.state, [*self.told, *course.limits]
 
     def _tell_change(self, model: str, count: int) -> None:
         """Tell how far the model of the next strikes is from that of the last one, which both compute."""

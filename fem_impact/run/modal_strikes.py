@@ -28,7 +28,6 @@ MOST = 40
 """Strikes that modes compute at most."""
 LOOK, LOOKS = 0.5, 1000  # rad of the fastest mode between looks at a rod that nearly touches, and most looks
 MARGIN = 1.2  # over the amplitudes of the modes together, about which a touch is looked for
-SLOWEST = 1e-9  # m/s, of a rod that comes down
 TOLD = (
     "{} strikes are computed with modes, each on a surface that nothing has dented; what touches again "
     "within a bending period belongs to the strike before. In flight the modes swing on, damped by the loss "
@@ -75,7 +74,7 @@ class ModalCourse:
 
         It ends sooner than a first impact that stands by itself, which counts what touches much later to it.
         """
-        first, seen = closed(case, ahead=_ahead(case)), case.scene.relative
+        first, seen = closed(case, ahead=one_strike(case)), case.scene.relative
         begin = followed.touching(seen.angle, seen.v_n, seen.v_t, seen.omega)
         course = cls(case, followed, first.rod, begin, first.last.q, first.last.rate, modal_loss(case))
         course._enter(begin, first, 0.0)
@@ -102,7 +101,7 @@ class ModalCourse:
         """Follow the rod: hard strikes by modes, what lies between and after them as a rigid body."""
         while self.followed.missing != 0 and self.strikes < MOST and self.finished:
             touch = self._touch()
-            if touch is None or not self._hard(touch):
+            if touch is None or not self.followed.hard(touch):
                 state, finish = self.followed.go_on(self.state, LEAST_BY_LAW)
                 self.swing_on(state)
                 if finish is not Finish.STRONG:
@@ -114,19 +113,6 @@ class ModalCourse:
         end, finish = self.followed.go_on(self.state)
         self.swing_on(end)
         return finish
-
-    def _comes(self, state: State) -> tuple[float, float]:
-        """Return the speed, m/s, at which a rigid rod comes down on what is lowest, and its arm d_c, m."""
-        corner = self.followed.shape.corners[self.followed.shape.lowest(state.alpha, state.Omega)]
-        d_c = corner.arms(state.alpha)[0]
-        return max(SLOWEST, -state.V_n - d_c * state.Omega), d_c
-
-    def _hard(self, state: State) -> bool:
-        """Return whether modes compute a strike."""
-        k2, mass = self.followed.pull.k2, self.case.contact.body.mass
-        comes, d_c = self._comes(state)
-        least = LEAST_BY_LAW * self.followed.each[0].before
-        return 0.5 * mass * comes**2 / (1.0 + d_c**2 / k2) >= least
 
     def swing_on(self, state: State) -> None:
         """Take over a later state of the rigid body; what the modes lose meanwhile is damping."""
@@ -141,7 +127,7 @@ class ModalCourse:
         self.swing_on(before)
         turn = before.alpha - self.case.scene.impact.angle
         arrival = Arrival(before.V_n, before.V_t, before.Omega, turn, self.q, self.rate)
-        self._enter(before, closed(self.case, arrival=arrival, ahead=_ahead(self.case)), self.vibration)
+        self._enter(before, closed(self.case, arrival=arrival, ahead=one_strike(self.case)), self.vibration)
 
     def _touch(self) -> State | None:
         """Return the rigid motion in which the vibrating rod touches next.
@@ -157,8 +143,8 @@ class ModalCourse:
         q, rate = self._swung(rigid[0])
         swing = np.hypot(q, rate / rod.omega) if len(q) else q
         along = np.hypot(rod.sites.along_t, rod.sites.along_n)
-        early = MARGIN * float((along @ swing).max(initial=0.0)) / self._comes(touch)[0]
-        if early == 0.0 or not self._hard(touch):
+        early = MARGIN * float((along @ swing).max(initial=0.0)) / self.followed.comes(touch)[0]
+        if early == 0.0 or not self.followed.hard(touch):
             return touch
         step = max(LOOK / float(rod.omega[-1]), 2.0 * early / LOOKS)
         looks = np.arange(max(0.0, rigid[0] - early), rigid[0] + early, step).tolist()
@@ -177,14 +163,7 @@ class ModalCourse:
 
     def _swung(self, dt: float) -> tuple[Array, Array]:
         """Return amplitudes and rates of the modes ``dt``, s, from now: exact damped oscillators."""
-        omega = self.rod.omega
-        if not len(omega):
-            return self.q, self.rate
-        slow, free = 0.5 * self.loss * omega, omega * sqrt(1.0 - 0.25 * self.loss**2)
-        decay, c, s = np.exp(-slow * dt), np.cos(free * dt), np.sin(free * dt)
-        drive = (self.rate + slow * self.q) / free
-        q = decay * (c * self.q + s * drive)
-        return q, decay * (free * (c * drive - s * self.q)) - slow * q
+        return swung(self.rod.omega, self.loss, dt, self.q, self.rate)
 
     def _enter(self, before: State, result: ModalResult, taken: float) -> None:
         """Enter a strike, and go on from the state after it."""
@@ -230,7 +209,16 @@ class ModalCourse:
         return replace(record, other=record.lost + taken + fell - spent)
 
 
-def _ahead(case: Case) -> float:
+def swung(omega: Array, loss: float, dt: float, q: Array, rate: Array) -> tuple[Array, Array]:
+    """Return amplitudes and rates (k,) of damped oscillators after a time ``dt``, s, exactly."""
+    slow, free = 0.5 * loss * omega, omega * sqrt(1.0 - 0.25 * loss**2)
+    decay, c, s = np.exp(-slow * dt), np.cos(free * dt), np.sin(free * dt)
+    drive = (rate + slow * q) / free
+    swinging = decay * (c * q + s * drive)
+    return swinging, decay * (free * (c * drive - s * q)) - slow * swinging
+
+
+def one_strike(case: Case) -> float:
     """Return the time, s, within which what touches again belongs to the same strike."""
     return max(case.bodies.bending_period, 2.0 * case.estimate.duration)
 

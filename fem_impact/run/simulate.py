@@ -16,6 +16,10 @@ if TYPE_CHECKING:
     from fem_impact.case.record import ContactRecord
     from fem_impact.outcome.record import Outcome
     from fem_impact.scene.types import Scene
+    from fem_impact.solid.run import SolidResult
+
+MOST = 12
+"""Strikes at most by finite elements."""
 
 
 def simulate(
@@ -135,21 +139,37 @@ def _compute(case: Case, options: RunOptions) -> tuple[Outcome, ContactRecord | 
     # as the command does: on a busy machine further threads of the linear algebra wait for each other, and a
     # run takes four times the processor time
     with threadpool_limits(1, "blas"):
-        end = solve(case, replace(options, stamp=stamp(case.scene)))
-        outcome = reduce(end)
-    outcome = _followed(case, outcome)
+        case, ahead = _held_ready(case)
+        end = solve(case, replace(options, stamp=stamp(case.scene)), ahead=ahead)
+        outcome = _followed(case, reduce(end), end, options)
     told = texts(outcome.validity.limitations, "resolution")
     resolved = not any(sentence.startswith(NOT_RESOLVED) for sentence in told)
     return outcome, replace(end.record, resolved=resolved)
 
 
-def _followed(case: Case, outcome: Outcome) -> Outcome:
+def _held_ready(case: Case) -> tuple[Case, float | None]:
+    """Return a case whose rod has fine cells for all strikes by finite elements, and what ends the first.
+
+    That is a free flight, s, without a touch; where there is one strike, see `fem_impact.solid.run.solve`.
+    """
+    count = case.scene.strikes.stages("solid")[0][1] or MOST
+    if case.scene.impact.until == FIRST or count == 1:
+        return case, None
+    from fem_impact.run.modal_strikes import one_strike
+    from fem_impact.run.solid_strikes import with_sites
+
+    return with_sites(case, min(count, case.scene.impact.most_strikes or MOST)), one_strike(case)
+
+
+def _followed(
+    case: Case, outcome: Outcome, end: SolidResult | None = None, options: RunOptions = RunOptions()
+) -> Outcome:
     """Return an outcome with all strikes that its scene asks for, whose code is imported only then."""
     if case.scene.impact.until == FIRST:
         return outcome
     from fem_impact.run.follow import with_strikes
 
-    return with_strikes(case, outcome)
+    return with_strikes(case, outcome, end, options)
 
 
 def _write(outcome: Outcome, record: ContactRecord | None, out: Path) -> None:

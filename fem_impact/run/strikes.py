@@ -8,6 +8,7 @@ from functools import cached_property
 from math import copysign, cos, hypot, inf, pi, remainder, sin
 from typing import TYPE_CHECKING
 
+from fem_impact.case.bodies import LaterStrike
 from fem_impact.case.effects.registry import AUTO
 from fem_impact.outcome.keys import Num, Unknown, known, or_none
 from fem_impact.outcome.record import Outcome
@@ -47,6 +48,7 @@ FINISHED = {
     Finish.TUMBLES: "It tumbles down the slope faster and faster.",
     Finish.JAMS: "Friction drives it into the barrier as it slides, which rigid theory does not follow.",
 }
+SLOWEST = 1e-9  # m/s, of a body that comes down
 LEAST_BY_LAW = 1e-3
 """As `LEAST` where restitutions follow from the contact law, which knows no loss of slow strikes."""
 RULES = (
@@ -151,14 +153,33 @@ class Followed:
 
     def kinetic(self, state: State) -> float:
         """Return the kinetic energy of the rigid motion, J."""
-        body = self.case.contact.body
-        return float(kinetic_energy(state.V_n, state.V_t, state.Omega, mass=body.mass, k2=body.k2))
+        mass, k2 = self.case.contact.body.mass, self.pull.k2
+        return float(kinetic_energy(state.V_n, state.V_t, state.Omega, mass=mass, k2=k2))
 
     def tumbles(self, state: State) -> bool:
         """Return whether the body has become far faster than at first, down a slope; see `sequence`."""
         g = hypot(self.pull.g_n, self.pull.g_t)
         fall = 2.0 * self.case.contact.body.mass * g * self.shape.widest
         return self.kinetic(state) > RUNAWAY * (self.each[0].before + fall)
+
+    def comes(self, state: State) -> tuple[float, float]:
+        """Return the speed, m/s, at which the body comes down on what is lowest, and its arm d_c, m."""
+        d_c = self.shape.corners[self.shape.lowest(state.alpha, state.Omega)].arms(state.alpha)[0]
+        return max(SLOWEST, -state.V_n - d_c * state.Omega), d_c
+
+    def hard(self, state: State) -> bool:
+        """Return whether a strike is hard enough for a model that is finer than a rigid body."""
+        comes, d_c = self.comes(state)
+        brings = 0.5 * self.case.contact.body.mass * comes**2 / (1.0 + d_c**2 / self.pull.k2)
+        return brings >= LEAST_BY_LAW * self.each[0].before
+
+    def later(self, state: State) -> LaterStrike:
+        """Return how the body touches in a state, for a mesh that has it so."""
+        number = self.shape.lowest(state.alpha, state.Omega)
+        corner, body = self.shape.corners[number], self.case.contact.body
+        x, z = place = corner.place(state.alpha)
+        pair = self._pair(Approach(state, number, place, *corner.arms(state.alpha), 0.0))
+        return LaterStrike(pair, state.alpha, (x + body.x_c, z + body.z_c))
 
     def work(self, start: State, end: State) -> float:
         """Return the work of gravity, J, on the way from one state to another."""

@@ -37,7 +37,7 @@ from fem_impact.solid.frame import FixedFrame, TurningFrame, mass_centre
 from fem_impact.solid.ground import Ground
 from fem_impact.solid.items import Force, Impulse
 from fem_impact.solid.model import Model
-from meshes import SKIN, face_at, owners
+from meshes import SKIN, RodMesh, face_at, owners
 from rigid import Faceted
 
 if TYPE_CHECKING:
@@ -107,8 +107,9 @@ def surface_contact(
 class Builder:
     """The parts of a case's model; each is made at its first use and cached."""
 
-    def __init__(self, case: Case, gap: float) -> None:
-        self.case, self.scene, self.spec, self.meshed = case, case.scene, case.slots, MeshedBodies(case)
+    def __init__(self, case: Case, gap: float, mesh: RodMesh | None = None) -> None:
+        self.case, self.scene, self.spec = case, case.scene, case.slots
+        self.meshed = MeshedBodies(case, mesh)
         self.meshed.move_rod(*self.initial_shift(gap))
 
     def initial_shift(self, gap: float) -> tuple[float, float]:
@@ -382,14 +383,15 @@ class Builder:
         )
 
 
-def build(case: Case, gap: float = START_GAP) -> Model:
+def build(case: Case, gap: float = START_GAP, mesh: RodMesh | None = None) -> Model:
     """Return the model of a scene; parts whose slot is empty are never made.
 
-    ``gap`` is the least height of the rod's skin over the barrier's at time 0, m; below 0 bodies overlap.
+    ``gap`` is the least height of the rod's skin over the barrier's at time 0, m; below 0 bodies overlap. A
+    rod that has struck before keeps its ``mesh``.
 
     Raises
     ------
     SceneError
         If the tip is so coarse that there is no fine zone to touch or to yield in.
     """
-    return Builder(case, gap).model()
+    return Builder(case, gap, mesh).model()

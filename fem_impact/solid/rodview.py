@@ -47,13 +47,13 @@ class RodState:
     modes: RodModes
 
     @classmethod
-    def of(cls, model: Model) -> RodState:
-        """Compute the modes and pick the rim."""
+    def of(cls, model: Model, modes: RodModes | None = None) -> RodState:
+        """Compute the modes, unless they are known, and pick the rim."""
         mesh, n = model.geometry.rod.mesh, model.layout.rod_size
         places = model.layout.rod[~mesh.is_hanging]
         skin = mesh.free_skin
         rim = skin[np.abs(model.geometry.rod_points[skin, 1]) < 1e-12]
-        return cls(places, model.mass[places[:, 0]], n, model.layout.rod[rim], modes_of(model))
+        return cls(places, model.mass[places[:, 0]], n, model.layout.rod[rim], modes or modes_of(model))
 
     def rigid(self, state: State) -> RigidMotion:
         """Return the rigid part of the present motion."""

@@ -71,6 +71,7 @@ class SolidResult:
     Attributes
     ----------
     case : what was run
+    state : all that moves, at the end
     time, steps : s and number at the end of the march
     accounts, E_0, worst : the ledger there, J; worst is the largest residual of the run
     motion, flight : rigid and vibrating part of the motion after the last separation
@@ -89,6 +90,7 @@ class SolidResult:
     case: Case
     model: Model
     view: RodState
+    state: State
     time: float
     steps: int
     accounts: dict[str, float]
@@ -113,14 +115,21 @@ class SolidResult:
     shares: dict[str, float | None] = field(default_factory=dict)
 
 
-def solve(case: Case, options: RunOptions = RunOptions(), model: Model | None = None) -> SolidResult:
+def solve(
+    case: Case,
+    options: RunOptions = RunOptions(),
+    model: Model | None = None,
+    view: RodState | None = None,
+    ahead: float | None = None,
+) -> SolidResult:
     """Run a case; histories, fields and checkpoints go to ``options.out`` while it runs.
 
     Parameters
     ----------
     case : of the scene
     options : output directory, progress, checkpoints
-    model : a prepared model of the case (default: built here)
+    model, view : a prepared model of the case, and what reads its rod (default: built here)
+    ahead : free flight, s, without a touch that ends the impact; None: see `horizon`
 
     Raises
     ------
@@ -136,8 +145,8 @@ def solve(case: Case, options: RunOptions = RunOptions(), model: Model | None = 
             setting_up(size.steps * size.step, case.scene.id, None if options.resume else size.time)
         )
     model, out = model or build(case), options.out
-    view, state = RodState.of(model), model.initial_state()
-    watchers = Watchers.of(case, model, view, out, options.resume)
+    view, state = view or RodState.of(model), model.initial_state()
+    watchers = Watchers.of(case, model, view, out, options.resume, ahead)
     observers: list[Observer] = [*watchers.all]
     if options.progress is not None:
         observers.append(_progress_observer(case, model, watchers, options.progress))
@@ -200,6 +209,7 @@ def _result(
         case=case,
         model=model,
         view=view,
+        state=state,
         time=state.time,
         steps=state.step,
         accounts=watchers.watch.accounts,

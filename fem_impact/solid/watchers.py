@@ -98,8 +98,19 @@ class Watchers:
     stop: Separation
 
     @classmethod
-    def of(cls, case: Case, model: Model, view: RodState, out: Path | None, go_on: bool) -> Watchers:
-        """Make the observers; with ``go_on`` they append to the files of the run that is resumed."""
+    def of(
+        cls,
+        case: Case,
+        model: Model,
+        view: RodState,
+        out: Path | None,
+        go_on: bool,
+        ahead: float | None = None,
+    ) -> Watchers:
+        """Make the observers; with ``go_on`` they append to the files of the run that is resumed.
+
+        The impact is over where nothing touches in a free flight of ``ahead``, s; None: see `horizon`.
+        """
         scene = case.scene
         watch = Watch(model.ledger(), scene.save.history_every)
         history, frames, strain = [], [], []
@@ -112,7 +123,8 @@ class Watchers:
         sliced = model.rod_stiffness is not None and model.layout.body_shape[1] > 2
         if out is not None and scene.save.strain_samples and sliced:
             strain = [StrainWatch.of(case, model, out / "waves.h5")]
-        stop = Separation(model, view, case.max_time, horizon(case.scene.projectile), _far_tail(case, model))
+        ahead = horizon(case.scene.projectile) if ahead is None else ahead
+        stop = Separation(model, view, case.max_time, ahead, _far_tail(case, model))
         skin, peak = SkinWatch(model, case.slots.bending is not None), PeakForce(model.book)
         added = AddedMass(model.added_mass)
         heat = None

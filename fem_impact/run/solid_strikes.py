@@ -1,0 +1,246 @@
+"""Strikes of one finite-element rod one after the other: shape, stresses and hardening go on.
+
+All strikes are those of one mesh of the rod, which is fine wherever the reduced or the rigid model has it
+strike. Flights are crossed exactly: the rigid motion under gravity, and each mode of the rod as a damped
+oscillator. The barrier is a new block under each strike.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from fem_impact.case.bodies import Bodies, LaterStrike
+from fem_impact.case.case import Case
+from fem_impact.case.record import BodyRecord, ContactRecord, expected_record, joined
+from fem_impact.errors import SceneError
+from fem_impact.fem.flight import FreeVibration
+from fem_impact.options import RunOptions
+from fem_impact.outcome.strikes import StrikeRecord
+from fem_impact.run.modal_strikes import ModalCourse, modal_loss, one_strike, swung
+from fem_impact.run.resolution import unresolved
+from fem_impact.run.strikes import LEAST_BY_LAW, Followed
+from fem_impact.solid.build import START_GAP, build
+from fem_impact.solid.carry import carry, later_view, lowered
+from fem_impact.solid.run import SolidResult, solve
+from rigid.strikes import Finish, State, next_touch
+
+TOLD = (
+    "{} strikes are computed with finite elements of one rod, which keeps its dents, hardening and residual "
+    "stress; each meets a surface that nothing has dented. In flight {} modes swing on, damped by the loss "
+    "factor {:g}; what vibrates above them ends with its strike."
+)
+ELSEWHERE = (
+    "Strike {} lands {:.2g} mm beside the fine cells that are held ready: finite elements end before it."
+)
+STOPPED = "Strike {} is not that of finite elements, which did not see its end. {}"
+NARROW = "Of strike {} {}."
+"""What is told of a strike whose contact is narrow: its number, and how narrow."""
+WITHIN = 1.5  # cells beyond skin that may touch, within which a strike counts as on it
+
+
+def with_sites(case: Case, count: int) -> Case:
+    """Return a case whose rod has fine cells wherever the first ``count`` strikes are expected."""
+    if count < 2:
+        return case
+    edges = case.zones.tip_size, case.zones.barrier_size
+    first = case.record or expected_record(case.bodies, *edges)
+    later = [expected_record(_bodies(case, one), *edges).rod for one in _expected(case, count)]
+    return Case(case.scene, "solid", replace(first, rod=joined([first.rod, *later])))
+
+
+def _bodies(case: Case, later: LaterStrike) -> Bodies:
+    return Bodies(case.scene, case.active, later)
+
+
+def _expected(case: Case, count: int) -> list[LaterStrike]:
+    """Return the strikes after the first by the rigid and, where it holds the scene, by the reduced model."""
+    rigid, seen = Followed.of(case), case.scene.relative
+    rigid.upto = count
+    rigid.go_on(rigid.touching(seen.angle, seen.v_n, seen.v_t, seen.omega))
+    courses = [rigid]
+    try:
+        modal = Followed.of(Case.of(case.scene, "modal"))
+    except SceneError:
+        pass
+    else:
+        modal.upto = count
+        ModalCourse.at_first(modal.case, modal).to_the_end()
+        courses.append(modal)
+    return [
+        course.later(State(one.time, 0.0, one.along, one.alpha, one.v_n, one.v_t, one.omega))
+        for course in courses
+        for one in course.each[1:]
+    ]
+
+
+@dataclass(eq=False)
+class SolidCourse:
+    """Strikes by finite elements so far.
+
+    Attributes
+    ----------
+    case : of the first strike
+    body : with the records of the strikes
+    last : the run of the last strike
+    begun : inclination, rad, at which that run began
+    state : the rigid motion now
+    vibration : that of the rod now
+    loss : loss factor of the modes in flight
+    damped : energy, J, that the modes have lost since the last strike
+    told : what limits trust in them
+    """
+
+    case: Case
+    body: Followed
+    last: SolidResult
+    begun: float
+    state: State
+    vibration: FreeVibration
+    loss: float
+    damped: float = 0.0
+    told: list[str] = field(default_factory=list)
+
+    @classmethod
+    def at_first(cls, body: Followed, end: SolidResult) -> SolidCourse:
+        """Return the course after the first strike.
+
+        The body has the inertia of its mesh from then on.
+        """
+        body.pull = replace(body.pull, k2=end.motion.inertia / end.motion.mass)
+        seen = body.case.scene.relative
+        begin = body.touching(seen.angle, seen.v_n, seen.v_t, seen.omega)
+        case = body.case
+        course = cls(case, body, end, case.bodies.mesh_inclination, begin, end.flight, modal_loss(case))
+        course._enter(begin, end, 0.0)
+        return course
+
+    @property
+    def held(self) -> float:
+        """Energy of the vibration, J."""
+        return self.vibration.energy
+
+    @property
+    def limits(self) -> list[str]:
+        """What limits trust in them."""
+        count = len(self.vibration.a)
+        return (
+            [TOLD.format(len(self.body.each), count, self.loss), *self.told]
+            if self.body.upto != 1
+            else self.told
+        )
+
+    def to_the_end(self, options: RunOptions) -> Finish:
+        """Follow the rod: hard strikes by finite elements, what lies between them as a rigid body."""
+        body = self.body
+        while body.missing != 0:
+            touch = self._touch()
+            if touch is None or not body.hard(touch):
+                state, finish = body.go_on(self.state, LEAST_BY_LAW)
+                self.swing_on(state)
+                if finish is not Finish.STRONG:
+                    return finish
+                touch = state
+            if body.tumbles(touch):
+                break
+            later = body.later(touch)
+            beside = self._beside(later)
+            if beside > 0.0:
+                self.told.append(ELSEWHERE.format(len(body.each) + 1, 1e3 * beside))
+                break
+            if not self._strike(touch, later, options):
+                break
+        return Finish.COUNTED
+
+    def swing_on(self, state: State) -> None:
+        """Take over a later state of the rigid body; what the modes lose meanwhile is damping."""
+        held, modes = self.held, self.vibration.modes
+        dt, rates = state.time - self.state.time, self.vibration.b * modes.omega
+        a, rate = swung(modes.omega, self.loss, dt, self.vibration.a, rates)
+        self.vibration = replace(self.vibration, a=a, b=rate / modes.omega)
+        self.damped += held - self.held
+        self.state = state
+
+    def _touch(self) -> State | None:
+        """Return the rigid motion in which the rod touches next."""
+        found = next_touch(self.body.shape, self.state, self.body.pull.g_n)
+        return None if found is None else self.state.flown(found[0], self.body.pull.g_n, self.body.pull.g_t)
+
+    @property
+    def _record(self) -> ContactRecord:
+        assert self.case.record is not None, "a rod that strikes more than once has its zones from a record"
+        return self.case.record
+
+    def _beside(self, later: LaterStrike) -> float:
+        """Return how far, m, a place lies beside the skin that may touch; 0 or less on it."""
+        known: BodyRecord = self._record.rod
+        x, z = later.lowest
+        away = float(np.hypot(known.touched[:, 0] - x, known.touched[:, 2] - z).min())
+        return away - WITHIN * known.edge
+
+    def _strike(self, before: State, later: LaterStrike, options: RunOptions) -> bool:
+        """Strike at a later state in flight; return whether the bodies part again."""
+        turned = before.alpha - self.state.alpha
+        self.body.gravity += self.body.work(self.state, before)
+        self.swing_on(before)
+        zones = self.case.zones
+        accuracy = replace(self.case.scene.accuracy, tip_size=zones.tip_size, barrier_size=zones.barrier_size)
+        scene = replace(self.case.scene, accuracy=accuracy, effects=self.case.active)
+        here = expected_record(_bodies(self.case, later), zones.tip_size, zones.barrier_size)
+        case = Case(scene, "solid", replace(here, rod=self._record.rod), later)
+        model = build(case, mesh=self.last.model.geometry.rod)
+        view = later_view(model, self.last, before.alpha - self.begun)
+        motion = view.rigid(model.initial_state())
+        centre = np.array([motion.centre[0], 0.0, before.height])
+        moved = replace(motion, centre=centre, V_n=before.V_n, V_t=before.V_t, Omega=before.Omega)
+        vibration = replace(self.vibration, modes=view.modes)
+        model = lowered(carry(model, view, self.last, turned, moved, vibration), START_GAP)
+        taken = vibration.energy
+        end = solve(case, replace(options, out=None, resume=False), model, view, one_strike(self.case))
+        if not end.separated:
+            self.told.append(STOPPED.format(len(self.body.each) + 1, end.reason))
+            return False
+        self.begun = before.alpha
+        self._enter(before, end, taken)
+        return True
+
+    def _enter(self, before: State, end: SolidResult, taken: float) -> None:
+        """Enter a strike, and go on from the state after it."""
+        motion, begin = end.motion, end.view.rigid(end.model.initial_state())
+        after = before._replace(
+            time=before.time + end.time,
+            height=float(motion.centre[2]),
+            along=before.along + float(motion.centre[0] - begin.centre[0]),
+            alpha=before.alpha - end.view.angle(end.state, end.model),
+            V_n=motion.V_n,
+            V_t=motion.V_t,
+            Omega=motion.Omega,
+        )
+        self.body.each.append(self._recorded(before, after, end, taken))
+        if narrow := unresolved(end):
+            self.told.append(NARROW.format(len(self.body.each), narrow))
+        outside = self.body.touching(after.alpha, after.V_n, after.V_t, after.Omega).height  # beside its dent
+        self.state = after._replace(height=max(after.height, outside))
+        self.last, self.vibration, self.damped = end, end.flight, 0.0
+
+    def _recorded(self, before: State, after: State, end: SolidResult, taken: float) -> StrikeRecord:
+        """Return the record of a strike that began with a vibration ``taken``, J."""
+        body, accounts = self.body, end.accounts
+        corner = body.shape.corners[body.shape.lowest(before.alpha, before.Omega)]
+        p, q = (float(part) for part in end.model.book.table[:, 2:].sum(axis=0))
+        fell = -accounts["gravity"]
+        body.gravity += fell
+        record = body.record(
+            "solid",
+            *(before, after, corner.place(before.alpha), corner.arms(before.alpha), (p, q)),
+            part=body.part_of(corner.place(before.alpha), 0.0, before.alpha),
+            force=end.peak_force,
+            friction=accounts["friction"],
+            plastic=accounts["plastic_rod"] + accounts["plastic_barrier"],
+            damping=accounts["damping"] + self.damped,
+            vibration=end.flight.energy,
+            taken=taken,
+        )
+        spent = record.vibration + record.friction + record.plastic + accounts["damping"]
+        return replace(record, other=record.lost + taken + fell - spent)

@@ -1,0 +1,120 @@
+"""A rod that has struck before: what of its last run goes into the model of its next strike."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import cos, sin
+
+import numpy as np
+
+from fem_impact.arrays import Array, Ints
+from fem_impact.fem.flight import FreeVibration, RigidMotion
+from fem_impact.fem.hexmodes import LANES
+from fem_impact.solid.model import Model
+from fem_impact.solid.rodview import RodState
+from fem_impact.solid.run import SolidResult
+from fem_impact.solid.yielding import YieldingZone
+
+NOW = np.zeros(1)
+
+
+def turned(rows: Array, angle: float) -> Array:
+    """Return vectors along t, b, n, (m, 3) or (m, 3, k), turned from n towards t, rad."""
+    (t, b, n), c, s = np.moveaxis(rows, 1, 0), cos(angle), sin(angle)
+    return np.stack([c * t + s * n, b, c * n - s * t], axis=1)
+
+
+def turned_at(vector: Array, places: Ints, angle: float) -> Array:
+    """Return a flat vector, (n,) or (n, k), whose places (m, 3) are turned from n towards t, rad."""
+    result = vector.copy()
+    result[places] = turned(vector[places], angle)
+    return result
+
+
+def later_view(model: Model, last: SolidResult, angle: float) -> RodState:
+    """Return what reads the rod of a later strike, whose reference has turned from n towards t, rad."""
+    modes, places = last.view.modes, last.view.places
+    later = replace(
+        modes,
+        shape=turned_at(modes.shape, places, angle),
+        released=lambda force: modes.released(turned_at(force, places, -angle)),
+    )
+    return RodState.of(model, later)
+
+
+def rest_shape(last: SolidResult) -> Array:
+    """Return the positions (size,), m, at the end of a run, the rod's without its vibration."""
+    shake = last.flight.displacement(np.arange(last.view.size), NOW)[:, 0]
+    angle = last.view.angle(last.state, last.model)  # from t towards n
+    return last.state.x - _of_all(last.model, turned_at(shake, last.view.places, -angle))
+
+
+def _of_all(model: Model, of_rod: Array) -> Array:
+    """Return a flat vector (size,) with values of the rod's unknowns, those of tied nodes included."""
+    whole = np.zeros(model.layout.size)
+    whole[: len(of_rod)] = of_rod
+    model.hanging.expand(whole)
+    return whole
+
+
+def carry(
+    model: Model,
+    view: RodState,
+    last: SolidResult,
+    angle: float,
+    motion: RigidMotion,
+    vibration: FreeVibration,
+) -> Model:
+    """Return the model of a strike with the rod that its last run left: shape, stresses, hardening, motion.
+
+    Parameters
+    ----------
+    model : of the strike, with an undeformed rod; its zones take over stresses and hardening
+    view : of that model
+    last : the run before, on the same mesh of the rod
+    angle : by which the rod has turned from n towards t since the end of that run, rad
+    motion : rigid motion now, with the place of the mass centre in the model's frame
+    vibration : about the rest shape, in the modes of ``view``
+    """
+    rod = model.layout.rod
+    x, v = model.start[0].copy(), np.zeros_like(model.start[1])
+    here, there = (np.array([one.centre[0], 0.0, one.centre[2]]) for one in (motion, last.motion))
+    x[rod] = here + turned(rest_shape(last)[last.model.layout.rod] - there, angle)
+    x[rod] += _of_all(model, vibration.displacement(np.arange(view.size), NOW)[:, 0])[rod]
+    arm = x[rod] - here
+    v[rod] = _of_all(model, vibration.modes.shape @ (vibration.modes.omega * vibration.b))[rod]
+    v[rod[:, 0]] += motion.V_t + motion.Omega * arm[:, 2]
+    v[rod[:, 2]] += motion.V_n - motion.Omega * arm[:, 0]
+    for new, old in zip(_rod_zones(model), _rod_zones(last.model), strict=True):
+        new.blocks.stress[:] = turned_stress(old.blocks.stress, angle)
+        new.blocks.strain[:] = old.blocks.strain
+        new.blocks.flow[:] = old.blocks.flow
+    return replace(model, start=(x, v))
+
+
+def _rod_zones(model: Model) -> list[YieldingZone]:
+    return [zone for zone in model.zones if zone.body == "rod"]
+
+
+def turned_stress(stress: Array, angle: float) -> Array:
+    """Return deviators (blocks, 8, 6 LANES), tt, bb, nn, tb, bn, nt, turned from n towards t, rad."""
+    tt, bb, nn, tb, bn, nt = np.moveaxis(stress.reshape(*stress.shape[:2], 6, LANES), 2, 0)
+    c, s = cos(angle), sin(angle)
+    parts = (
+        c * c * tt + 2 * c * s * nt + s * s * nn,
+        bb,
+        s * s * tt - 2 * c * s * nt + c * c * nn,
+        c * tb + s * bn,
+        c * bn - s * tb,
+        (c * c - s * s) * nt + c * s * (nn - tt),
+    )
+    return np.stack(parts, axis=2).reshape(stress.shape)
+
+
+def lowered(model: Model, gap: float) -> Model:
+    """Return a model whose rod is moved along n until it lies a ``gap``, m, over the barrier."""
+    assert model.contact is not None, "a strike has a contact"
+    x, v = model.start
+    x = x.copy()
+    x[model.layout.rod[:, 2]] -= model.contact.clearance(x) - gap
+    return replace(model, start=(x, v))

@@ -1,0 +1,98 @@
+"""Finite elements over several strikes of one rod."""
+
+import numpy as np
+import pytest
+
+from fem_impact.errors import SceneError
+from fem_impact.outcome.limitation import texts
+from fem_impact.run.simulate import simulate
+from fem_impact.scene.read import read_dict
+from fem_impact.scene.shipped import load, replace_all
+from fem_impact.scene.write import to_dict
+
+FALL = {
+    "impact.slope": "0 deg",
+    "impact.until": "3 strikes",
+    "impact.v_n": "-1 m/s",
+    "impact.v_t": "0 m/s",
+    "impact.angle": "75 deg",
+    "strikes.fidelity": "solid for the first 2, then modal",
+    "accuracy.levels": 1,
+    "accuracy.tip_size": "1 mm",
+    "save.frames": 0,
+}
+ELASTIC = {"effects": ["vibration", "barrier-rigid", "gravity", "large-rotation"]}
+
+
+def capsule(**changes):
+    """A rod of 80 mm with a hemisphere at either end."""
+    R, L = 9.5, 80.0
+    arc = np.radians(np.linspace(0, 90, 46))
+    end = [(R * (1 - np.cos(a)), R * np.sin(a)) for a in arc]
+    points = [*end, *((L - z, r) for z, r in end[::-1])]
+    data = to_dict(replace_all(load("quick"), FALL | ELASTIC | changes))
+    data.pop("measured", None)
+    rows = [[f"{z:.9f} mm", f"{r:.9f} mm"] for z, r in points]
+    data["projectile"] = {"profile": rows, "material": "rod-steel"}
+    return read_dict(data)
+
+
+@pytest.fixture(scope="module")
+def elastic():
+    return simulate(capsule(), "solid")
+
+
+def test_the_vibration_of_a_strike_meets_the_next(elastic):
+    first, second, third = elastic.strikes.each
+    assert [one.fidelity for one in elastic.strikes.each] == ["solid", "solid", "modal"]
+    assert [one.part for one in elastic.strikes.each] == ["tip", "tail", third.part]
+    assert second.taken == pytest.approx(first.vibration, rel=1e-12)  # nothing damps it
+    assert first.vibration > 0.05 * first.before
+
+
+def test_motion_and_vibration_keep_the_energy_of_an_elastic_rod(elastic):
+    """What is lost closes nodes on the plane, or vibrates above the modes: less on finer meshes."""
+    s, E_0 = elastic.strikes, elastic.energy.E_0
+    assert abs(s.residual) < 1e-12
+    assert all(0.0 < one.other < 2e-3 * E_0 for one in s.each[:2])
+
+
+def test_tail_and_time_are_those_of_the_modes(elastic):
+    modal = simulate(capsule(**{"impact.until": "2 strikes"}), "modal").strikes.each[1]
+    second = elastic.strikes.each[1]
+    assert second.approach == pytest.approx(modal.approach, rel=0.03)
+    assert second.time == pytest.approx(modal.time, rel=0.03)
+
+
+def test_what_is_carried_on_is_told(elastic):
+    told = " ".join(texts(elastic.validity.limitations, "model"))
+    assert "2 strikes are computed with finite elements of one rod" in told
+    assert "Strikes after the first 2 are those of the modal model" in told
+
+
+@pytest.mark.slow
+def test_an_elastic_rod_keeps_its_energy_over_two_strikes_to_a_ten_thousandth():
+    fine = {"accuracy.tip_size": "0.4 mm", "impact.until": "2 strikes"}
+    s = simulate(capsule(**fine), "solid").strikes
+    E_0 = s.each[0].before
+    assert abs(E_0 + s.gravity - s.left) < 1e-4 * E_0
+    assert s.left > 0.9 * E_0
+
+
+@pytest.mark.slow
+def test_a_yielding_rod_strikes_in_the_order_of_the_reduced_model():
+    changes = {"impact.angle": "60 deg", "impact.v_n": "-2.1 m/s", "accuracy.tip_size": "0.6 mm"}
+    scene = replace_all(
+        load("quick"), FALL | changes | {"strikes.fidelity": "solid for the first 3, then modal"}
+    )
+    solid, modal = simulate(scene, "solid").strikes, simulate(scene, "modal").strikes
+    assert [one.part for one in solid.each] == [one.part for one in modal.each] == ["tip", "tail", "tip"]
+    assert solid.other_end == pytest.approx(modal.other_end, rel=0.03)
+    assert all(one.plastic > 0.0 for one in solid.each)
+
+
+@pytest.mark.parametrize("effects", [["auto", "-vibration"]])
+def test_what_is_not_handed_on_is_refused(effects):
+    scene = replace_all(load("quick"), FALL | {"effects": effects})
+    with pytest.raises(SceneError, match=r"strikes.fidelity.*solid for the first 1, then rigid"):
+        simulate(scene, "solid")
