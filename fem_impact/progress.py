@@ -12,7 +12,8 @@ from typing import Protocol, TextIO
 class Progress:
     """The state of a run: times in s, energy drift as a fraction of E_0, contact in words, a note.
 
-    ``eta_s`` is None while it cannot be told; ``note`` names the scene or the work when there are several.
+    ``eta_s`` is None while it cannot be told, ``eta_range_s`` its least and most; ``note`` names the scene or
+    the work when there are several.
     """
 
     time_s: float
@@ -22,11 +23,17 @@ class Progress:
     contact: str
     eta_s: float | None = None
     note: str = ""
+    eta_range_s: tuple[float, float] | None = None
 
 
 def compiling(end_time_s: float, seconds: int) -> Progress:
     """Return the report of a run that first compiles its kernels, for about so many seconds."""
     return Progress(0.0, end_time_s, 0, 0.0, f"compiling the kernels, once, about {seconds} s")
+
+
+def standing(end_time_s: float, note: str, eta_s: float | None) -> Progress:
+    """Return the report of a run whose mesh stands before the first step."""
+    return Progress(0.0, end_time_s, 0, 0.0, "mesh and modes of the rod are made", eta_s, note)
 
 
 def setting_up(end_time_s: float, note: str, eta_s: float | None = None) -> Progress:
@@ -107,11 +114,20 @@ def describe(progress: Progress | CaseProgress) -> str:
     parts = (
         progress.note,
         f"t {progress.time_s * 1e6:.0f}/{progress.end_time_s * 1e6:.0f} us",
-        f"about {clock_text(progress.eta_s)} left" if progress.eta_s is not None else "",
+        _left(progress),
         f"step {progress.step}  energy drift {progress.energy_drift:+.1e}" if progress.step else "",
         progress.contact,
     )
     return "  ".join(part for part in parts if part)
+
+
+def _left(progress: Progress) -> str:
+    """Return the time still needed, with its range where that says more; empty where it cannot be told."""
+    if progress.eta_s is None:
+        return ""
+    ends = [clock_text(end) for end in progress.eta_range_s or ()]
+    told = f" ({' to '.join(ends)})" if len(set(ends)) > 1 else ""
+    return f"about {clock_text(progress.eta_s)} left{told}"
 
 
 def clock_text(seconds: float) -> str:

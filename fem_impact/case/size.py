@@ -84,14 +84,19 @@ def run_size(slots: ModelSpec, bodies: Bodies, zones: Zones) -> RunSize:
     touch, swing = UNTIL_APART
     apart = touch * bodies.estimate.duration + swing * bodies.bending_period
     elements = rod + barrier
-    each = ELASTIC * max(elements - yielding, 0.0) + YIELDING * yielding
     steps, most = min(apart, latest) / step, latest / step
     return RunSize(
         *(round(rod), round(barrier), round(yielding), step, round(steps), round(most)),
         memory=_memory(bodies, slots.vibrating, rod, barrier),
-        time=SETUP * elements + each * steps,
-        most_time=SETUP * elements + each * most,
+        time=run_time(elements, yielding, steps),
+        most_time=run_time(elements, yielding, most),
     )
+
+
+def run_time(elements: float, yielding: float, steps: float) -> float:
+    """Return the processor time, s, of steps and set-up with so many elements, some of which may yield."""
+    each = ELASTIC * max(elements - yielding, 0.0) + YIELDING * yielding
+    return SETUP * elements + each * steps
 
 
 def about(value: float) -> str:

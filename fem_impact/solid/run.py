@@ -14,12 +14,13 @@ import numpy as np
 from fem_impact.arrays import Array
 from fem_impact.case.case import Case
 from fem_impact.case.record import ContactRecord
+from fem_impact.case.size import run_time
 from fem_impact.fem.flight import FreeVibration, RigidMotion
 from fem_impact.fem.kernels import compiled_before
 from fem_impact.files.run_directory import CHECKPOINT
 from fem_impact.options import RunOptions
 from fem_impact.outcome.limitation import Limitation, limitations
-from fem_impact.progress import Progress, compiling, setting_up
+from fem_impact.progress import Progress, compiling, setting_up, standing
 from fem_impact.solid.build import build
 from fem_impact.solid.checkpoint import Checkpoint
 from fem_impact.solid.fine_zone import left_zones, outside_zones, skin_shares
@@ -141,10 +142,12 @@ def solve(
     whole = Stopwatch()
     if options.progress is not None:
         size = case.size
-        options.progress(
-            setting_up(size.steps * size.step, case.scene.id, None if options.resume else size.time)
-        )
+        # a level's own mesh says more, as soon as it stands
+        told = None if options.resume or case.record is not None else size.time
+        options.progress(setting_up(size.steps * size.step, case.scene.id, told))
     model, out = model or build(case), options.out
+    if options.progress is not None:
+        options.progress(_standing(case, model, options))
     view, state = view or RodState.of(model), model.initial_state()
     watchers = Watchers.of(case, model, view, out, options.resume, ahead)
     observers: list[Observer] = [*watchers.all]
@@ -169,6 +172,14 @@ def solve(
     for strain in watchers.strain if free else []:
         strain.write(strain.ringing(view, state, result.flight))
     return replace(result, shares=run_time_shares(model, state, cost.cpu / max(state.step, 1), watchers.heat))
+
+
+def _standing(case: Case, model: Model, options: RunOptions) -> Progress:
+    """Return the report that the mesh stands, with the time that its cells and steps will take."""
+    end, bodies = case.size.steps * case.size.step, model.geometry
+    cells = len(bodies.rod.mesh.cells) + (len(bodies.barrier.cells) if bodies.barrier is not None else 0)
+    time = run_time(cells, sum(zone.count for zone in model.zones), end / model.step)
+    return standing(end, case.scene.id, None if options.resume else time)
 
 
 def _progress_observer(

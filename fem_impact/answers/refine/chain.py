@@ -15,12 +15,13 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
+from itertools import pairwise
 from math import ceil
 from pathlib import Path
-from time import perf_counter
 
 from fem_impact.answers.refine.budget import LONGER, about_s, in_turns, longest_s
 from fem_impact.answers.refine.extrapolate import UNRESOLVED, level_limits, quantity_limits
+from fem_impact.answers.refine.forecast import MIDDLE, LevelProgress
 from fem_impact.answers.refine.level import STAMP, LevelRun, simulate_level
 from fem_impact.answers.refine.level_meshes import LevelMeshes, steps_between
 from fem_impact.answers.refine.quantities import TARGETED
@@ -34,10 +35,10 @@ from fem_impact.files.digests import write_digests
 from fem_impact.files.lock import directory_lock
 from fem_impact.files.run_directory import BESIDE, is_resumable
 from fem_impact.options import RunOptions
-from fem_impact.outcome.keys import Unknown
+from fem_impact.outcome.keys import Unknown, known
 from fem_impact.outcome.limitation import limitations
 from fem_impact.outcome.record import Outcome
-from fem_impact.progress import Notice, Progress
+from fem_impact.progress import Notice
 from fem_impact.run.resolution import NOT_RESOLVED, without
 from fem_impact.run.simulate import begin
 from fem_impact.scene.types import Scene
@@ -49,10 +50,6 @@ GRID_OFFSETS = (0.0, 0.5)
 MOST_REPEATS = 2  # of a level, each with twice the room
 # levels beyond those asked for, where the last has not resolved the contact: it would have no numbers
 MORE = 1
-# how much longer a level takes than one with cells twice as large, where only one has run: the most of 24
-# pairs of levels of the measured sets. Contacts along a line or an edge take 4 to 7 times: a level that is
-# too long for the budget is given up (`LATE`), one that is not begun says nothing
-SLOWER = 2.8
 BUDGET = 600.0  # s of wall time for all levels, unless stated
 LATE = 1.3  # of the budget, beyond which a level that has begun is given up
 MOST_FINER = 3  # splits beyond those that resolve the contact, where a band decides
@@ -127,7 +124,14 @@ class LevelChain:
             As `run`.
         """
         splits = self._next if self.done else self.meshes.first
-        while splits is not None and self._ran(splits):
+        while splits is not None:
+            try:
+                self._run_level(splits)
+            except (SceneError, RunError) as error:  # a mesh that folds is found when it is made
+                if not self.done:
+                    raise
+                self.failed = str(error)
+                return
             splits = self._next
 
     def _begin(self, out: Path) -> None:
@@ -232,17 +236,20 @@ class LevelChain:
         accuracy = self.scene.accuracy
         return GRID_OFFSETS[: 1 if pilot else accuracy.offsets or 1 + bool(accuracy.target)]
 
+    @property
+    def _runs(self) -> int:
+        """Runs of the next level."""
+        return 2 if self.twin else len(self._offsets)
+
     def _turns(self, runs: int) -> int:
         """Return how many of so many runs the busier of the workers does."""
         return ceil(runs / self.workers)
 
     def forecast_s(self, splits: int) -> float:
-        """Return about the wall time, s, of a level, from how much longer each took than that before."""
-        times = [level.wall_s / (1 + level.repeats) / self._turns(len(level.outcomes)) for level in self.done]
-        steps = [level.splits for level in self.done]
-        slower = (times[-1] / times[-2]) ** (1 / (steps[-1] - steps[-2])) if len(times) > 1 else SLOWER
-        of_one = times[-1] * max(slower, 1.0) ** (splits - steps[-1])
-        return float(of_one * self._turns(2 if self.twin else len(self._offsets)))
+        """Return about the wall time, s, of a level whose mesh is not made yet, from that of the last one."""
+        last = self.done[-1]
+        one = last.wall_s / (1 + last.repeats) / self._turns(len(last.outcomes))
+        return float(one * MIDDLE ** (splits - last.splits) * self._turns(self._runs))
 
     def _sharing(self, scene: Scene) -> list[Scene]:
         """Return the scenes that run on one mesh: a scene at places of the grid, or beside its twin."""
@@ -253,17 +260,6 @@ class LevelChain:
         first, *others = (replace(scene, accuracy=replace(accuracy, grid_shift=shift)) for shift in shifts)
         # a film is made of the first alone: storing frames takes a tenth of a quick run
         return [first, *(replace(one, save=replace(one.save, frames=0, strain_samples=0)) for one in others)]
-
-    def _ran(self, splits: int) -> bool:
-        """Run a level; return whether it has an outcome, which the first must have."""
-        try:
-            self._run_level(splits)
-        except (SceneError, RunError) as error:  # a mesh that folds is found when it is made
-            if not self.done:
-                raise
-            self.failed = str(error)
-            return False
-        return True
 
     def _run_level(self, splits: int) -> None:
         """Run a level, again with more room where it needs that, and add it to what is done."""
@@ -308,27 +304,21 @@ class LevelChain:
         The progress of the first names the level, knows about later ones, and gives the level up where it
         takes so long that the budget cannot be kept.
         """
-        number, show = len(self.done) + 1, self.options.progress
+        number = len(self.done) + 1
         out = self.options.out and self._place(number, repeats, run)
         if run:  # it may be another process that does it
             return replace(self.options, out=out, progress=None)
         later = steps_between(splits, max(self.finest, splits))
         name = f"{self.scene.id}, level {number}" + f" of {number + len(later)}" * bool(self.done)
-        limit_s = LATE * self.budget_s - self.spent_s
-        begun = perf_counter()
-
-        def named(progress: Progress | Notice) -> None:
-            if len(self.done) >= self.least and perf_counter() - begun > limit_s:
-                raise RunError(f"The budget of {about_s(self.budget_s)} was used up in the middle of it.")
-            if show is None:
-                return
-            if isinstance(progress, Notice):
-                return show(progress)
-            rest = sum(map(self.forecast_s, later)) if self.done else 0.0
-            eta = None if progress.eta_s is None or not self.done else progress.eta_s + rest
-            show(replace(progress, note=name, eta_s=eta))
-
-        return replace(self.options, out=out, progress=named)
+        progress = LevelProgress(self.options.progress, name)
+        if len(self.done) >= self.least:
+            progress.limit_s = LATE * self.budget_s - self.spent_s
+        if self.done:
+            before = self.done[-1].outcome.cost
+            progress.duration_s = known(before.steps) * known(before.min_step)
+            progress.halvings = [fine - coarse for coarse, fine in pairwise([splits, *later])]
+            progress.turns = self._turns(self._runs)
+        return replace(self.options, out=out, progress=progress)
 
     def _tell(self, sentence: str) -> None:
         if self.options.progress is not None:

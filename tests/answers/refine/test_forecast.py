@@ -1,0 +1,82 @@
+"""The time that levels will take: a range from the mesh that stands, told with every report of progress."""
+
+import pytest
+
+from fem_impact.answers.refine import forecast
+from fem_impact.answers.refine.chain import LevelChain
+from fem_impact.answers.refine.forecast import OWN, LevelProgress, later_s
+from fem_impact.case.case import Case
+from fem_impact.errors import RunError
+from fem_impact.options import RunOptions
+from fem_impact.progress import Notice, Progress, describe
+from fem_impact.scene.shipped import load, replace_all
+
+# forecast of the second level when its mesh stood, and what it and those after it took, s of processor time:
+# runs of drawn scenes, the last with a level more than was known
+MEASURED = {
+    "bent bar": (1.2, [1], 6.7),
+    "disc on its rim": (0.8, [1, 1], 6.2),
+    "ogive": (1.3, [1], 4.6),
+    "rod on its side": (4.1, [1], 14.9),
+    "round nose": (0.8, [1], 3.9),
+    "sharp edge": (1.5, [1], 10.5),
+    "tapered": (2.7, [1, 1], 12.9),
+    "tube": (2.1, [1, 1], 7.8),
+}
+
+
+@pytest.mark.parametrize("name", MEASURED)
+def test_the_range_holds_what_stored_runs_took(name):
+    own, halvings, took = MEASURED[name]
+    least, _, most = (share * own + later for share, later in zip(OWN, later_s(own, halvings), strict=True))
+    assert least <= took <= most
+
+
+def shown(**of):
+    seen = []
+    level = LevelProgress(seen.append, "level 2", [1], duration_s=2e-4, **of)
+    return seen, level
+
+
+def at(step, eta):
+    return Progress(0.0, 1e-4, step, 0.0, "", eta, "x")
+
+
+def test_a_mesh_that_stands_is_forecast_by_the_impact_of_the_level_before():
+    seen, level = shown(turns=2)
+    level(at(0, 3.0))  # for half the duration that the level before showed, at one of two places
+    assert level.own_s == 6.0
+    assert seen[0].eta_s == pytest.approx(12 * (1 + 2.4))
+    assert seen[0].eta_range_s == pytest.approx((7.2 * (1 + 1.2), 19.2 * (1 + 4.5)))
+    level(at(200, 1.0))
+    assert seen[1].eta_s == pytest.approx(1 + 6 + 12 * 2.4)
+    assert describe(seen[0]).startswith("level 2  t 0/100 us  about 41 s left (16 s to 1 min 46 s)")
+
+
+def test_a_pilot_tells_no_time_and_notices_pass():
+    seen = []
+    level = LevelProgress(seen.append, "pilot")
+    level(at(0, 3.0))
+    level(Notice("told"))
+    assert (seen[0].eta_s, seen[1].text) == (None, "told")
+
+
+def test_a_level_is_given_up_at_its_limit(monkeypatch):
+    clock = [0.0]
+    monkeypatch.setattr(forecast, "perf_counter", lambda: clock[0])
+    level = LevelProgress(None, "level 2", [], limit_s=10.0)
+    level(at(0, 3.0))
+    clock[0] = 10.5
+    with pytest.raises(RunError, match="given up after 10 s"):
+        level(at(200, 3.0))
+
+
+def test_a_run_tells_its_range_when_the_second_mesh_stands():
+    told = []
+    scene = replace_all(load("quick"), {"save.frames": 0})
+    LevelChain(Case(scene), RunOptions(progress=told.append)).run()
+    assert all(one.eta_s is None for one in told if "level 1" in one.note)
+    second = [one for one in told if "level 2 of 3" in one.note]
+    stands = next(one for one in second if "are made" in one.contact)
+    least, most = stands.eta_range_s
+    assert 0 < least < stands.eta_s < most
