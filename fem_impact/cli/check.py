@@ -75,7 +75,9 @@ def check(options: Options) -> int:
     tests = _tests_lines(case.scene)  # before the rest: a file of tests that cannot be read is refused
     say_kept(case.scene, options)
     if drawing:
-        _draw(case, drawing)
+        from fem_impact.pages.drawing import draw_projectile
+
+        draw_projectile(case, drawing)
     statement = _statement(case)
     if options.json:
         print_json(statement)
@@ -105,25 +107,6 @@ def _drawing_path(options: Options) -> Path | None:
         remedy = "Name a file such as projectile.svg or projectile.png."
         raise UsageError("is no picture that can be drawn.", key="--drawing", value=str(path), remedy=remedy)
     return path
-
-
-def _draw(case: Case, path: Path) -> None:
-    from fem_impact.figures.outline import draw
-
-    rod = case.scene.projectile
-    if rod.own_mesh is not None:
-        from fem_impact.figures.meshed import draw_mesh
-        from rigid import Faceted
-
-        names = [material.name for material in rod.materials]
-        body = case.bodies.body
-        assert isinstance(body, Faceted), "a mesh has facets"
-        centre, touch = (body.x_c, body.z_c), case.contact.touch_point
-        draw_mesh(rod.own_mesh.half(), centre, touch, rod.cell_materials(), names, path)
-        return
-    body, segments = case.bodies.body, case.scene.projectile.segments
-    parts = [(part.to, part.material.name) for part in segments]
-    draw(body, case.contact.touch_point, parts or [(body.length, case.scene.projectile.material.name)], path)
 
 
 def _statement(case: Case) -> dict[str, Any]:
@@ -357,6 +340,7 @@ def _size_lines(case: Case) -> list[str]:
             f"if the contact is as estimated, {1e3 * radius:.2g} mm in radius, the last of them has about "
             f"{about(size.rod + size.barrier)} elements, {about(size.memory / 1e6)} MB of memory, and takes "
             f"{time_class(size.time)}; the run tells more after its pilot",
+            _fields_line(case.scene, size),
         )
         return ["", "A run with finite elements", *_wrapped(found)]
     sentences = (
@@ -365,8 +349,24 @@ def _size_lines(case: Case) -> list[str]:
         f"until max_time), {about(size.memory / 1e6)} MB of memory",
         f"about {clock_text(size.time)} of computing ({clock_text(size.most_time)} until max_time) on the "
         "machine of the stored costs, within a factor of two there",
+        _fields_line(case.scene, size),
     )
     return ["", "Size of a run with finite elements", *_wrapped(sentences)]
+
+
+ELEMENT_BYTES = 44.0
+"""Of one element in one picture: 8 of its own, and 24 of each node, of which there are 3 to 2 elements."""
+
+
+def _fields_line(scene: Scene, size: RunSize) -> str:
+    """Return how large the file is that holds the pictures of a run, and the key that makes it smaller."""
+    from fem_impact.case.size import about
+
+    frames = scene.save.frames
+    if not frames:
+        return "no pictures are kept (save.frames = 0): the run has no film"
+    MB = frames * ELEMENT_BYTES * (size.rod + size.barrier) / 1e6
+    return f"its pictures take about {about(MB)} MB in fields.vtkhdf, {frames} of them (save.frames)"
 
 
 # over the measured sets, means over places of the grid (`fem-impact cost paper`)

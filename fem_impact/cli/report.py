@@ -5,24 +5,39 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from fem_impact.cli.options import Options
+from fem_impact.cli.options import Options, add_text
 from fem_impact.cli.parser import CommandParser
 from fem_impact.cli.paths import checked_result
 from fem_impact.cli.terminal import print_answer
-from fem_impact.errors import MissingLibraryError, ResultError
+from fem_impact.errors import MissingLibraryError, ResultError, UsageError
 from fem_impact.files.run_directory import FIELDS
 
 
 def add_options(parser: CommandParser) -> None:
     """State the command and its options."""
-    parser.state(report, "fem-impact report results/quick")
+    signed = 'fem-impact report results/quick --sign --document "SC-17" --revision B'
+    parser.state(report, "fem-impact report results/quick", signed)
     about = "directory that a run or a study wrote"
     parser.add_argument("result", type=Path, metavar="RESULT", help=about)
+    sheet = "write sheet.html instead, a page of a run to print on A4 and sign"
+    parser.add_argument("--sign", action="store_true", help=sheet)
+    add_text(parser, "--document", "NUMBER", "number of the document, on the page to sign")
+    add_text(parser, "--revision", "REVISION", "its revision")
 
 
 def report(options: Options) -> int:
-    """Write the HTML report of a result."""
+    """Write the HTML report of a result, or the page of a run to sign."""
     result = checked_result(options.result)
+    if (options.document or options.revision) and not options.sign:
+        problem = "stands on the page to sign alone."
+        given = "--document" if options.document else "--revision"
+        raise UsageError(problem, key=given, remedy="Add --sign.")
+    if options.sign:
+        from fem_impact.pages.sheet import write_sheet
+
+        path = write_sheet(result, options.document, options.revision)
+        print_answer(options, {"path": str(path)}, f"page to sign: {path}\n")
+        return 0
     from fem_impact.pages.write import write_report
 
     notes = _missing_film(result, options)

@@ -222,6 +222,12 @@ def data_link(content: bytes, name: str, label: str) -> str:
     return f'<a download="{escape(name)}" href="data:text/csv;base64,{text}">{escape(label)}</a>'
 
 
+def image(path: Path, alt: str) -> Markup:
+    """Return an SVG file embedded as a picture."""
+    data = base64.b64encode(_bytes(path)).decode("ascii")
+    return Markup(f'<figure><img src="data:image/svg+xml;base64,{data}" alt="{escape(alt)}"></figure>')
+
+
 def film(folder: Path, caption: str) -> Markup:
     """Return the run's film embedded, nothing when there is none."""
     path = next((folder / name for name in FILMS if (folder / name).is_file()), None)

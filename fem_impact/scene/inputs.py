@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from typing import Any
 
-from fem_impact.scene.library import CHANGED, melting_of, source_of
+from fem_impact.scene.library import CHANGED, materials, melting_of, source_of
 from fem_impact.scene.material import Material
 from fem_impact.scene.types import Scene
-from fem_impact.scene.write import to_dict
+from fem_impact.scene.write import material_table, to_dict
 from fem_impact.tables.table import Table
 
 STATED = "the scene, or its default"
-WORDS = ("name", "law", "family")  # of a material
+UNSOURCED = "no source stated"
+WORDS = ("name", "law", "family", "sources")  # of a material
 MOST_POINTS = 6  # of a profile or a bore that is written out; longer ones stand in the scene
 
 
@@ -29,6 +30,16 @@ def inputs(scene: Scene) -> Table:
         own = getattr(scene.heating, f"{body}_melting") is None
         rows += [(f"heating.{body}_melting", f"{limit:g} K", source_of(name, "melting") if own else STATED)]
     return Table.of(("input", "value", "source"), rows, left=range(3))
+
+
+def _source(material: dict[str, Any], key: str) -> str:
+    """Return where a value of a material is from: as stated, or as shipped where it still is that value."""
+    if key in WORDS:
+        return STATED
+    shipped = materials().get(material["name"].removesuffix(CHANGED))
+    if shipped and material_table(shipped).get(key) == material[key]:
+        return material.get("sources", {}).get(key) or source_of(shipped.name, key)
+    return str(material.get("sources", {}).get(key, UNSOURCED))
 
 
 def melting(scene: Scene) -> dict[str, tuple[str, float]]:
@@ -59,12 +70,13 @@ def _rows(key: str, value: Any, source: str = STATED) -> list[tuple[str, str, st
         return [(key, ", ".join(f"{name} {part}" for name, part in value.items()), source)]
     if isinstance(value, dict):
         # a section with a density is a material, of which only the numbers have a source
-        sourced = "rho" in value
-        sources = {
-            name: source_of(value["name"], name) if sourced and name not in WORDS else STATED
-            for name in value
-        }
-        return [row for name, part in value.items() for row in _rows(f"{key}.{name}", part, sources[name])]
+        sources = {name: _source(value, name) if "rho" in value else STATED for name in value}
+        return [
+            row
+            for name, part in value.items()
+            if name != "sources"
+            for row in _rows(f"{key}.{name}", part, sources[name])
+        ]
     if value and isinstance(value, list) and isinstance(value[0], dict):
         return [row for number, part in enumerate(value, 1) for row in _rows(f"{key}[{number}]", part)]
     if isinstance(value, list) and len(value) > MOST_POINTS:

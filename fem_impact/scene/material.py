@@ -65,6 +65,7 @@ class Material:
     loss_factor : E'' / E' at the pace of the contact; None: it loses nothing by viscosity
     conductivity, heat_capacity : W/(m K), J/(kg K); None: not known
     family : by which friction is looked up and what an elastic body leaves out is told; empty: by its name
+    sources : key and source of values, as the user states them
     rate : how flow stress grows with the strain rate; None: no data, no effect
     """
 
@@ -84,6 +85,7 @@ class Material:
     flow: Flow | None = None
     family: str = ""
     loss_factor: float | None = None
+    sources: tuple[tuple[str, str], ...] = ()
 
     def __post_init__(self) -> None:
         check_text(self.name, "name", 60)

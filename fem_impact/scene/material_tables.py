@@ -7,11 +7,13 @@ from typing import Any
 
 from fem_impact.errors import SceneError
 from fem_impact.scene import fields
-from fem_impact.scene.checks import check_choice
+from fem_impact.scene.checks import check_choice, check_text
 from fem_impact.scene.flow import FLOWS, Flow, TableFlow
 from fem_impact.scene.material import RATES, Material, Rate
 from fem_impact.scene.tables import Table, check_keys, needed, numbers_of, within
 from fem_impact.scene.units import parse_number, parse_quantity
+
+NO_VALUES = ("law", "family")
 
 
 def material_of(name: Any, table: Table, others: Iterable[str] = ()) -> Material:
@@ -22,7 +24,8 @@ def material_of(name: Any, table: Table, others: Iterable[str] = ()) -> Material
     SceneError
         A key is unknown, a value is missing or refused, or values contradict each other.
     """
-    numbers = numbers_of(table, fields.MATERIAL, ("law", "rate", "flow", "family", *others))
+    named = ("law", "rate", "flow", "family", *others)
+    numbers = numbers_of(table, fields.MATERIAL, (*named, "source", "sources"))
     stated: dict[str, Any] = {
         f.key: f.checked(numbers[f.key]) for f in fields.MATERIAL if numbers[f.key] is not None
     }
@@ -32,7 +35,17 @@ def material_of(name: Any, table: Table, others: Iterable[str] = ()) -> Material
             stated[key] = within(table, key, read)
     if isinstance(stated.get("flow"), TableFlow):
         stated.setdefault("yield_stress", stated["flow"].points[0][1])
-    return Material(name=name, **stated)
+    return Material(name=name, **stated, sources=_sources(table, [*stated, *others]))
+
+
+def _sources(table: Table, stated: list[str]) -> tuple[tuple[str, str], ...]:
+    """Return the source of each value: that of ``sources``, else ``source``; some have none."""
+    given = within(table, "sources", lambda own: (check_keys(own, stated), own)[1], {})
+    every = {key: table["source"] for key in stated if "source" in table and key not in ("name", *NO_VALUES)}
+    found = every | dict(given)
+    for text in found.values():
+        check_text(text, "source", 200)
+    return tuple(sorted(found.items()))
 
 
 def _rate(table: Table) -> Rate:

@@ -72,10 +72,12 @@ def _surface(surface: Surface) -> dict[str, Any]:
 
 def _projectile(rod: ProjectileSpec) -> dict[str, Any]:
     if rod.segments:
-        parts = [{"to": HEIGHT.write(part.to), "material": _material(part.material)} for part in rod.segments]
+        parts = [
+            {"to": HEIGHT.write(part.to), "material": material_table(part.material)} for part in rod.segments
+        ]
         made: dict[str, Any] = {"segments": parts}
     else:
-        made = {"material": _material(rod.material)}
+        made = {"material": material_table(rod.material)}
     bore = {"bore": _points(rod.bore)} if rod.bore else {}
     return _shape(rod) | bore | made
 
@@ -91,7 +93,7 @@ def _shape(rod: ProjectileSpec) -> dict[str, Any]:
         tip = list(shape.tip) if isinstance(shape.tip, tuple) else shape.tip
         named = {"mesh_symmetry": shape.symmetry, "mesh_tip": tip, "mesh_sets": list(shape.sets)}
         file = {"mesh": shape.path, "mesh_unit": shape.unit, "mesh_content": shape.content}
-        regions = {one.name: _material(one.material) for one in rod.regions}
+        regions = {one.name: material_table(one.material) for one in rod.regions}
         faces = {one.name: _surface(one.surface) for one in rod.faces}
         sets = {"mesh_materials": regions, "mesh_surfaces": faces}
         return file | {key: value for key, value in (named | sets).items() if value}
@@ -108,8 +110,10 @@ def _barrier(barrier: Barrier) -> dict[str, Any]:
     words = {key: getattr(barrier, key) for key in ("boundary", "support")}
     written = words | _written(barrier, fields.BARRIER)
     other = {key: value for key, value in written.items() if getattr(barrier, key) != getattr(plain, key)}
-    layers = [{**_written(one, fields.LAYER), "material": _material(one.material)} for one in barrier.layers]
-    return {**other, **({"layers": layers} if layers else {}), "material": _material(barrier.material)}
+    layers = [
+        {**_written(one, fields.LAYER), "material": material_table(one.material)} for one in barrier.layers
+    ]
+    return {**other, **({"layers": layers} if layers else {}), "material": material_table(barrier.material)}
 
 
 def _impact(impact: Impact) -> dict[str, Any]:
@@ -131,13 +135,16 @@ def _accuracy(accuracy: Accuracy) -> dict[str, Any]:
     return {"target": f"{100 * accuracy.target:.12g} %", **rest}
 
 
-def _material(material: Material) -> dict[str, Any]:
+def material_table(material: Material) -> dict[str, Any]:
+    """Return a material as the table that a scene states."""
     law = {"law": material.law} if material.law != "tensile" else {}
     rate = material.rate
     rates = {"rate": {"law": rate.law, **_written(rate, fields.RATES[rate.law])}} if rate else {}
     flow = {"flow": _flow(material.flow)} if material.flow else {}
     words = {"family": material.family} if material.family else {}
-    return {"name": material.name, **words, **_written(material, fields.MATERIAL), **law, **flow, **rates}
+    sources = {"sources": dict(material.sources)} if material.sources else {}
+    numbers = _written(material, fields.MATERIAL)
+    return {"name": material.name, **words, **numbers, **law, **flow, **rates, **sources}
 
 
 def _flow(flow: Flow) -> dict[str, Any]:

@@ -12,6 +12,7 @@ from fem_impact.case.metals import flow_stresses, unknowns
 from fem_impact.errors import SceneError
 from fem_impact.physics.flash import Half
 from fem_impact.physics.hardening import CowperSymonds, JohnsonCook, rate_gain, rate_law, tabor_stress
+from fem_impact.scene.inputs import UNSOURCED, inputs
 from fem_impact.scene.library import family_of, intervals_of, materials
 from fem_impact.scene.material import CowperSymondsRate, JohnsonCookRate, Material
 from fem_impact.scene.read import read_dict
@@ -199,3 +200,21 @@ def test_no_metal_has_the_law_of_another():
 def test_what_never_yields_cannot_be_told_to():
     with pytest.raises(SceneError, match="yield_stress of alumina"):
         Case.of(replace(of("alumina"), "effects", ["auto", "rod-plasticity"]))
+
+
+def test_each_value_has_the_source_that_the_user_states():
+    """One for all values, or of each; what is changed of a shipped material keeps none of its source."""
+    own = {"name": "mine", "E": "70 GPa", "nu": 0.33, "rho": "2700 kg/m3", "source": "sheet 3"}
+    scene = replace(T5B, "barrier.material", own | {"sources": {"nu": "a guess"}})
+    told = {row[0]: row[2] for row in inputs(scene).rows}
+    assert [told[f"barrier.material.{key}"] for key in ("E", "nu", "rho")] == [
+        "sheet 3",
+        "a guess",
+        "sheet 3",
+    ]
+    assert read_dict(to_dict(scene)) == scene
+    changed = {row[0]: row[2] for row in inputs(replace(T5B, "barrier.material.E", "200 GPa")).rows}
+    assert changed["barrier.material.E"] == UNSOURCED
+    assert "handbook" in changed["barrier.material.nu"]
+    with pytest.raises(SceneError, match=r"sources.Em"):
+        replace(T5B, "barrier.material", own | {"sources": {"Em": "sheet 3"}})

@@ -1,0 +1,32 @@
+"""The projectile of a case as a picture: its section, or its mesh."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from fem_impact.case.case import Case
+from fem_impact.figures.meshed import draw_mesh
+from fem_impact.figures.outline import draw
+from rigid import Faceted
+
+
+def draw_projectile(case: Case, path: Path) -> None:
+    """Draw a projectile with its materials, first contact and mass centre into a .png or .svg file.
+
+    A mesh is drawn with its cells, and its tip as the barrier sees it.
+
+    Raises
+    ------
+    MissingLibraryError
+        matplotlib is not installed.
+    OutputPathError
+        The place cannot be written.
+    """
+    rod, body, touch = case.scene.projectile, case.bodies.body, case.contact.touch_point
+    if rod.own_mesh is not None:
+        names = [material.name for material in rod.materials]
+        assert isinstance(body, Faceted), "a mesh has facets"
+        draw_mesh(rod.own_mesh.half(), (body.x_c, body.z_c), touch, rod.cell_materials(), names, path)
+        return
+    parts = [(part.to, part.material.name) for part in rod.segments]
+    draw(body, touch, parts or [(body.length, rod.material.name)], path)

@@ -1,0 +1,152 @@
+"""One page of a run to print on A4 and sign: drawing, verdict, numbers with errors, inputs with sources."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from fem_impact.answers.friction_spread import friction_spread
+from fem_impact.answers.verdict.screening import screening
+from fem_impact.answers.verdict.sentences import FIRST_ONLY, Line, screening_lines
+from fem_impact.case.case import Case
+from fem_impact.errors import ResultError
+from fem_impact.files.atomic import make_directory, read_text, write_text
+from fem_impact.files.digests import checksum, read_signed
+from fem_impact.outcome.keys import Key, Unknown, or_none
+from fem_impact.outcome.limitation import HEAVIEST_FIRST, WRONG_NUMBERS, texts
+from fem_impact.outcome.record import KEY_TABLE, Outcome
+from fem_impact.outcome.shares import shares
+from fem_impact.pages import html
+from fem_impact.pages.drawing import draw_projectile
+from fem_impact.pages.html import Markup
+from fem_impact.pages.run_page import verdict_box
+from fem_impact.scene.inputs import inputs
+from fem_impact.scene.read import read_toml
+from fem_impact.scene.write import digest
+from fem_impact.tables.table import Table
+
+SHEET = "sheet.html"
+BLANK = "____________"
+ROLES = ("prepared by", "checked by", "approved by")
+NUMBERS = (
+    ("restitution e (tip's arms)", "e_edge", ""),
+    ("impulse ratio mu", "mu", ""),
+    ("V_n after", "V_n_m_per_s", "m/s"),
+    ("V_t after", "V_t_m_per_s", "m/s"),
+    ("Omega after", "Omega_rad_per_s", "rad/s"),
+    ("peak force", "peak_force_N", "N"),
+    ("flash temperature", "flash_temperature_K", "K"),
+    ("ignition temperature stated", "ignition_temperature_K", "K"),
+    ("temperature that no spot exceeds", "flash_bound_K", "K"),
+    ("friction + top 0.1 mm of both, of E_0", "W_skin_over_E_0", "%"),
+)
+"""Label, key and unit of the numbers before the shares of energy."""
+
+
+def write_sheet(folder: Path, document: str = "", revision: str = "") -> Path:
+    """Write ``sheet.html`` into the folder of a run and return its path.
+
+    It states the verdict of ``fem-impact assess`` where ``verdict.json`` lies in the folder too, with the
+    change of e that was allowed as the criterion; the closed-form estimate otherwise.
+
+    Parameters
+    ----------
+    folder : with outcome.json and scene.toml
+    document, revision : number of the document and its revision; lines to fill in where empty
+
+    Raises
+    ------
+    ResultError
+        The folder holds no run, its files are damaged, or the scene was changed after the run.
+    """
+    outcome = Outcome.read(folder / "outcome.json")
+    scene = read_toml(folder / "scene.toml")
+    origin = outcome.provenance
+    if digest(scene) != origin.scene_digest:
+        raise ResultError(f"{folder / 'scene.toml'}: was changed after the run: run it again to sign it.")
+    case = Case(scene)
+    drawing = make_directory(folder / "figures") / "projectile.svg"
+    draw_projectile(case, drawing)
+    criterion, lines = _verdict(folder, case)
+    spread = friction_spread(scene, origin.fidelity)
+    rows = [
+        (label, html.signed(_told(outcome, key, unit)), unit, html.signed(spread.told(key, _scale(unit))))
+        for label, key, unit in _listed(outcome)
+    ]
+    numbers = Table.of(("quantity", "value", "unit", "what f changes"), rows, left=(0, 2, 3))
+    limits = outcome.validity.limitations
+    others = (kind for kind in HEAVIEST_FIRST if kind not in WRONG_NUMBERS)
+    uncovered = [sentence for kind in others for sentence in texts(limits, kind)]
+    state = "" if outcome.validity.finished else f"The run did not finish: {outcome.validity.stopped_because}"
+    body = (
+        html.paragraph(state, "notice"),
+        html.image(drawing, "the projectile in its plane of motion"),
+        html.section("Verdict", html.paragraph(criterion), verdict_box(lines)),
+        html.section(
+            "Numbers of the first impact, with their errors",
+            html.bullets(texts(limits, *WRONG_NUMBERS)),
+            html.table(numbers, compact=True),
+            html.paragraph(spread.said.replace("At the right", "Last column"), "note"),
+            _dent(outcome),
+        ),
+        html.section("Inputs and their sources", html.table(inputs(scene), compact=False)),
+        html.section("Not covered", html.bullets((*FIRST_ONLY, *uncovered))),
+        html.section("Signatures", html.table(_signatures())),
+    )
+    film = next((name for name in html.FILMS if (folder / name).is_file()), "")
+    footer = (
+        f"Run {origin.created_utc}, fidelity {origin.fidelity}, {html.versions_text(origin.versions)}. "
+        f"Digest of the scene {origin.scene_digest}; of the record {checksum(outcome.to_dict())}. "
+        f"Film: {film or 'none'} in the folder of the run."
+    )
+    lead = f"Document {document or BLANK}  ·  revision {revision or BLANK}  ·  {origin.created_utc[:10]}"
+    inner = Markup(f'<div class="sheet">\n{html.join(body).text}\n</div>')
+    kind = f"Impact · {origin.scene_id}"
+    return write_text(folder / SHEET, html.page(origin.scene_title, kind, lead, footer, [inner]))
+
+
+def _verdict(folder: Path, case: Case) -> tuple[str, Sequence[Line]]:
+    """Return the criterion, and the lines of the verdict on it or of the estimate that stands for it."""
+    stored = folder / "verdict.json"
+    if not stored.is_file():
+        lines = screening_lines(screening(case.bodies), str(folder / "scene.toml"))
+        return (
+            "Criterion: the published limit of rigid behaviour, as an estimate. No verdict computed.",
+            lines,
+        )
+    told = read_signed(read_text(stored), str(stored))
+    answer = told["answer"].upper()
+    criterion = f"Criterion: vibration changes e by at most {told['tolerance']:g}. Answer: {answer}."
+    return criterion, [(title, sentence) for title, sentence in told["box"]]
+
+
+def _listed(outcome: Outcome) -> list[tuple[str, Key, str]]:
+    """Return label, key and unit of the numbers that are known."""
+    listed = [(label, KEY_TABLE[name], unit) for label, name, unit in NUMBERS]
+    listed += [(f"{share.label}, of E_0", share.key, "%") for share in shares("report")]
+    return [one for one in listed if not isinstance(one[1].of(outcome), Unknown)]
+
+
+def _scale(unit: str) -> float:
+    return 100.0 if unit == "%" else 1.0
+
+
+def _told(outcome: Outcome, key: Key, unit: str) -> str:
+    return outcome.told(key, _scale(unit))
+
+
+def _dent(outcome: Outcome) -> Markup:
+    """Return how deep and wide the places of contact are, nothing where that is not known."""
+    sites = or_none(outcome.contact.sites) or ()
+    cell = or_none(outcome.cost.tip_size)
+    if not sites or cell is None:
+        return Markup("")
+    depth, width = max(site.depth for site in sites), max(site.width for site in sites)
+    dent = f"; the barrier is pressed in by at most {1e6 * depth:.2g} µm" if depth else ""
+    return html.paragraph(
+        f"Widest place of contact {1e3 * width:.2g} mm, known to about a cell, {1e3 * cell:.2g} mm{dent}."
+    )
+
+
+def _signatures() -> Table:
+    return Table.of(("", "name", "date", "signature"), [(role, "", "", "") for role in ROLES], left=range(4))

@@ -1,0 +1,55 @@
+"""The page to sign: what it states, of which run, and what it refuses."""
+
+import json
+
+import pytest
+import result_maker
+
+from fem_impact.errors import ResultError
+from fem_impact.files.digests import signed
+from fem_impact.pages.sheet import write_sheet
+from fem_impact.scene.shipped import load, replace_all
+from fem_impact.scene.write import digest, to_toml
+
+OWN = {"name": "bronze", "E": "110 GPa", "nu": 0.34, "rho": "8800 kg/m3", "sources": {"E": "sheet 12"}}
+
+
+@pytest.fixture
+def run(tmp_path):
+    """A run of a plate of an own material, one value of which has a source."""
+    scene = replace_all(load("t5b"), {"barrier.material": OWN})
+    limited = [{"kind": "model", "text": "No waves."}, {"kind": "resolution", "text": "Too coarse."}]
+    bands = {"mesh_limit": {"mu": 0.61}, "mesh_band": {"mu": 0.0123}}
+    result_maker.write_result(tmp_path, scene_digest=digest(scene), limitations=limited, **bands)
+    (tmp_path / "scene.toml").write_text(to_toml(scene), encoding="utf-8")
+    return tmp_path
+
+
+def test_it_states_numbers_with_errors_sources_what_is_left_out_and_where_to_sign(run):
+    text = write_sheet(run, "SC-17", "B").read_text(encoding="utf-8")
+    order = ["SC-17", "revision B", "data:image/svg+xml", "Criterion", "Too coarse.", "0.610 ± 0.013"]
+    order += ["Inputs and their sources", "sheet 12", "no source stated", "Not covered", "No waves."]
+    places = [text.index(words) for words in [*order, "approved by", "Digest of the scene"]]
+    assert places == sorted(places)
+    assert "No verdict computed" in text
+    assert "____" in write_sheet(run).read_text(encoding="utf-8")
+
+
+def test_it_states_the_verdict_that_lies_in_the_folder_and_the_criterion(run):
+    told = {"answer": "no", "tolerance": 0.05, "box": [["May rigid theory be used here?", "NO: too long"]]}
+    (run / "verdict.json").write_text(json.dumps(signed(told)), encoding="utf-8")
+    text = write_sheet(run).read_text(encoding="utf-8")
+    assert "by at most 0.05. Answer: NO." in text and "NO: too long" in text
+
+
+def test_a_scene_that_was_changed_after_the_run_is_not_signed(run):
+    (run / "scene.toml").write_text(to_toml(load("t5b")), encoding="utf-8")
+    with pytest.raises(ResultError, match="changed after the run"):
+        write_sheet(run)
+
+
+def test_the_command_writes_it(cli, run):
+    code, out, _ = cli("report", run, "--sign", "--document", "SC-17")
+    assert code == 0 and "page to sign" in out and "SC-17" in (run / "sheet.html").read_text(encoding="utf-8")
+    code, _, err = cli("report", run, "--revision", "B")
+    assert code == 2 and "--revision" in err and "Add --sign" in err
