@@ -40,7 +40,12 @@ def material_of(name: Any, table: Table, others: Iterable[str] = ()) -> Material
 
 def _sources(table: Table, stated: list[str]) -> tuple[tuple[str, str], ...]:
     """Return the source of each value: that of ``sources``, else ``source``; some have none."""
-    given = within(table, "sources", lambda own: (check_keys(own, stated), own)[1], {})
+
+    def read(given: Table) -> Table:
+        check_keys(given, stated)
+        return given
+
+    given = within(table, "sources", read, {})
     every = {key: table["source"] for key in stated if "source" in table and key not in ("name", *NO_VALUES)}
     found = every | dict(given)
     for text in found.values():
