@@ -5,13 +5,14 @@ A package names them in its ``pyproject.toml``, such as::
     [project.entry-points."fem_impact.materials"]
     "al-6082-t6" = "my_package:AL_6082"
 
-==================== ==========================================================================
+======================== ======================================================================
 group                what the name stands for
-==================== ==========================================================================
-fem_impact.materials a table of values with their units and a table ``sources``, as in materials.toml
-fem_impact.shapes    a function that makes a `rigid.Nose` from the radii of rod and tip, m
-fem_impact.effects   a `fem_impact.case.effects.slots.Effect` of the same name
-==================== ==========================================================================
+======================== ======================================================================
+fem_impact.materials     a table of values with their units and a table ``sources``, as in materials.toml
+fem_impact.shapes        a function that makes a `rigid.Nose` from the radii of rod and tip, m
+fem_impact.friction_laws a `fem_impact.scene.sliding.SlidingLaw`
+fem_impact.effects       a `fem_impact.case.effects.slots.Effect` of the same name
+======================== ======================================================================
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from typing import Any
 
 from fem_impact.errors import UsageError
 
-GROUPS = ("materials", "shapes", "effects")
+GROUPS = ("materials", "shapes", "friction_laws", "effects")
 
 
 def added(group: str, ours: Collection[str]) -> dict[str, Any]:

@@ -21,7 +21,7 @@ from .general import General
 from .losses import Losses, PredictedLosses, kinetic_energy, losses, predicted_losses
 from .massive import Motion, critical_ratio, phi, solve
 from .nose import SHAPES, Nose
-from .path import End, SlidingPath, interval_ratio, painleve_threshold, sliding_path
+from .path import End, SlidingPath, interval_ratio, painleve_threshold, path_over_speed, sliding_path
 from .pinned import pinned_loss
 from .projectile import Projectile
 from .slenderness import LIMIT, LIMIT_MM, behaves_rigidly, in_millimetres, slenderness
@@ -76,6 +76,7 @@ __all__ = [
     "kinetic_energy",
     "losses",
     "painleve_threshold",
+    "path_over_speed",
     "phi",
     "pinned_loss",
     "point_arms",

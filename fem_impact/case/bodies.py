@@ -13,6 +13,7 @@ from fem_impact.physics.contact import ContactEstimate, ContactPair, Plate
 from fem_impact.physics.wall import ovalling_period
 from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.projectile import ProjectileSpec
+from fem_impact.scene.sliding import SpeedTable
 from fem_impact.scene.types import Scene
 from meshes import SKIN, HexMesh
 from rigid import Body
@@ -100,6 +101,15 @@ class Bodies:
         half = self._own_half
         there = self._at_contact[half.faces].any(axis=1) & (half.face_tag == SKIN)
         return float(rod.face_friction(stated)[there].max())
+
+    @cached_property
+    def friction_over_speed(self) -> SpeedTable | None:
+        """The factor of friction over the sliding speed, None where it is one.
+
+        Its pressure is that of the estimated contact, its temperature that before the impact.
+        """
+        law = self.scene.surface.sliding_law
+        return law.over_speed(self.estimate.pressure, self.scene.heating.ambient) if law else None
 
     @cached_property
     def touching_cells(self) -> Ints:

@@ -60,6 +60,7 @@ def scene_limitations(bodies: Bodies, meshed_through: bool) -> tuple[Limitation,
         _steels(scene),
         _barrier(scene),
         _surface(scene, active),
+        _sliding(bodies),
     )
     idealised = limitations(
         "model",
@@ -70,6 +71,24 @@ def scene_limitations(bodies: Bodies, meshed_through: bool) -> tuple[Limitation,
         _idealised(active),
     )
     return (*unmeasured, *idealised)
+
+
+def _sliding(bodies: Bodies) -> str:
+    """Return where a law of friction over speed is used beyond its grid."""
+    law, speed = bodies.scene.surface.sliding_law, abs(bodies.contact.sliding)
+    if law is None or "friction" not in bodies.effects:
+        return ""
+    used = (
+        (speed, law.speed, "speed", "sliding speed"),
+        (bodies.estimate.pressure, law.pressure, "stress", "contact pressure"),
+        (bodies.scene.heating.ambient, law.temperature, "temperature", "temperature"),
+    )
+    beyond = [
+        f"a {words} of {format_quantity(value, dimension)}"
+        for value, points, dimension, words in used
+        if points and not points[0] <= value <= points[-1]
+    ]
+    return f"beyond the law of friction, whose last value is used: {', '.join(beyond)}" if beyond else ""
 
 
 def _outside(value: float, ends: tuple[float, float], name: str, dimension: str) -> str:
@@ -125,7 +144,7 @@ def _barrier(scene: Scene) -> str:
 
 def _surface(scene: Scene, active: Collection[str]) -> str:
     known = library.surfaces().values()
-    bare = replace(scene.surface, skin_depth=None, skin_factor=None)
+    bare = replace(scene.surface, skin_depth=None, skin_factor=None, sliding_law=None)
     if "friction" not in active or bare in known:
         return ""
     f, source = scene.surface.friction, scene.surface.source
@@ -164,12 +183,21 @@ def require_still(barrier: Barrier, fidelity: str) -> None:
 
 
 def require_followed(scene: Scene) -> None:
-    """Refuse a barrier that nothing holds where more than the first impact is asked for (SceneError)."""
+    """Refuse to follow more than the first impact where later strikes do not know what acts (SceneError).
+
+    That is a barrier which nothing holds, and friction that changes with the sliding speed.
+    """
     if scene.impact.until == FIRST:
         if scene.strikes != Following():
             problem = "says how a body is followed, but the scene asks for the first impact alone."
             raise SceneError(problem, key="strikes", remedy='Add until = "rest" to impact, or leave it out.')
         return
+    if scene.surface.sliding_law is not None:
+        raise SceneError(
+            "changes friction with the sliding speed, which strikes after the first do not know.",
+            key="surface.sliding_law",
+            remedy='Leave it out, or use until = "first".',
+        )
     if scene.barrier.mass is None:
         return
     raise SceneError(

@@ -80,9 +80,12 @@ class Flats(NamedTuple):
 
 @inlined
 def press_flat(
-    flats: Flats, f: int, depth: tuple[float, float], moved: tuple[float, float]
+    flats: Flats, f: int, depth: tuple[float, float], moved: tuple[float, float], rubs: float
 ) -> tuple[float, float, float, float]:
-    """Press a flat part to the depths of its ends and move them, m; return their forces n, n, t, t, N."""
+    """Press a flat part to the depths of its ends and move them, m; return their forces n, n, t, t, N.
+
+    Its friction counts times ``rubs``.
+    """
     law, works = flats.law[f], flats.works[f]
     k, k_t, size = law[LAW.normal], law[LAW.shear], law[LAW.size]
     N_a, N_b, T_a, T_b = 0.0, 0.0, 0.0, 0.0
@@ -99,10 +102,10 @@ def press_flat(
         q = min(k * (D - before), wide * law[LAW.hardness])
         flats.dent[f, c] = max(before, D - q / k)
         works[0] += 0.5 * (q_before + q) * (flats.dent[f, c] - before)
-        rubs, sheared = law[LAW.friction] * q, wide * law[LAW.skin]
-        trial, limit = k_t * (shift + way), min(rubs, sheared)
+        rubbed, sheared = rubs * law[LAW.friction] * q, wide * law[LAW.skin]
+        trial, limit = k_t * (shift + way), min(rubbed, sheared)
         T = min(max(trial, -limit), limit)
-        works[2 if rubs <= sheared else 1] += 0.5 * (k_t * shift + T) * (trial - T) / k_t
+        works[2 if rubbed <= sheared else 1] += 0.5 * (k_t * shift + T) * (trial - T) / k_t
         flats.normal[f, c], flats.shift[f, c] = q, T / k_t
         flats.deepest[f, c] = max(flats.deepest[f, c], D)
         N_a += (1 - to) * q

@@ -13,6 +13,7 @@ import numpy as np
 from fem_impact.arrays import Array
 from fem_impact.case.case import Case
 from fem_impact.fem.kernels import compiled_before
+from fem_impact.fem.sliding import speed_table
 from fem_impact.modal.groove import WORK
 from fem_impact.modal.landing import height_of
 from fem_impact.modal.laws import give_law, set_law, start_of
@@ -42,6 +43,7 @@ from fem_impact.physics.contact import fall
 from fem_impact.physics.contact_law import ContactLaw
 from fem_impact.physics.flow_law import FlowLaw
 from fem_impact.progress import Progress, compiling, setting_up
+from fem_impact.scene.sliding import SpeedTable
 
 STEPS = 1000  # over the estimated contact
 COMPILE = 6  # s, about, once
@@ -135,12 +137,16 @@ class Course:
     record: Array
 
     @classmethod
-    def of(cls, sites: int, now: ModalState, rows: int = 0) -> Self:
-        """Return the course of a rod that has not touched, with a record of so many rows."""
+    def of(cls, sites: int, now: ModalState, rows: int = 0, over: SpeedTable | None = None) -> Self:
+        """Return the course of a rod that has not touched, with a record of so many rows.
+
+        ``over`` is the factor of friction over the sliding speed.
+        """
         clock = np.zeros(len(CLOCK))
         clock[CLOCK.every] = 1.0
         tally, contacts = np.zeros(len(SUM)), np.zeros((MOST_CONTACTS, 4))
-        return cls(now, Touched.nothing(sites), clock, tally, contacts, np.zeros((rows, len(ROW))))
+        held = Touched.nothing(sites, speed_table(over))
+        return cls(now, held, clock, tally, contacts, np.zeros((rows, len(ROW))))
 
     def follow(self, start: Start, modes: Modes, sites: Sites, bounds: Bounds) -> int:
         """Go on until a site without a law touches, which is returned, or to an end; see `march`."""
@@ -208,7 +214,8 @@ def solve(
             progress(compiling(case.max_time, COMPILE))
     rod = modal_rod(case.bodies, case.slots.vibrating)
     start, modes = start_of(case, rod), Modes(rod.omega)
-    course = Course.of(len(rod.sites.along_t), _arriving(case, rod, arrival), MOST_ROWS if recorded else 0)
+    rows, over = MOST_ROWS if recorded else 0, case.slots.friction_over_speed
+    course = Course.of(len(rod.sites.along_t), _arriving(case, rod, arrival), rows, over)
     E_0 = _kinetic(rod, *course.now.rigid[:3]) + float(_energies(rod, course.now).sum())
     slowest, rate = _approach(rod, course.now), 0.0
     for s in _touching(rod, course.now):

@@ -199,6 +199,7 @@ class Touched(NamedTuple):
         a `fem_impact.modal.groove.Groove`
     work_t : (s,) work of the tangential force, J
     flats : straight parts that have landed; their sites have no contacts of their own
+    over_speed : factors of friction, a `fem_impact.fem.sliding.speed_table`
     """
 
     site: Array
@@ -215,9 +216,10 @@ class Touched(NamedTuple):
     size: Array
     work_t: Array
     flats: Flats
+    over_speed: Array
 
     @classmethod
-    def nothing(cls, sites: int) -> Self:
+    def nothing(cls, sites: int, over_speed: Array) -> Self:
         """Return the contacts of sites that have not touched."""
 
         def rows(width: int) -> Array:
@@ -228,7 +230,7 @@ class Touched(NamedTuple):
         cells = rows(CELLS), rows(CELLS), rows(CELLS)
         once = np.zeros(sites), np.zeros(sites)
         whole = *laws, *springs, *cells, rows(9), rows(3), *once
-        return cls(rows(len(SITE)), *whole, Flats.none())
+        return cls(rows(len(SITE)), *whole, Flats.none(), over_speed)
 
 
 class Bounds(NamedTuple):

@@ -6,6 +6,7 @@ import numpy as np
 
 from fem_impact.arrays import Array
 from fem_impact.fem.kernels import inlined
+from fem_impact.fem.sliding import factor_at
 from fem_impact.modal.flat import LAW, flat_energy, flat_meets, press_flat
 from fem_impact.modal.groove import AT as IN_GROOVE
 from fem_impact.modal.groove import WORK, Groove, meets, move_apart, slide, stored_energy
@@ -20,18 +21,19 @@ MARGIN = 0.5  # share of its gap that a site may close unseen while another one 
 
 
 @inlined
-def law_of(held: Touched, s: int) -> ContactLaw:
-    """Return the law of a site that does not yield."""
+def law_of(held: Touched, s: int, rubs: float = 1.0) -> ContactLaw:
+    """Return the law of a site that does not yield, its friction times ``rubs``."""
     v = held.law[s]
-    return ContactLaw(v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7], v[8], v[9])
+    return ContactLaw(v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7], rubs * v[8], v[9])
 
 
 @inlined
-def flow_of(held: Touched, s: int) -> FlowLaw:
-    """Return the law of a site that yields."""
+def flow_of(held: Touched, s: int, rubs: float = 1.0) -> FlowLaw:
+    """Return the law of a site that yields, its friction times ``rubs``."""
     v = held.flow[s]
     ploughs, yields = v[12] > 0.0, v[13] > 0.0
-    return FlowLaw(v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7], v[8], v[9], v[10], v[11], ploughs, yields)
+    f = rubs * v[11]
+    return FlowLaw(v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7], v[8], v[9], v[10], f, ploughs, yields)
 
 
 @inlined
@@ -152,10 +154,12 @@ def meet(held: Touched, turn: float, dt: float) -> tuple[float, float, float]:
         if of[SITE.known] != OWN or of[SITE.awake] == 0.0:
             continue
         depth, place = of[SITE.depth], of[SITE.place]
+        rubs = factor_at(abs(of[SITE.moved]) / dt, held.over_speed)
         if held.flow[s, 13] > 0.0:
-            of[SITE.force_n], of[SITE.force_t] = slide(groove_of(held, s), depth, place, flow_of(held, s))
+            law_here = flow_of(held, s, rubs)
+            of[SITE.force_n], of[SITE.force_t] = slide(groove_of(held, s), depth, place, law_here)
         else:
-            law, dragged = law_of(held, s), of[SITE.drag]
+            law, dragged = law_of(held, s, rubs), of[SITE.drag]
             F, a, of[SITE.drag] = press(depth, of[SITE.rate], law)
             lost += 0.5 * (of[SITE.drag] + dragged) * of[SITE.rate] * dt
             if F > 0.0:
@@ -169,7 +173,8 @@ def meet(held: Touched, turn: float, dt: float) -> tuple[float, float, float]:
         if flats.law[f, LAW.known] > 0.0:
             a, b = held.site[flats.ends[f, 0]], held.site[flats.ends[f, 1]]
             depths, moved = (a[SITE.depth], b[SITE.depth]), (a[SITE.moved], b[SITE.moved])
-            N_a, N_b, T_a, T_b = press_flat(flats, f, depths, moved)
+            rubs = factor_at(0.5 * abs(moved[0] + moved[1]) / dt, held.over_speed)
+            N_a, N_b, T_a, T_b = press_flat(flats, f, depths, moved, rubs)
             a[SITE.force_n] += N_a
             b[SITE.force_n] += N_b
             a[SITE.force_t] += T_a

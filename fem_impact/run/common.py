@@ -260,7 +260,9 @@ def heat(case: Case, flash: Flash, power: float, flux: float, patch: float, less
 
 def _bound(case: Case, ambient: float) -> Num:
     """Return the temperature, K, that no spot exceeds; without both melting points none can be told."""
-    rise = flash_bound(case.contact, case.bodies.friction, halves(case.bodies))
+    over = case.slots.friction_over_speed
+    largest = case.bodies.friction * (max(over[1]) if over else 1.0)
+    rise = flash_bound(case.contact, largest, halves(case.bodies))
     known_of = melting(case.scene)
     unstated = [f"heating.{body}_melting" for body in ("rod", "barrier") if body not in known_of]
     if rise == inf:

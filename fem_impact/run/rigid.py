@@ -24,6 +24,7 @@ from fem_impact.run.common import MASSIVE, after, heat, plastic_shares
 if TYPE_CHECKING:
     from fem_impact.case.case import Case
     from fem_impact.physics.contact import ContactPair
+    from fem_impact.scene.sliding import SpeedTable
 
 
 STIFF_PLATE = "Bending of the plate, which takes energy and lowers e, is left out."
@@ -42,7 +43,7 @@ def rigid_outcome(case: Case) -> Outcome:
     """Return the outcome by rigid impulse-momentum theory; what the theory does not give is unknown."""
     rod = case.bodies.body
     loss = normal_loss(case, case.contact)
-    path, wall, cpu = _timed_path(case.contact, loss.e)
+    path, wall, cpu = _timed_path(case.contact, loss.e, case.slots.friction_over_speed)
     V_n, V_t, Omega = (float(velocity) for velocity in path.motion)
     base = _barrier_gain(case, V_n, V_t)
     reduction = Reduction.of(
@@ -88,10 +89,16 @@ def _barrier_gain(case: Case, V_n: float, V_t: float) -> tuple[float, float]:
     return -share * (V_n - before.v_n), -share * (V_t - before.v_t)
 
 
-def _timed_path(pair: ContactPair, e: float) -> tuple[rigid.SlidingPath, float, float]:
-    """Return the relative motion in an impact of energetic restitution e; wall and processor time, s."""
+def _timed_path(
+    pair: ContactPair, e: float, over: SpeedTable | None
+) -> tuple[rigid.SlidingPath, float, float]:
+    """Return the relative motion in an impact of energetic restitution e; wall and processor time, s.
+
+    ``over`` is the factor of friction over the sliding speed.
+    """
     k2, (d_c, d_d) = pair.reduced[1], pair.arms
-    moving = partial(rigid.sliding_path, pair.v_n, pair.v_t, omega=pair.omega)
+    resolve = partial(rigid.path_over_speed, over=over) if over else rigid.sliding_path
+    moving = partial(resolve, pair.v_n, pair.v_t, omega=pair.omega)
     impulse = partial(moving, e=e, f=pair.f, d_c=d_c, d_d=d_d, k2=k2)
     impulse()  # a first call is slow: the second is timed
     wall, cpu = time.perf_counter(), time.process_time()

@@ -26,6 +26,9 @@ def inputs(scene: Scene) -> Table:
     rows = [row for name in ("projectile", "barrier", "impact") for row in _rows(name, tables[name])]
     friction = f"{surface.friction:g} ({surface.friction_low:g} to {surface.friction_high:g})"
     rows.append(("surface.friction", friction, surface.source))
+    if law := surface.sliding_law:
+        ends = f"times {law.factor[0]:g} at rest, times {law.factor[-1]:g} at {law.speed[-1]:g} m/s and more"
+        rows.append(("surface.sliding_law", f"{law.name} {ends}".strip(), law.source))
     for body, (name, limit) in melting(scene).items():
         own = getattr(scene.heating, f"{body}_melting") is None
         rows += [(f"heating.{body}_melting", f"{limit:g} K", source_of(name, "melting") if own else STATED)]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Collection
+from dataclasses import replace
 from functools import cache
 from importlib.resources import files
 from typing import Any
@@ -14,6 +15,8 @@ from fem_impact.scene import fields
 from fem_impact.scene.family import family_by_words
 from fem_impact.scene.material import Material
 from fem_impact.scene.material_tables import material_of
+from fem_impact.scene.sliding import SlidingLaw
+from fem_impact.scene.sliding_table import law_of
 from fem_impact.scene.surface import Surface
 from fem_impact.scene.tables import Table, needed
 from fem_impact.scene.types import MEASURED_SETS
@@ -137,6 +140,29 @@ def family_of(metal: Material) -> str:
 def friction_pairs() -> list[dict[str, Any]]:
     """Return the table of dry pairs: their families, ends of the interval of f, and where they were read."""
     return list(_table("friction_pairs.toml")["pair"])
+
+
+def sliding_laws() -> dict[str, SlidingLaw]:
+    """Return the laws of friction over speed by name: shipped ones, and those that other packages add."""
+    shipped_laws = _table("sliding_laws.toml")
+    laws = {
+        name: law_of({k: v for k, v in table.items() if k != "about"}, name)
+        for name, table in shipped_laws.items()
+    }
+    for name, law in added("friction_laws", laws).items():
+        if not isinstance(law, SlidingLaw):
+            raise wrong(name, "friction_laws", "is no SlidingLaw.")
+        laws[name] = replace(law, name=name)
+    return laws
+
+
+def sliding_law(name: str) -> SlidingLaw:
+    """Return one law of friction over speed, or refuse the name (SceneError)."""
+    known = sliding_laws()
+    if name not in known:
+        hint = did_you_mean(name, known, f"Use one of {', '.join(known)}, or give a table.")
+        raise SceneError("is no law of friction.", value=name, remedy=hint)
+    return known[name]
 
 
 def surfaces() -> dict[str, Surface]:

@@ -292,7 +292,11 @@ def _of_mesh(table: Table, own: dict[str, Any]) -> ProjectileSpec:
 
 
 def _faces(table: Table) -> tuple[Face, ...]:
-    """Read the surface of each set whose outer faces have a state of their own."""
+    """Read the surface of each set whose outer faces have a state of their own; one law holds for all."""
+    for name in table:
+        if isinstance(table[name], Mapping) and "sliding_law" in table[name]:
+            remedy = "State it in [surface]: it multiplies f of every face."
+            raise SceneError("stands beside that of the scene.", key=f"{name}.sliding_law", remedy=remedy)
     found = tuple(Face(name, surface) for name in table if (surface := within(table, name, read_surface)))
     for name in set(table) - {face.name for face in found}:
         remedy = "Leave it out, or name another state, such as custom."

@@ -8,6 +8,7 @@ from typing import Literal
 from fem_impact.errors import SceneError
 from fem_impact.scene import fields
 from fem_impact.scene.checks import check_choice, check_numbers, check_text
+from fem_impact.scene.sliding import SlidingLaw
 
 
 @dataclass(frozen=True, slots=True)
@@ -16,7 +17,8 @@ class Surface:
 
     ``pair`` is that of a table of dry pairs of materials, for a scene that states no surface.
     ``skin_depth``, m, and ``skin_factor`` are those of the layer that cutting has hardened, of freshly cut
-    surfaces alone; None: no layer is known.
+    surfaces alone; None: no layer is known. ``sliding_law`` is how friction changes with speed; None: it
+    does not.
     """
 
     state: Literal["machined", "contaminated", "cleaned", "pair", "custom"]
@@ -26,6 +28,7 @@ class Surface:
     source: str
     skin_depth: float | None = None
     skin_factor: float | None = None
+    sliding_law: SlidingLaw | None = None
 
     def __post_init__(self) -> None:
         check_choice(self.state, ("machined", "contaminated", "cleaned", "pair", "custom"), "state")

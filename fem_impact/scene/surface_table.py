@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
 
 from fem_impact.errors import SceneError
 from fem_impact.scene import fields, library
+from fem_impact.scene.sliding import SlidingLaw
+from fem_impact.scene.sliding_table import EXAMPLE, law_of
 from fem_impact.scene.surface import Surface
 from fem_impact.scene.tables import Table, check_keys, needed, numbers_of
+
+LAW = "sliding_law"
 
 
 def read_surface(table: Table) -> Surface | None:
     """Read a surface; that of the pair, which is None, follows from both materials."""
     skin = [key for f in fields.SKIN for key in (f.key, f.si_key) if key]
-    check_keys(table, ("state", "source", *(f.key for f in fields.SURFACE), *skin))
+    check_keys(table, ("state", "source", *(f.key for f in fields.SURFACE), *skin, LAW))
     state = needed(table, "state")
     if state == "custom":
         return _custom_surface(table)
@@ -26,7 +30,7 @@ def of_known(surface: Callable[[], Surface], table: Table) -> Surface:
     """Return a surface of known friction with the layer of its table, which may repeat what is known."""
     known, skin = surface(), [key for f in fields.SKIN for key in (f.key, f.si_key)]
     for key, value in table.items():
-        if key in skin:
+        if key in (*skin, LAW):
             continue
         if value != getattr(known, key):
             raise SceneError(
@@ -36,12 +40,29 @@ def of_known(surface: Callable[[], Surface], table: Table) -> Surface:
                 remedy='Leave it out, or write state = "custom" with your own friction and its source.',
             )
     layer = numbers_of({key: value for key, value in table.items() if key in skin}, fields.SKIN)
-    return replace(known, **layer)
+    return replace(known, sliding_law=_sliding_law(table), **layer)
 
 
 def _custom_surface(table: Table) -> Surface:
     f = needed(table, "friction", "0.3, Coulomb's coefficient")
     wanted = (*fields.SURFACE, *fields.SKIN)
-    numbers = numbers_of(table, wanted, ("state", "source"), {"friction_low": f, "friction_high": f})
+    numbers = numbers_of(table, wanted, ("state", "source", LAW), {"friction_low": f, "friction_high": f})
     source = needed(table, "source", '"our own tests", where the friction is known from')
-    return Surface(state="custom", source=source, **numbers)
+    return Surface(state="custom", source=source, sliding_law=_sliding_law(table), **numbers)
+
+
+def _sliding_law(table: Table) -> SlidingLaw | None:
+    """Return the law of friction over speed, by its name or from its table; None where none is stated."""
+    stated = table.get(LAW)
+    if stated is None:
+        return None
+    try:
+        return library.sliding_law(stated) if isinstance(stated, str) else _own_law(stated)
+    except SceneError as error:
+        raise error.under(LAW) from None
+
+
+def _own_law(table: object) -> SlidingLaw:
+    if not isinstance(table, Mapping):
+        raise SceneError("must be a name or a table.", remedy=f"Write {LAW} = {EXAMPLE}.")
+    return law_of(table)

@@ -21,6 +21,7 @@ from fem_impact.scene.own_mesh import OwnMesh
 from fem_impact.scene.parameter import Parameter
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.shapes import HEIGHT, RADIUS, NamedShape, Point, Profile, sizes_of
+from fem_impact.scene.sliding_table import written
 from fem_impact.scene.surface import Surface
 from fem_impact.scene.types import OWN, Accuracy, Scene
 
@@ -67,7 +68,8 @@ def digest(scene: Scene) -> str:
 
 def _surface(surface: Surface) -> dict[str, Any]:
     stated = {"state": surface.state, "source": surface.source}
-    return stated | _written(surface, (*fields.SURFACE, *fields.SKIN))
+    law = {"sliding_law": written(surface.sliding_law)} if surface.sliding_law else {}
+    return stated | _written(surface, (*fields.SURFACE, *fields.SKIN)) | law
 
 
 def _projectile(rod: ProjectileSpec) -> dict[str, Any]:

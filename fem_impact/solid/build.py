@@ -24,6 +24,7 @@ from fem_impact.fem.body import (
 from fem_impact.fem.eigen import MassStiffness, rod_modes
 from fem_impact.fem.geometry import POINTS
 from fem_impact.fem.layout import DofLayout
+from fem_impact.fem.sliding import speed_table
 from fem_impact.fem.sparse import Hanging, NodeProduct
 from fem_impact.fem.stable import stable_step
 from fem_impact.physics.hardening import HardeningLaw
@@ -88,11 +89,17 @@ def facing_skin(body: MeshedBody) -> Ints:
 
 
 def surface_contact(
-    bodies: list[MeshedBody], inverse_mass: Array, f: Array, h: float, x: Array, conforming: bool
+    bodies: list[MeshedBody],
+    inverse_mass: Array,
+    f: Array,
+    over_speed: Array,
+    h: float,
+    x: Array,
+    conforming: bool,
 ) -> SurfaceContact:
     """Return the contact of a rod's skin with a barrier's, whose cells are ``h`` m wide there.
 
-    ``f`` (n,) are the Coulomb coefficients of the rod's nodes.
+    ``f`` (n,) are the Coulomb coefficients of the rod's nodes at rest, ``over_speed`` is a `speed_table`.
     """
     skins = [facing_skin(body) for body in bodies]
     rod, barrier = (
@@ -100,8 +107,8 @@ def surface_contact(
     )
     f = f[np.unique(skins[0])]
     if not conforming:
-        return SurfaceContact.of(rod, barrier, inverse_mass, f, 0.0, BAND * h, x)
-    return SurfaceContact.of(rod.rounded(x), barrier, inverse_mass, f, PLAY * h, BAND * h, x)
+        return SurfaceContact.of(rod, barrier, inverse_mass, f, over_speed, 0.0, BAND * h, x)
+    return SurfaceContact.of(rod.rounded(x), barrier, inverse_mass, f, over_speed, PLAY * h, BAND * h, x)
 
 
 class Builder:
@@ -265,17 +272,17 @@ class Builder:
     def contact(self) -> PlaneContact | MovingPlane | SurfaceContact:
         """Return the contact; the rigid section behind the nose of a rigid rod has no part in it."""
         g, f = self.meshed.geometry, self.friction
+        over_speed = speed_table(self.spec.friction_over_speed)
         if self.meshed.barrier:
-            return surface_contact(
-                self.meshed.bodies, self.meshed.inverse_mass, f, g.barrier_size, self.meshed.x, g.conforming
-            )
+            place = g.barrier_size, self.meshed.x, g.conforming
+            return surface_contact(self.meshed.bodies, self.meshed.inverse_mass, f, over_speed, *place)
         skin = g.rod.mesh.free_skin
         if not self.spec.vibrating:
             skin = np.setdiff1d(skin, g.rod.body_nodes)
         nodes, inverse = self.meshed.rod.places[skin], self.meshed.inverse_mass
         if self.scene.barrier.mass is not None:
-            return MovingPlane.of(nodes, self.ground, inverse, f[skin])
-        return PlaneContact(nodes, inverse, f[skin])
+            return MovingPlane.of(nodes, self.ground, inverse, f[skin], over_speed)
+        return PlaneContact(nodes, inverse, f[skin], over_speed)
 
     @cached_property
     def friction(self) -> Array:

@@ -1,4 +1,4 @@
-"""A package of the user's own adds a material, a tip and an effect by entry points."""
+"""A package of the user's own adds a material, a tip, a law of friction and effects by entry points."""
 
 import json
 import os
@@ -41,7 +41,7 @@ def run(fidelity, *effects, **changes):
     except FemImpactError as error:
         return type(error).__name__ + " " + str(error)
     origin = outcome.provenance
-    return {"V_n": outcome.motion.V_n, "residual": outcome.energy.residual,
+    return {"V_n": outcome.motion.V_n, "mu": outcome.restitution.mu, "residual": outcome.energy.residual,
             "effects": origin.effects, "versions": dict(origin.versions)}
 """
 
@@ -86,12 +86,16 @@ found = {
     for name in ("lunar-gravity", "magnet")
 }
 found |= {(fidelity, ""): run(fidelity, *base) for fidelity in ("modal", "solid")}
+found |= {
+    (fidelity, "waxed"): run(fidelity, *base, "friction", **{"surface.sliding_law": "waxed"})
+    for fidelity in ("rigid", "modal", "solid")
+}
 print(json.dumps([[*key, value] for key, value in found.items()]))
 """
 )
 
 
-def test_each_fidelity_computes_an_added_effect_or_refuses_it(tmp_path):
+def test_each_fidelity_computes_what_is_added_or_refuses_it(tmp_path):
     done = run(FIDELITY_RUNS, installed(tmp_path))
     assert done.returncode == 0, done.stderr
     found = {(fidelity, name): value for fidelity, name, value in json.loads(done.stdout)}
@@ -103,10 +107,12 @@ def test_each_fidelity_computes_an_added_effect_or_refuses_it(tmp_path):
         assert f"not computed by the fidelity {fidelity}" in told and "Use --fidelity" in told
     for key in set(found) - refused:
         assert abs(found[key]["residual"]) < 1e-4
-        assert found[key]["effects"][2:] == ([key[1]] if key[1] else [])
+        assert key[1] == "waxed" or found[key]["effects"][2:] == ([key[1]] if key[1] else [])
         assert found[key]["versions"]["my-impact-parts"] == "1.0"
     pulled = found["solid", ""]["V_n"] - found["solid", "magnet"]["V_n"]
     assert 0.005 < pulled < 0.2  # 50 N on 0.13 kg over some 0.1 ms of contact: about 0.04 m/s
+    for fidelity in ("rigid", "modal", "solid"):
+        assert 0.57 / 2 < found[fidelity, "waxed"]["mu"] < 0.45  # half of .57 at high speeds, .57 at rest
     for fidelity in ("modal", "solid"):
         assert found[fidelity, "lunar-gravity"]["V_n"] != found[fidelity, ""]["V_n"]
 
@@ -131,6 +137,7 @@ def test_the_command_lists_what_packages_add_and_what_computes_it(tmp_path):
     assert listed == {
         "al-6082-t6": ("materials", every),
         "ball": ("shapes", every),
+        "waxed": ("friction_laws", every),
         "lunar-gravity": ("effects", ["modal", "solid"]),
         "magnet": ("effects", ["solid"]),
     }

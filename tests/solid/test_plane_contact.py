@@ -6,6 +6,7 @@ import solid_shapes as shapes
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from fem_impact.fem.sliding import speed_table
 from fem_impact.solid.contact.book import MERGE_GAP, ContactBook, StepRecord
 from fem_impact.solid.contact.plane import PlaneContact, touch_plane
 
@@ -31,7 +32,7 @@ def _swarm(seed, count=40, kick=DT):
 def test_every_node_obeys_signorini_and_coulomb(seed, f):
     nodes, x, v, force, inverse, mass, _ = _swarm(seed)
     kicked = v.copy()
-    step = touch_plane(nodes, x, v, force, inverse, DT, DT, np.full(len(nodes), f))
+    step = touch_plane(nodes, x, v, force, inverse, DT, DT, np.full(len(nodes), f), speed_table(None))
     t, b, n = nodes.T
     p = (v - kicked) * mass
     p_n, p_t = p[n], np.hypot(p[t], p[b])
@@ -56,7 +57,7 @@ def test_every_node_obeys_signorini_and_coulomb(seed, f):
 def test_booked_work_is_the_energy_that_is_missing(seed):
     """Kinetic energy gained = work of the forces - friction - closing, all with mean velocities."""
     nodes, x, v, force, inverse, mass, before = _swarm(seed)
-    step = touch_plane(nodes, x, v, force, inverse, DT, DT, np.full(len(nodes), 0.4))
+    step = touch_plane(nodes, x, v, force, inverse, DT, DT, np.full(len(nodes), 0.4), speed_table(None))
     gained = 0.5 * (mass * (v**2 - before**2)).sum()
     worked = 0.5 * DT * (force * (v + before)).sum()
     assert step.friction > 0
@@ -67,7 +68,7 @@ def test_without_forces_nothing_is_created():
     nodes, x, v, force, inverse, mass, _ = _swarm(1, count=200)
     force[:] = 0.0
     before = v.copy()
-    step = touch_plane(nodes, x, v, force, inverse, DT, DT, np.full(len(nodes), 0.4))
+    step = touch_plane(nodes, x, v, force, inverse, DT, DT, np.full(len(nodes), 0.4), speed_table(None))
     lost = 0.5 * (mass * (before**2 - v**2)).sum()
     assert lost == pytest.approx(step.friction + step.closing, rel=1e-12)
     assert min(step.friction, step.closing) > 0
@@ -88,7 +89,7 @@ def test_one_node_sticks_or_slips(f, sticks):
 
 def test_friction_turns_in_the_plane():
     nodes, v = np.array([[0, 1, 2]]), np.array([3.0, 4.0, -10.0])
-    touch_plane(nodes, np.zeros(3), v, np.zeros(3), np.ones(3), DT, DT, np.array([0.1]))
+    touch_plane(nodes, np.zeros(3), v, np.zeros(3), np.ones(3), DT, DT, np.array([0.1]), speed_table(None))
     assert v == pytest.approx([3.0 * 0.8, 4.0 * 0.8, 0.0])
 
 

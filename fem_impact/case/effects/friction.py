@@ -19,6 +19,7 @@ def number(bodies: Bodies) -> float:
 def fill(bodies: Bodies, spec: ModelSpec) -> None:
     """Set the Coulomb coefficient."""
     spec.friction = bodies.scene.surface.friction
+    spec.friction_over_speed = bodies.friction_over_speed
 
 
 EFFECT = Effect(

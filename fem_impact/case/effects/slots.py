@@ -11,6 +11,7 @@ from fem_impact.options import FIDELITIES
 if TYPE_CHECKING:
     from fem_impact.case.bodies import Bodies
     from fem_impact.physics.hardening import HardeningLaw, Skin
+    from fem_impact.scene.sliding import SpeedTable
 
 
 @dataclass(slots=True)
@@ -20,7 +21,8 @@ class ModelSpec:
     Attributes
     ----------
     vibrating : the body behind the nose is elastic
-    friction : Coulomb coefficient f, or None for a frictionless contact
+    friction : Coulomb coefficient f at rest, or None for a frictionless contact
+    friction_over_speed : sliding speeds, m/s, and the factor of f at each; None where it does not change
     rod_law, barrier_law : hardening law of a body that may yield, or None
     under_laws : those of the materials under the first layer of a barrier, from the top down
     skin : hardened layer of the surfaces, or None
@@ -37,6 +39,7 @@ class ModelSpec:
 
     vibrating: bool = False
     friction: float | None = None
+    friction_over_speed: SpeedTable | None = None
     rod_law: HardeningLaw | None = None
     barrier_law: HardeningLaw | None = None
     under_laws: tuple[HardeningLaw | None, ...] = ()

@@ -22,6 +22,7 @@ from fem_impact.fem.flight import RigidMotion, rigid_motion
 from fem_impact.fem.geometry import Geometry
 from fem_impact.fem.hexmodes import dummy_element
 from fem_impact.fem.layout import DofLayout, MassPoints, number
+from fem_impact.fem.sliding import speed_table
 from fem_impact.fem.sparse import Hanging, NodeProduct
 from fem_impact.fem.stable import stable_step
 from fem_impact.physics.hardening import Hardening
@@ -205,4 +206,4 @@ def _contact(
         skin = body.mesh.mesh.free_skin
         return PlaneContact(parts[0].places[skin], inverse, np.full(len(skin), body.friction))
     conforming, f = body.block.law is not None, np.full(len(parts[0].points), body.friction)
-    return build.surface_contact(parts, inverse, f, body.block.size, x, conforming)
+    return build.surface_contact(parts, inverse, f, speed_table(None), body.block.size, x, conforming)

@@ -43,9 +43,9 @@ class MovingPlane:
     book: ContactBook = field(default_factory=ContactBook)
 
     @classmethod
-    def of(cls, nodes: Ints, ground: Ground, inverse_mass: Array, f: Array) -> MovingPlane:
-        """Build with room for all nodes."""
-        return cls(nodes, ground, inverse_mass, f, make_points(len(nodes)))
+    def of(cls, nodes: Ints, ground: Ground, inverse_mass: Array, f: Array, over_speed: Array) -> MovingPlane:
+        """Build with room for all nodes; ``over_speed`` is a `fem_impact.fem.sliding.speed_table`."""
+        return cls(nodes, ground, inverse_mass, f, make_points(len(nodes), over_speed))
 
     def resolve(self, state: State) -> None:
         """Apply this step's impulses and book the work."""

@@ -9,6 +9,7 @@ import numpy as np
 
 from fem_impact.arrays import Array, Ints
 from fem_impact.fem.kernels import kernel
+from fem_impact.fem.sliding import factor_at, speed_table
 from fem_impact.solid.contact.book import MOVING, ContactBook, StepRecord
 from fem_impact.solid.state import State
 
@@ -19,7 +20,8 @@ class PlaneContact:
 
     A node whose predicted position would lie below the plane gets the smallest impulse that lets it
     arrive exactly there (Fekak et al. 2017, doi:10.1007/s00466-017-1397-0, with the predicted gap).
-    ``f`` (k,) are the Coulomb coefficients of the ``nodes`` (k, 3).
+    ``f`` (k,) are the Coulomb coefficients of the ``nodes`` (k, 3) at rest, ``over_speed`` is a
+    `fem_impact.fem.sliding.speed_table`.
     """
 
     effect: ClassVar[str] = "contact"
@@ -29,12 +31,13 @@ class PlaneContact:
     nodes: Ints
     inverse_mass: Array
     f: Array
+    over_speed: Array = field(default_factory=lambda: speed_table(None))
     book: ContactBook = field(default_factory=ContactBook)
 
     def resolve(self, state: State) -> None:
         """Apply this step's impulses."""
         motion, span = (state.x, state.v, state.force), (state.kick, state.dt_next)
-        step = touch_plane(self.nodes, *motion, self.inverse_mass, *span, self.f)
+        step = touch_plane(self.nodes, *motion, self.inverse_mass, *span, self.f, self.over_speed)
         self.book.close_step(step, state.time)
 
     def clearance(self, x: Array) -> float:
@@ -47,8 +50,11 @@ class PlaneContact:
 
 
 @kernel
-def touch_plane(nodes, x, v, force, inverse_mass, kick, dt, f):  # type: ignore[no-untyped-def]
-    """Resolve all nodes (k, 3): change their velocities and return the step's record; ``f`` (k,)."""
+def touch_plane(nodes, x, v, force, inverse_mass, kick, dt, f, over_speed):  # type: ignore[no-untyped-def]
+    """Resolve all nodes (k, 3): change their velocities and return the step's record; ``f`` (k,).
+
+    Friction follows the sliding speed before the step's forces, at which it slid last.
+    """
     impulse_t, impulse_n, moment, friction, closing, active = 0.0, 0.0, 0.0, 0.0, 0.0, 0
     for i in range(len(nodes)):
         t, b, n = nodes[i, 0], nodes[i, 1], nodes[i, 2]
@@ -61,7 +67,8 @@ def touch_plane(nodes, x, v, force, inverse_mass, kick, dt, f):  # type: ignore[
         if p <= 0.0:
             continue
         slip = np.sqrt(v[t] * v[t] + v[b] * v[b])
-        share = min(1.0, f[i] * p * inverse_mass[t] / slip) if slip > 0.0 else 0.0
+        coulomb = f[i] * factor_at(np.sqrt(old_t * old_t + old_b * old_b), over_speed)
+        share = min(1.0, coulomb * p * inverse_mass[t] / slip) if slip > 0.0 else 0.0
         p_t, p_b = -share * v[t] / inverse_mass[t], -share * v[b] / inverse_mass[t]
         v[t] += inverse_mass[t] * p_t
         v[b] += inverse_mass[b] * p_b

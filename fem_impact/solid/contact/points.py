@@ -8,6 +8,7 @@ import numpy as np
 
 from fem_impact.arrays import Array, Ints
 from fem_impact.fem.kernels import inlined, kernel
+from fem_impact.fem.sliding import factor_at
 from fem_impact.solid.contact.book import ContactBook, StepRecord
 from fem_impact.solid.contact.impulses import relative, solve
 from fem_impact.solid.contact.patch import bilinear, height_from, locate
@@ -34,6 +35,7 @@ class Points(NamedTuple):
     normal : (k, 3); target : (k,) lowest normal rate, m/s; before : (k, 3) rates before the kick
     f : (k,) Coulomb coefficients; p : (k, 3) impulses on the rod, N s
     owner : (k,) slave node; memory : (slaves, 3) last impulses
+    over_speed : factors of f, a `fem_impact.fem.sliding.speed_table`
     """
 
     nodes: Ints
@@ -45,9 +47,10 @@ class Points(NamedTuple):
     p: Array
     owner: Ints
     memory: Array
+    over_speed: Array
 
 
-def make_points(n: int) -> Points:
+def make_points(n: int, over_speed: Array) -> Points:
     """Return space for ``n`` slave nodes."""
     return Points(
         np.zeros((n, 5, 3), dtype=np.int64),
@@ -59,6 +62,7 @@ def make_points(n: int) -> Points:
         np.zeros((n, 3)),
         np.zeros(n, dtype=np.int64),
         np.zeros((n, 3)),
+        over_speed,
     )
 
 
@@ -79,6 +83,8 @@ def _enter(k, slave, gap, band, motion, c):  # type: ignore[no-untyped-def]
     if not pressed and allowed > 3.0 * motion.dt * max(-rate, 0.1):
         return False
     c.target[k] = -allowed / motion.dt
+    slid = np.sqrt(max(old_t * old_t + old_b * old_b + old_n * old_n - rate * rate, 0.0))
+    c.f[k] *= factor_at(slid, c.over_speed)
     c.before[k, 0], c.before[k, 1], c.before[k, 2] = old_t, old_b, old_n
     for i in range(3):
         c.p[k, i] = m[i] if pressed else 0.0

@@ -67,9 +67,17 @@ class SurfaceContact:
 
     @classmethod
     def of(
-        cls, rod: Patch, barrier: Patch, inverse_mass: Array, f: Array, play: float, band: float, x: Array
+        cls,
+        rod: Patch,
+        barrier: Patch,
+        inverse_mass: Array,
+        f: Array,
+        over_speed: Array,
+        play: float,
+        band: float,
+        x: Array,
     ) -> SurfaceContact:
-        """Build and find each node's first quad at positions ``x``."""
+        """Build and find each node's first quad at positions ``x``; see `speed_table` for ``over_speed``."""
         last = np.concatenate([nearest_quads(x, rod, barrier), nearest_quads(x, barrier, rod)])
         return cls(
             rod,
@@ -79,7 +87,7 @@ class SurfaceContact:
             play,
             band,
             last,
-            make_points(len(last)),
+            make_points(len(last), over_speed),
             np.zeros((len(rod.places), 3)),
             np.zeros((len(barrier.places), 3)),
         )

@@ -1,4 +1,4 @@
-"""A package of a user's own: a material, a tip, an effect in a slot of the program, one with a force."""
+"""A package of a user's own: a material, a tip, a law of friction, two effects."""
 
 from dataclasses import dataclass
 from math import hypot, pi
@@ -7,6 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from fem_impact.case.effects.slots import Effect
+from fem_impact.scene.sliding import SlidingLaw
 from rigid import Nose
 
 ALUMINIUM = {
@@ -17,6 +18,11 @@ ALUMINIUM = {
     "ultimate_stress": "310 MPa",
     "sources": {"E": "certificate of the bar", "yield_stress": "tension test of the bar"},
 }
+
+
+WAXED = SlidingLaw.of(
+    lambda speed, pressure, temperature: 0.1 + 0.1 / (1 + speed), (0.0, 1.0, 3.0, 9.0), source="our tests"
+)
 
 
 def ball(radius, tip_radius):

@@ -1,0 +1,103 @@
+"""Friction that depends on sliding speed, pressure and temperature: a grid of factors over f at rest."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Self
+
+import numpy as np
+
+from fem_impact.arrays import Array
+from fem_impact.errors import SceneError
+from fem_impact.scene.checks import check_text
+from fem_impact.scene.parameter import Parameter
+
+MOST = 1000  # numbers of a grid
+LARGEST = 10.0  # factor
+AXES = (
+    Parameter("speed", "sliding speeds, growing from 0", "speed", 0.0, 1e4),
+    Parameter("pressure", "pressures, growing", "stress", 0.0, 1e12),
+    Parameter("temperature", "temperatures before the impact, growing", "temperature", 1.0, 5000.0),
+)
+SpeedTable = tuple[tuple[float, ...], tuple[float, ...]]
+"""Sliding speeds, m/s, and the factor of f at each."""
+
+
+@dataclass(frozen=True, slots=True)
+class SlidingLaw:
+    """Friction over that at rest, linear between the points of a grid, and constant beyond its ends.
+
+    Attributes
+    ----------
+    speed : m/s, growing from 0
+    factor : of f, one for each temperature, pressure and speed; the speed runs fastest
+    source : where the factors come from
+    pressure, temperature : Pa, K, growing; none where friction does not depend on them
+    name : of a law that is shipped or added by a package; empty for that of a scene
+    """
+
+    speed: tuple[float, ...]
+    factor: tuple[float, ...]
+    source: str
+    pressure: tuple[float, ...] = ()
+    temperature: tuple[float, ...] = ()
+    name: str = ""
+
+    def __post_init__(self) -> None:
+        for axis in AXES:
+            points = tuple(float(axis.checked(value)) for value in getattr(self, axis.key))
+            object.__setattr__(self, axis.key, points)
+            if any(after <= before for before, after in pairwise(points)):
+                raise SceneError("must grow from point to point.", key=axis.key)
+        check_text(self.source, "source", 1000)
+        if len(self.speed) < 2 or self.speed[0] != 0:
+            raise SceneError("must have two speeds or more, from 0 on.", key="speed", value=list(self.speed))
+        if len(self.factor) != np.prod(self.shape) or len(self.factor) > MOST:
+            wanted = " x ".join(map(str, self.shape))
+            problem = f"has {len(self.factor)} numbers, not {wanted} (temperatures, pressures, speeds)."
+            raise SceneError(problem, key="factor", remedy=f"Give at most {MOST}.")
+        if not all(0 <= value <= LARGEST for value in self.factor):
+            raise SceneError(f"must lie from 0 to {LARGEST:g}.", key="factor", value=list(self.factor))
+
+    @classmethod
+    def of(
+        cls,
+        friction: Callable[[Array, float, float], Array],
+        speed: Sequence[float],
+        pressure: Sequence[float] = (),
+        temperature: Sequence[float] = (),
+        *,
+        source: str,
+    ) -> Self:
+        """Return the law of a function of speeds (n,), m/s, pressure, Pa, and temperature, K.
+
+        Its values (n,) are taken over that at rest, at the first pressure and temperature. Without pressures
+        or temperatures the function is given NaN.
+
+        Examples
+        --------
+        >>> law = SlidingLaw.of(lambda v, p, T: 0.6 / (1 + v), (0.0, 1.0, 3.0), source="an example")
+        >>> law.over_speed(1e9, 293.0)
+        ((0.0, 1.0, 3.0), (1.0, 0.5, 0.25))
+        """
+        speeds, nan = np.asarray(speed, dtype=np.float64), float("nan")
+        rows = [friction(speeds, p, T) for T in temperature or (nan,) for p in pressure or (nan,)]
+        values = np.concatenate(rows)
+        axes = (tuple(pressure), tuple(temperature))
+        return cls(tuple(speed), tuple((values / values[0]).tolist()), source, *axes)
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """Return the numbers of temperatures, pressures and speeds of the grid."""
+        return max(len(self.temperature), 1), max(len(self.pressure), 1), len(self.speed)
+
+    def over_speed(self, pressure: float, temperature: float) -> SpeedTable:
+        """Return the factor over the speed at a pressure, Pa, and a temperature, K."""
+        values: Array = np.reshape(np.array(self.factor), self.shape)
+        for points, at in ((self.temperature, temperature), (self.pressure, pressure)):
+            place = float(np.interp(at, points, np.arange(len(points)))) if points else 0.0
+            low, high = int(place), min(int(place) + 1, len(values) - 1)
+            values = values[low] + (place - low) * (values[high] - values[low])
+        return self.speed, tuple(values.tolist())
