@@ -14,7 +14,6 @@ import numpy as np
 from fem_impact.arrays import Array, Bools, Ints
 from fem_impact.case.case import Case
 from fem_impact.case.effects.registry import EFFECTS
-from fem_impact.case.effects.slots import Effect
 from fem_impact.fem.body import (
     Elastic,
     MeshedBodies,
@@ -338,16 +337,11 @@ class Builder:
         places = np.concatenate([rod[self.meshed.geometry.rod.body_nodes[:, 0]], rod[-POINTS:]])
         return RigidRest(places, self.meshed.mass[places[:, 0]])
 
-    @property
-    def effects(self) -> list[Effect]:
-        """Return the effects in force."""
-        return [EFFECTS[name] for name in self.case.active]
-
     def forces(self) -> list[Force]:
         """Return the items that add forces, in their order."""
         (linear, _), (block, _, _), gravity = self.elastic_rod, self.block, self.spec.gravity
         weight = [] if gravity is None else [self.weight(gravity)]
-        own = [item for effect in self.effects if effect.forces for item in effect.forces(self)]
+        own = [item for name in self.case.active for item in EFFECTS[name].forces(self)]
         return [linear, *self.maxwell(linear), *weight, *block, *self.foundation, *self.zones, *own]
 
     def impulses(self) -> list[Impulse]:
@@ -355,7 +349,7 @@ class Builder:
         (_, pots, _), loss = self.block, self.spec.loss_factor
         rest = [] if self.spec.vibrating else [self.rigid_rest()]
         damping = [] if loss is None or self.viscous else [self.damping(loss)]
-        own = [item for effect in self.effects if effect.impulses for item in effect.impulses(self)]
+        own = [item for name in self.case.active for item in EFFECTS[name].impulses(self)]
         return [*rest, *damping, *pots, *own, *self.contacts()]
 
     def contacts(self) -> list[Impulse]:

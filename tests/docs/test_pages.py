@@ -29,7 +29,7 @@ def _leaves(part, above=""):
     """Return the values of a part of a scene by their keys with dots."""
     leaves = {}
     for name, value in part.items():
-        inner = isinstance(value, dict) and name != "material"
+        inner = isinstance(value, dict) and name not in ("material", "sliding_law")
         leaves |= _leaves(value, f"{above}{name}.") if inner else {f"{above}{name}": value}
     return leaves
 

@@ -8,7 +8,7 @@ from dataclasses import fields
 from typing import TYPE_CHECKING
 
 from fem_impact.case.effects.registry import ADDED, EFFECTS
-from fem_impact.case.effects.slots import ModelSpec
+from fem_impact.case.effects.slots import ModelSpec, no_items
 from fem_impact.errors import SceneError
 from fem_impact.plugins import wrong
 
@@ -52,7 +52,7 @@ def _require_computed(name: str, fidelity: str, changed: Sequence[str]) -> None:
             value=name,
             remedy=f"Use --fidelity {' or '.join(effect.fidelities)}, or leave the effect out.",
         )
-    items = effect.forces or effect.impulses
+    items = effect.forces is not no_items or effect.impulses is not no_items
     unread = [slot for slot in changed if slot not in READ[fidelity]]
     if unread or (items and fidelity != "solid"):
         what = f"fills {', '.join(unread)}" if unread else "adds items of the finite elements"

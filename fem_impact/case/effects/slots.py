@@ -60,6 +60,11 @@ class ModelSpec:
         return (self.barrier_law, *self.under_laws)
 
 
+def no_items(builder: Any) -> tuple[()]:
+    """Return the items of an effect that fills slots alone."""
+    return ()
+
+
 @dataclass(frozen=True, slots=True)
 class Effect:
     """One effect: name, meaning, the number that decides whether it is needed, and the slots it fills.
@@ -91,5 +96,5 @@ class Effect:
     fill: Callable[[Bodies, ModelSpec], None]
     needs: tuple[str, ...] = ()
     fidelities: tuple[str, ...] = FIDELITIES
-    forces: Callable[[Any], Sequence[Any]] | None = None
-    impulses: Callable[[Any], Sequence[Any]] | None = None
+    forces: Callable[[Any], Sequence[Any]] = no_items
+    impulses: Callable[[Any], Sequence[Any]] = no_items
