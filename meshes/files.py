@@ -92,7 +92,7 @@ def read(path: str | Path) -> MeshFile:
     if not source.is_file():
         raise MeshError(f"{source}: no such file; give the path of a written mesh")
     try:
-        stored = parsed(source, kind)
+        stored, _ = parsed(source, kind)
     except Exception as error:
         # meshio passes on whatever its parsers raise on a broken file: XML, struct and index errors.
         raise MeshError(f"{source}: not a readable {kind} file ({error}); write it again") from error

@@ -26,6 +26,7 @@ from meshes.topology import FACES
 __all__ = ["TIPS", "OwnBody", "Stated", "own_body", "read_own"]
 
 SAME = 1e-6  # of the shortest edge: nodes so near to each other are one place
+FARTHEST = 1e30  # of a coordinate, m: its powers that moments need are numbers
 SLENDER = 2.0  # second moment along z over that along x, from which on a body has an axis
 LEAN = 1.0  # deg between the axis of least inertia and z, from which on it is told
 # the axes of the file, and their signs, that become x, y and z where the tip points along one of them; y
@@ -271,7 +272,7 @@ def _own(part: Part, stated: Stated, hint: str) -> tuple[OwnBody, IntArray]:
 def _require_numbered(points: FloatArray, cells: IntArray, least: int) -> None:
     """Refuse cells that name nodes below ``least`` or that are not there, and nodes that are nowhere."""
     there = cells.min() >= least and cells.max() < len(points)
-    if not there or not np.isfinite(points[cells]).all():
+    if not there or not (np.abs(points[cells]) < FARTHEST).all():
         raise MeshError(
             "has points that are no finite numbers, or cells that name points that are not there."
         )

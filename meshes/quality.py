@@ -57,7 +57,9 @@ def scaled_jacobians(mesh: HexMesh) -> FloatArray:
 def corner_jacobians(x: FloatArray) -> FloatArray:
     """(m, 8) scaled Jacobians of cells with corners x (m, 8, 3)."""
     arms = x[:, _NEIGHBOURS] - x[:, :, None, :]
-    with np.errstate(invalid="ignore"):  # not a number where two corners are one, which whoever asks refuses
+    with np.errstate(
+        invalid="ignore", divide="ignore"
+    ):  # not a number where two corners are one, which whoever asks refuses
         arms /= np.linalg.norm(arms, axis=-1, keepdims=True)
         return np.asarray(_SIGN * np.linalg.det(arms))
 

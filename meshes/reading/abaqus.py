@@ -10,7 +10,7 @@ from meshes.arrays import FloatArray
 from meshes.errors import MeshError
 from meshes.reading.abaqus_part import Part, count_of, placed
 from meshes.reading.includes import full_text
-from meshes.reading.stored import Elements, StoredMesh, number_of, whole_number
+from meshes.reading.stored import Elements, StoredMesh, number_of, numbers_between, whole_number
 
 __all__ = ["abaqus"]
 
@@ -208,7 +208,7 @@ class _Deck:
             found = [part for part in line if part]
             if "GENERATE" in card.options:
                 low, high, step = (*(whole_number(text, f"*{key}") for text in found), 1)[:3]
-                found = list(map(str, range(low, high + 1, step)))
+                found = list(map(str, numbers_between(low, high, step, f"*{key}")))
             texts += found
         self._keep(of, card, key, [(text, "") for text in texts])
 

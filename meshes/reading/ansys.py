@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from meshes.errors import MeshError
-from meshes.reading.stored import Elements, StoredMesh, number_of, whole_number
+from meshes.reading.stored import Elements, StoredMesh, number_of, numbers_between, whole_number
 
 __all__ = ["ansys"]
 
@@ -133,7 +133,7 @@ def _ranges(members: list[int]) -> list[int]:
     """Return all numbers of a list, of which one below 0 ends a range that the one before it begins."""
     found: list[int] = []
     for one in members:
-        found += range(found[-1] + 1, -one + 1) if one < 0 and found else [one]
+        found += numbers_between(found[-1] + 1, -one, 1, "CMBLOCK") if one < 0 and found else [one]
     return found
 
 

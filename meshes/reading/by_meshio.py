@@ -1,6 +1,8 @@
 """Formats that meshio reads right: Gmsh, VTK, MED, Medit, XDMF and others."""
 
+from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import replace
+from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -18,11 +20,15 @@ FLAT = ("vertex", "line", "polygon")  # cells of points, lines and surfaces of a
 VALUES = 50  # of a whole number of cells, up to which it counts as a mark of regions
 
 
-def parsed(path: Path, kind: str) -> Any:
-    """Return meshio's mesh of a file; not by `meshio.read`, which ends the process on a broken file."""
+def parsed(path: Path, kind: str) -> tuple[Any, str]:
+    """Return meshio's mesh of a file, and what it warns of; not by `meshio.read`, which ends the process.
+
+    It writes what it skips of a file to the terminal.
+    """
     import meshio
 
-    return getattr(meshio, kind.removesuffix("-xml")).read(path)
+    with redirect_stdout(StringIO()) as out, redirect_stderr(out):
+        return getattr(meshio, kind.removesuffix("-xml")).read(path), " ".join(out.getvalue().split())
 
 
 def by_meshio(path: Path, kinds: list[str]) -> StoredMesh:
@@ -36,14 +42,16 @@ def by_meshio(path: Path, kinds: list[str]) -> StoredMesh:
     refused = []
     for kind in kinds:
         try:
-            stored = parsed(path, kind)
+            stored, warned = parsed(path, kind)
         except ImportError:
             raise
         except Exception as error:
             # meshio passes on whatever its parsers raise on a broken file: XML, struct and index errors
             refused.append(f"{kind}: {' '.join(str(error).split())[:80] or type(error).__name__}")
         else:
-            return _stored(stored)
+            found = _stored(stored)
+            told = (f"what meshio warns of: {warned[:80]}",) if warned else ()
+            return replace(found, ignored=(*found.ignored, *told))
     raise MeshError(f"is not readable ({'; '.join(refused)}). Write it again, as .vtu for example.")
 
 

@@ -1,4 +1,4 @@
-"""Text files of Gmsh (.msh) of the versions 1, 2, 4.0 and 4.1: nodes, cells, physical groups."""
+"""Files of Gmsh (.msh), as text of the versions 1, 2, 4.0 and 4.1, binary of 2 and 4.1."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -6,9 +6,10 @@ from pathlib import Path
 import numpy as np
 
 from meshes.errors import MeshError
+from meshes.reading.gmsh_binary import sections_of
 from meshes.reading.stored import NODES, Elements, StoredMesh
 
-__all__ = ["gmsh", "is_text"]
+__all__ = ["gmsh", "is_gmsh"]
 
 KINDS = {4: "tetra", 5: "hexahedron", 6: "wedge", 7: "pyramid", 11: "tetra10", 12: "hexahedron27"}
 KINDS |= {17: "hexahedron20", 18: "wedge15", 19: "pyramid13"}
@@ -23,12 +24,9 @@ REORDERED = {
 REORDERED["hexahedron27"] = (*REORDERED["hexahedron20"], *range(20, 27))
 
 
-def is_text(start: str) -> bool:
-    """Return whether a file begins as a text file of Gmsh."""
-    words = start.split()
-    if words[:1] == ["$NOD"]:
-        return True
-    return words[:1] == ["$MeshFormat"] and words[2:3] == ["0"]
+def is_gmsh(start: str) -> bool:
+    """Return whether a file begins as one of Gmsh."""
+    return start.split()[:1] in (["$NOD"], ["$MeshFormat"])
 
 
 def gmsh(path: Path) -> StoredMesh:
@@ -39,7 +37,9 @@ def gmsh(path: Path) -> StoredMesh:
     MeshError
         If a cell is of no kind that is read, or names what is not there.
     """
-    sections = dict(_sections(path.read_text(encoding="latin-1")))
+    data = path.read_bytes()
+    is_binary = data.startswith(b"$MeshFormat") and data.split(b"\n", 2)[1].split()[1:2] == [b"1"]
+    sections = sections_of(data) if is_binary else dict(_sections(data.decode("latin-1")))
     version = sections["MeshFormat"][0].split()[0] if "MeshFormat" in sections else "1"
     names = {}
     for line in sections.get("PhysicalNames", [])[1:]:

@@ -21,22 +21,24 @@ ENDINGS = {
     "lsdyna": (".k", ".key", ".dyn"),
 }
 XDMF = re.compile(r">\s*([^<>:]+\.h5):")
-DEEPEST = 10  # files within files
 
 
-def full_text(path: Path, program: str, depth: int = 0) -> str:
+def full_text(path: Path, program: str, within: tuple[Path, ...] = ()) -> str:
     """Return the text of a deck with that of the files it includes in their places.
+
+    The files ``within`` which it stands are those that include it.
 
     Raises
     ------
     MeshError
         If one of them is not there, or they include each other.
     """
-    if depth > DEEPEST:
-        raise MeshError(f"includes files more than {DEEPEST} deep: do they include each other?")
+    if path.resolve() in within:
+        raise MeshError(f"includes the file {path.name!r} within itself. Leave that line out.")
 
     def put_in(match: re.Match[str]) -> str:
-        return "\n".join(full_text(other, program, depth + 1) for other in _named(match, path))
+        inner = (*within, path.resolve())
+        return "\n".join(full_text(other, program, inner) for other in _named(match, path))
 
     return LINES[program].sub(put_in, path.read_text(encoding="latin-1"))
 
@@ -54,14 +56,14 @@ def _named(match: re.Match[str], path: Path) -> list[Path]:
     return found
 
 
-def included(path: Path, depth: int = 0) -> list[Path]:
-    """Return the files that a mesh file takes parts from, those that are there."""
+def included(path: Path, within: tuple[Path, ...] = ()) -> list[Path]:
+    """Return the files that a mesh file takes parts from, those that are there; see `full_text`."""
     ending = path.suffix.lower()
     programs = [program for program, endings in ENDINGS.items() if ending in endings]
     if ending in (".xdmf", ".xmf"):
         names = sorted(set(XDMF.findall(path.read_text(encoding="latin-1"))))
         return [path.parent / name.strip() for name in names if (path.parent / name.strip()).is_file()]
-    if not programs or depth > DEEPEST:
+    if not programs or path.resolve() in within:
         return []
     found: list[Path] = []
     for match in LINES[programs[0]].finditer(path.read_text(encoding="latin-1")):
@@ -70,5 +72,5 @@ def included(path: Path, depth: int = 0) -> list[Path]:
         except MeshError:
             continue  # told by the reader
         for other in others:
-            found += [other, *included(other, depth + 1)]
+            found += [other, *included(other, (*within, path.resolve()))]
     return found

@@ -9,7 +9,7 @@ from meshes.reading.ansys import ansys
 from meshes.reading.by_meshio import by_meshio
 from meshes.reading.by_vtk import ENDINGS, by_vtk
 from meshes.reading.exodus import exodus
-from meshes.reading.gmsh import gmsh, is_text
+from meshes.reading.gmsh import gmsh, is_gmsh
 from meshes.reading.kratos import kratos
 from meshes.reading.lsdyna import lsdyna
 from meshes.reading.nastran import nastran
@@ -120,7 +120,7 @@ def _reader(source: Path) -> Reader | None:
         raise MeshError("is a pointer of Git LFS, not the file itself. Fetch it: git lfs pull.")
     ending = source.suffix.lower()
     upper = text.upper()
-    if is_text(text) and ending == ".msh":
+    if is_gmsh(text) and ending == ".msh":
         return gmsh
     if ending in (".inp", ".dat", ".txt", ".msh"):
         if is_ucd(text):

@@ -3,14 +3,25 @@
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from math import inf
 
 import numpy as np
 
 from meshes.arrays import BoolArray, FloatArray, IntArray
 from meshes.errors import MeshError
 
-__all__ = ["NODES", "Elements", "StoredMesh", "Surfaces", "counted", "number_of", "whole_number"]
+__all__ = [
+    "NODES",
+    "Elements",
+    "StoredMesh",
+    "Surfaces",
+    "counted",
+    "number_of",
+    "numbers_between",
+    "whole_number",
+]
 
+MOST = 10**7  # numbers in a range
 # a number, of which Fortran may leave the E of the exponent out
 NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+))(?:E([+-]?\d+)|(?<=[\d.])([+-]\d+))?")
 #: Nodes of each kind of volume cell; corners first, then the middles of edges, in VTK's order.
@@ -202,9 +213,23 @@ def number_of(text: str, where: str) -> float:
     """
     bare = text.strip().upper().replace("D", "E")
     found = NUMBER.fullmatch(bare or "0")
-    if not found:
+    number = float(f"{found[1]}E{found[2] or found[3] or 0}") if found else inf
+    if abs(number) == inf:
         raise MeshError(f"has {text.strip()!r} for a number of {where}.")
-    return float(f"{found[1]}E{found[2] or found[3] or 0}")
+    return number
+
+
+def numbers_between(low: int, high: int, step: int, where: str) -> range:
+    """Return the whole numbers of a range that a deck states, both ends included.
+
+    Raises
+    ------
+    MeshError
+        If they are no range, or more than a mesh has; ``where`` says what they belong to.
+    """
+    if step < 1 or (high - low) // step > MOST:
+        raise MeshError(f"has {low} to {high} in steps of {step} for a range of numbers of {where}.")
+    return range(low, high + 1, step)
 
 
 def whole_number(text: str, where: str) -> int:

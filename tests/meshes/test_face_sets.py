@@ -69,12 +69,23 @@ def abaqus_sides(points, cells, kind):
     return found
 
 
+def numberings(kind):
+    """Return the orders in which the corners of a cell may be numbered, which turn its faces about."""
+    if kind == "hexahedron":
+        return [meshes.order.TURNS[0, 0], meshes.order.TURNS[6, 1], meshes.order.TURNS[5, 2]]
+    return {"wedge": [[0, 1, 2, 3, 4, 5], [4, 3, 5, 1, 0, 2], [2, 0, 1, 5, 3, 4]]}.get(
+        kind, [[0, 1, 2, 3], [1, 0, 3, 2], [2, 3, 0, 1]]
+    )
+
+
 @pytest.mark.parametrize("kind", ["hexahedron", "wedge", "tetra"])
 @pytest.mark.parametrize("where", ["alone", "part", "assembly"])
-def test_surfaces_of_abaqus_are_faces_of_cells_or_of_sets_of_cells(tmp_path, kind, where):
+@pytest.mark.parametrize("numbering", [0, 1, 2])
+def test_surfaces_of_abaqus_are_faces_of_cells_or_of_sets_of_cells(tmp_path, kind, where, numbering):
     points, cells = bar((-6.0, 0.0, 0.0), (2, 1, 5))
     split = {"tetra": TETRAHEDRA, "wedge": WEDGES}.get(kind)
     cells = cells[:, split].reshape(-1, len(split[0])) if split else cells
+    cells = cells[:, numberings(kind)[numbering]]
     found = abaqus_sides(points, cells, kind)
     mesh = decks.abaqus(points, cells).partition("*node")[2].partition("*element, type=s3")[0]
     prefix = "Rod-1." if where == "assembly" else ""
@@ -273,11 +284,13 @@ def test_cells_of_surfaces_beside_solids_name_faces(tmp_path, form):
 
 @pytest.mark.parametrize("hdf5", [False, True])
 @pytest.mark.parametrize("kind", ["hexahedron", "wedge", "tetra"])
-def test_side_and_node_sets_of_exodus_name_faces(tmp_path, hdf5, kind):
+@pytest.mark.parametrize("numbering", [0, 1, 2])
+def test_side_and_node_sets_of_exodus_name_faces(tmp_path, hdf5, kind, numbering):
     """Sides in the order of the manual."""
     points, cells = bar((-6.0, 0.0, 0.0), (2, 1, 5))
     split = {"tetra": TETRAHEDRA, "wedge": WEDGES}.get(kind)
     cells = cells[:, split].reshape(-1, len(split[0])) if split else cells
+    cells = cells[:, numberings(kind)[numbering]]
     sides = {
         "hexahedron": ["1265", "2376", "3487", "1584", "1432", "5678"],
         "wedge": ["1254", "2365", "1463", "132", "456"],

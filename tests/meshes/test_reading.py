@@ -1,5 +1,7 @@
 """A mesh written in the form of each program and read back: mass, inertia and lowest point are the same."""
 
+import re
+
 import decks
 import meshio
 import numpy as np
@@ -292,19 +294,19 @@ def test_a_pointer_of_git_lfs_is_told_as_one(tmp_path):
         read_own(tmp_path / "bar.vtu")
 
 
-@pytest.mark.parametrize("version", ["gmsh22", "gmsh", "parametric", "first"])
+@pytest.mark.parametrize("version", ["gmsh22", "gmsh", "parametric", "first", "gmsh22 binary", "gmsh binary"])
 @pytest.mark.parametrize("kind", ["hexahedron", "tetra"])
-def test_text_files_of_every_version_of_gmsh_are_read(tmp_path, version, kind):
+def test_files_of_every_version_of_gmsh_are_read(tmp_path, version, kind):
     points, cells = cells_of(kind)
     marks = np.ones(len(cells), np.int32)
     stored = meshio.Mesh(points, [(kind, cells)])
     stored.cell_data = {"gmsh:physical": [7 * marks], "gmsh:geometrical": [marks]}
     path, form = (
         tmp_path / "bar.msh",
-        "gmsh22" if version == "first" else version.replace("parametric", "gmsh"),
+        "gmsh22" if version == "first" else version.replace("parametric", "gmsh").removesuffix(" binary"),
     )
-    meshio.write(path, stored, file_format=form, binary=False)
-    text = path.read_text()
+    meshio.write(path, stored, file_format=form, binary="binary" in version)
+    text = path.read_bytes().decode("latin-1")
     if version == "parametric":  # each node with two more numbers, its place on a surface
         head, _, rest = text.partition("$Nodes\n")
         nodes, _, rest = rest.partition("$EndNodes")
@@ -316,9 +318,10 @@ def test_text_files_of_every_version_of_gmsh_are_read(tmp_path, version, kind):
         cell = [f"{n} {code} 7 1 {len(c)} {' '.join(map(str, c))}" for n, c in decks.numbered(cells + 1)]
         lines = ["$NOD", str(len(points)), *node, "$ENDNOD", "$ELM", str(len(cells)), *cell, "$ENDELM"]
         text = "\n".join(lines)
-    path.write_text(text)
-    plain = read_own(decks.write(tmp_path / "bar.vtu", points, cells), 1e-3)
-    assert summary(read_own(path, 1e-3).half) == pytest.approx(summary(plain.half), abs=1e-12)
+    path.write_text(text, encoding="latin-1", newline="")
+    plain, body = (read_own(one, 1e-3) for one in (decks.write(tmp_path / "bar.vtu", points, cells), path))
+    assert summary(body.half) == pytest.approx(summary(plain.half), abs=1e-12)
+    assert set(body.sets) == {"VOLUME 1"} | ({"PHYSICAL 7"} if form == "gmsh22" else set())
 
 
 def test_cells_with_more_nodes_than_their_type_has_are_refused(tmp_path):
@@ -336,23 +339,32 @@ def test_cells_with_more_nodes_than_their_type_has_are_refused(tmp_path):
         read_own(tmp_path / "n.bdf")
 
 
-@pytest.mark.parametrize("ending", [*decks.TEXTS, ".msh", ".e", ".exo"])
-def test_damaged_files_are_refused_and_never_raise_anything_else(tmp_path, ending):
-    """Cut off, with bytes changed, with lines doubled or left out: read as a mesh, or refused in one line."""
+HARD = b"1e400 nan 99999999999999999999 2147483648 -5 1.5.2 \xff\xfe 0x10 9999999".split()
+
+
+@pytest.mark.parametrize("ending", [*decks.TEXTS, ".msh", ".e", ".exo", ".vtu", ".mesh", ".med"])
+def test_damaged_files_are_refused_and_never_raise_anything_else(tmp_path, ending, capfd):
+    """Cut off, with bytes or numbers changed, with lines doubled or left out, or in another encoding."""
     points, cells = cells_of("hexahedron")
     good = decks.write(tmp_path / f"good{ending}", points, cells).read_bytes()
     rng, refused = np.random.default_rng(11), 0
     for number in range(40):
         data = bytearray(good)
-        if number % 3 == 0:
+        if number % 4 == 0:
             data = data[: rng.integers(1, len(data))]
-        elif number % 3 == 1:
+        elif number % 4 == 1:
             for place in rng.integers(0, len(data), 5):
                 data[place] = rng.choice(list(b"0159-.,*$/ \nAx\x00\xff"))
+        elif number % 4 == 2:
+            numbers = list(re.finditer(rb"\d+", bytes(data)))
+            changed = numbers[rng.integers(0, min(len(numbers), 40))]
+            data[changed.start() : changed.end()] = HARD[rng.integers(0, len(HARD))]
         else:
             lines = bytes(data).split(b"\n")
             at = int(rng.integers(0, len(lines)))
             data = bytearray(b"\n".join(lines[:at] + lines[at + 1 + number % 2 :] + lines[at : at + 2]))
+        if number == 39:
+            data = bytearray(good.decode("latin-1").encode("utf-16"))
         path = tmp_path / f"bad{ending}"
         path.write_bytes(bytes(data))
         try:
@@ -361,3 +373,20 @@ def test_damaged_files_are_refused_and_never_raise_anything_else(tmp_path, endin
             refused += 1
             assert "\n" not in str(error)
     assert refused > 5
+    assert capfd.readouterr() == ("", "")
+
+
+def test_what_would_not_end_is_refused(tmp_path):
+    """A range of numbers without end, a file that includes itself, more than once."""
+    points, cells = cells_of("hexahedron")
+    text = decks.abaqus(points, cells)
+    (tmp_path / "a.inp").write_text(text + "*ELSET, ELSET=A, GENERATE\n1, 99999999999, 1\n")
+    with pytest.raises(MeshError, match=r"1 to 99999999999 in steps of 1 for a range of numbers of \*ELSET"):
+        read_own(tmp_path / "a.inp")
+    archive = decks.ansys(points, cells).replace(f"{1:10d}{-2:10d}", f"{1:10d}-999999999")
+    (tmp_path / "a.cdb").write_text(archive)
+    with pytest.raises(MeshError, match="for a range of numbers of CMBLOCK"):
+        read_own(tmp_path / "a.cdb")
+    (tmp_path / "b.inp").write_text("*INCLUDE, INPUT=b.inp\n" * 9 + text)
+    with pytest.raises(MeshError, match=r"includes the file 'b\.inp' within itself"):
+        read_own(tmp_path / "b.inp")
