@@ -1,0 +1,231 @@
+"""Validation of several numbers at once: e, mu and Omega of a set, with the correlations of their errors.
+
+One input, such as friction, moves e, mu and Omega together, so that numbers which agree one by one may
+disagree jointly. The distance of Mahalanobis D2 = E' C^-1 E of the three errors E = S - D counts that. By
+ASME V&V 20 the covariance C is the sum of those of mesh, inputs and measurement; without an error of the
+model D2 follows a chi-square distribution of three degrees of freedom, as V&V 10 takes it for several
+quantities at once.
+
+Finite elements give the errors and their standard uncertainties, by the sheet ``validation`` of the study of
+that name (a copy stands in ``data/validation.csv``); the reduced model, over the same sample of all inputs,
+how their changes belong together, and the tests of a set, how their means do.
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib.resources import files
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fem_impact import load, replace_all
+from fem_impact.answers.report import Request, Sheet, StudyReport
+from fem_impact.arrays import Array
+from fem_impact.evidence.studies.inputs import changes, sample_values
+from fem_impact.evidence.studies.reach import SHOWN
+from fem_impact.evidence.studies.validated import COVERAGE, NAMES, outputs, unit_sample
+from fem_impact.figures.panels import Mark, Panel, Picture, Series
+from fem_impact.jobs.job import Job
+from fem_impact.jobs.run import JobResults
+from fem_impact.outcome.record import Outcome
+from fem_impact.scene.types import MEASURED_SETS
+from fem_impact.tables.table import Table
+from rigid.experiments import measured_set
+
+if TYPE_CHECKING:
+    from fem_impact.scene.types import Scene
+
+SIZE, QUICK_SIZE = 64, 8  # runs of a set's sample
+FEWEST = 6  # finished runs that tell how changes belong together
+LEVEL = 0.05
+"""Probability of a distance so large without an error of the model, below which a set is rejected."""
+AT = [NAMES.index(name) for name in SHOWN]
+HEAD = ("set", *SHOWN, "D2", "p", "jointly", "alone", *(f"share of {name}" for name in SHOWN))
+
+
+@dataclass(frozen=True, slots=True)
+class JointError:
+    """The errors of a set's numbers at once.
+
+    Attributes
+    ----------
+    set : str
+    E, u : (k,) errors S - D, and their standard uncertainties u_val
+    C : (k, k) covariance of E
+    """
+
+    set: str
+    E: Array
+    u: Array
+    C: Array
+
+    @property
+    def distance(self) -> float:
+        """D2."""
+        return float(self.E @ np.linalg.solve(self.C, self.E))
+
+    @property
+    def p(self) -> float:
+        """Probability of a distance as large or larger without an error of the model."""
+        from scipy.stats import chi2
+
+        return float(chi2.sf(self.distance, len(self.E)))
+
+    @property
+    def shares(self) -> Array:
+        """(k,) part of each number in the distance, given the others; their sum is 1."""
+        return np.asarray(self.E * np.linalg.solve(self.C, self.E) / self.distance)
+
+    @property
+    def alone(self) -> int:
+        """How many numbers show an error by themselves, beyond 2 u_val."""
+        return int((np.abs(self.E) > COVERAGE * self.u).sum())
+
+
+def joint_error(name: str, rows: Sequence[dict[str, float]], by_inputs: Array, tests: Array) -> JointError:
+    """Return the joint error of a set.
+
+    Parameters
+    ----------
+    rows : of each number: S, D, u_num, u_input, u_D
+    by_inputs : (n, k) changes of the numbers from their nominal values over a sample of the inputs
+    tests : (m, k) the numbers of single tests
+    """
+    of = {key: np.array([row[key] for row in rows]) for key in rows[0]}
+    C = np.diag(of["u_num"] ** 2)
+    C = C + _scaled(by_inputs.T @ by_inputs, of["u_input"]) + _scaled(np.cov(tests.T), of["u_D"])
+    return JointError(name, of["S"] - of["D"], np.sqrt(np.diag(C)), C)
+
+
+def _scaled(covariance: Array, u: Array) -> Array:
+    """Return a covariance (k, k) with the same correlations and standard deviations ``u`` (k,)."""
+    by = u / np.sqrt(np.diag(covariance))
+    return np.asarray(covariance * np.outer(by, by))
+
+
+def plan(request: Request, results: JobResults) -> list[Job]:
+    """Return runs of the reduced model: each set as stated, and over the sample of its inputs."""
+    return [job for name in _sets(request) for job in (_nominal(name), *_sample(name, request))]
+
+
+def conclude(request: Request, results: JobResults) -> StudyReport:
+    """Return the study: each set's distance, and what it is made of."""
+    found = [one for name in _sets(request) if (one := _joint(name, request, results)) is not None]
+    return report_of(found)
+
+
+def report_of(found: Sequence[JointError]) -> StudyReport:
+    """Return the study of sets."""
+    sentences = _sentences(found) if found else ["No set could be compared: see the failed runs."]
+    rows = [
+        (
+            *(one.set, *one.E, one.distance, one.p, "rejected" if one.p < LEVEL else "agrees"),
+            *(f"{one.alone} of {len(one.E)}", *one.shares),
+        )
+        for one in found
+    ]
+    return StudyReport(
+        "joint",
+        "Validation of e, mu and Omega at once",
+        sentences,
+        [_picture(found)] if found else (),
+        [Sheet("joint", "Joint error of each set", Table.of(HEAD, rows))],
+        [
+            "e, mu, Omega: E = S - D. D2 is their distance of Mahalanobis, p its probability without an "
+            f"error of the model (three degrees of freedom); below {LEVEL:g} the set is rejected. Alone: "
+            f"numbers beyond {COVERAGE:g} u_val. Shares: what of D2 is each number's, given the others; "
+            "below 0 where it makes the others likelier.",
+            "S, D and their uncertainties are those of the validation study by finite elements; that inputs "
+            "move e, mu and Omega together is taken from the reduced model, and that measured means do, from "
+            "the tests of the set.",
+        ],
+        conclusions=[("joint", sentence) for sentence in sentences],
+    )
+
+
+def _sentences(found: Sequence[JointError]) -> list[str]:
+    """Return how many sets are rejected, and where to the errors point."""
+    rejected = [one.set for one in found if one.p < LEVEL]
+    quiet = [one.set for one in found if one.p < LEVEL and one.alone == 0]
+    errors = np.array([one.E for one in found])
+    ways = ", ".join(
+        f"{name} too low in {int((errors[:, at] < 0).sum())}, too high in {int((errors[:, at] > 0).sum())}"
+        for at, name in enumerate(SHOWN)
+    )
+    most = [SHOWN[int(one.shares.argmax())] for one in found if one.p < LEVEL]
+    parts = ", ".join(f"{name} in {most.count(name)}" for name in SHOWN if name in most)
+    return [
+        f"Taken together, e, mu and Omega of {len(rejected)} of {len(found)} sets do not agree with the "
+        f"tests at {LEVEL:.0%} ({', '.join(rejected) or 'none'}): no values of the stated inputs, however "
+        "they are combined, are likely to bring all three numbers of such a set to the measured ones. "
+        f"{len(quiet)} of them show no error in any number alone.",
+        f"Direction: {ways}. The largest part of the distance is that of {parts or 'none'} of the rejected.",
+    ]
+
+
+def _picture(found: Sequence[JointError]) -> Picture:
+    """Return the distances beside the errors of single numbers, over their uncertainties."""
+    from scipy.stats import chi2
+
+    sets, at = tuple(one.set for one in found), np.arange(len(found), dtype=float)
+    limit = float(chi2.isf(LEVEL, len(SHOWN)))
+    alone = tuple(
+        Series(name, [one.E[k] / one.u[k] for one in found], at, "points", k) for k, name in enumerate(SHOWN)
+    )
+    together = Series("D2", [one.distance for one in found], at, "points", 3)
+    panels = (
+        Panel("One by one", "E / u_val", "", alone, (Mark(-COVERAGE), Mark(COVERAGE)), rows=sets),
+        Panel("Together", "D2", "", (together,), (Mark(limit, f"{LEVEL:.0%}"),), rows=sets),
+    )
+    caption = (
+        "Errors over their uncertainty, one by one (beyond 2: an error) and together (right of the line)."
+    )
+    return Picture("joint", caption, panels, columns=2)
+
+
+def _sets(request: Request) -> tuple[str, ...]:
+    return request.ids or (("t5b",) if request.quick else MEASURED_SETS)
+
+
+def _nominal(name: str) -> Job:
+    return Job(f"{name}-nominal", _plain(name), "modal")
+
+
+def _plain(name: str) -> Scene:
+    return replace_all(load(name), {"save.frames": 0})
+
+
+def _sample(name: str, request: Request) -> list[Job]:
+    """Return a run of the reduced model a row of the sample of a set."""
+    scene, unit = _plain(name), unit_sample(QUICK_SIZE if request.quick else SIZE)
+    values = sample_values(scene, measured_set(name), unit, tests=False)
+    return [
+        Job(f"{name}-{at}", replace_all(scene, changes(scene, row)), "modal") for at, row in enumerate(values)
+    ]
+
+
+def _joint(name: str, request: Request, results: JobResults) -> JointError | None:
+    """Return the joint error of a set; None where its runs failed."""
+    measured, nominal = measured_set(name), results.get(_nominal(name).name)
+    runs = [run for job in _sample(name, request) if isinstance(run := results.get(job.name), Outcome)]
+    if not isinstance(nominal, Outcome) or len(runs) < FEWEST:
+        return None
+    at_nominal = np.array(outputs(nominal, measured))[AT]
+    moved = np.array([outputs(run, measured) for run in runs])[:, AT] - at_nominal
+    columns = measured.recomputed()
+    tests = np.column_stack([columns[NAMES[at]] for at in AT])
+    return joint_error(name, _stored()[name], moved, tests)
+
+
+def _stored() -> dict[str, list[dict[str, float]]]:
+    """Return of each set a row a number of `SHOWN`, by finite elements."""
+    text = files("fem_impact.evidence.studies").joinpath("data", "validation.csv").read_text(encoding="utf-8")
+    rows = {(row["set"], row["quantity"]): row for row in csv.DictReader(text.splitlines())}
+    keys = "S", "D", "u_num", "u_input", "u_D"
+    return {
+        name: [{key: float(rows[name, quantity][key]) for key in keys} for quantity in SHOWN]
+        for name, _ in rows
+    }
