@@ -41,7 +41,11 @@ def add_options(parser: CommandParser) -> None:
         default="auto",
         help="auto (default): modal, and solid where the known error of modal leaves the answer open",
     )
-    add_text(parser, "--tolerance", "TOLERANCE", "change of e that may be neglected (default: 0.05)")
+    within = (
+        "change by vibration that may be neglected: of e, of the energy that the body keeps or of the work "
+        'of friction, such as "e 0.05" (default), "energy 2 %%" or "friction 2 %%", both of E_0'
+    )
+    add_text(parser, "--within", "CHANGE", within)
     budget = "wall time of the finite elements on the cores used, one or two (default: 60 s)"
     add_text(parser, "--budget", "TIME", budget)
     add_workers(parser, "runs at a time, 1 or 2 (default: one a core)")
@@ -82,12 +86,13 @@ def assess(options: Options) -> int:
             sys.stderr.write(f"{sentence}\n")
 
     try:
-        verdict = assessed(scene, options.fidelity, _tolerance(options), *means, tell=tell)
+        of, change = _within(options)
+        verdict = assessed(scene, options.fidelity, change, *means, tell=tell, of=of)
     except KeyboardInterrupt:
         remedy = "--budget bounds the time of the next one, --fidelity modal takes seconds."
         raise KeyboardInterrupt(f"an assessment that is stopped keeps nothing: {remedy}") from None
     # without the options that the next step may add
-    answer = document(verdict, command_line(options, "assess", *SHORT, *SHAPE, "tolerance"))
+    answer = document(verdict, command_line(options, "assess", *SHORT, *SHAPE, "within"))
     if case is not None:
         from fem_impact.answers.verdict.transfer import transfer
 
@@ -110,17 +115,22 @@ def _dropped_rod(options: Options) -> Scene:
     return scene_of(RodDropInput(rod_of(options), height, angle_of(options), options.surface))
 
 
-def _tolerance(options: Options) -> float:
+def _within(options: Options) -> tuple[str, float]:
+    """Return of what a change may be neglected, and how large it may be."""
     from fem_impact.answers.verdict.assess import TOLERANCE
+    from fem_impact.answers.verdict.reliability import CHANGED
 
-    if not options.tolerance:
-        return TOLERANCE
+    if not options.within:
+        return "e", TOLERANCE
+    of, _, text = options.within.strip().partition(" ")
     try:
-        return float(options.tolerance)
+        number, percent = text.removesuffix("%"), text.endswith("%")
+        if of in CHANGED:
+            return of, float(number) / (100.0 if percent else 1.0)
     except ValueError:
-        remedy = "It is the change of e that may be neglected: give one such as 0.05."
-        value = options.tolerance
-        raise UsageError("is not a number.", key="--tolerance", value=value, remedy=remedy) from None
+        pass
+    remedy = f'Name one of {", ".join(CHANGED)} and a change of it, such as "e 0.05" or "energy 2 %".'
+    raise UsageError("is not a change of a number.", key="--within", value=options.within, remedy=remedy)
 
 
 def _text(answer: dict[str, Any]) -> str:

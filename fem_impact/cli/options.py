@@ -66,7 +66,7 @@ class Options(argparse.Namespace):
     angle: str = ""
     height: str = ""
     surface: str = ""
-    tolerance: str = ""
+    within: str = ""
     heat: bool = False
 
 

@@ -23,7 +23,7 @@ from fem_impact.answers.verdict.effect import (
     unfinished,
     untargeted,
 )
-from fem_impact.answers.verdict.reliability import known_error
+from fem_impact.answers.verdict.reliability import CHANGED, known_error
 from fem_impact.answers.verdict.screening import Screening, screening
 from fem_impact.answers.verdict.twins import inclined, twins
 from fem_impact.case.case import Case
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 
 TOLERANCE = 0.05
-"""VibrationEffect of e that may be neglected, unless stated."""
+"""Change of e that may be neglected, unless stated."""
 BUDGET = 60.0
 """Wall time, s, that the finite elements of a verdict may take, unless stated."""
 FIDELITIES = ("auto", "modal", "solid")
@@ -58,14 +58,15 @@ class Verdict:
     Attributes
     ----------
     scene : Scene
-    tolerance : change of e that may be neglected
+    tolerance : change that may be neglected
     fidelity : modal or solid, of ``here``
     screening : closed-form estimates
-    here : the change of e at the scene's inclination
+    here : the change at the scene's inclination, which says of what
     elsewhere : the largest change of the reduced model over other inclinations, None where none is known
     not_known : inclinations, rad, where the reduced model has no answer, with the reason of the first
     over_friction : smallest and largest change of e within the stated interval of f by the reduced model;
         None where f has no interval or no effect
+    steps : what was computed one after the other, and what each step said
     notes : what the reader should know about how the verdict was found
     more : options of ``fem-impact assess`` that may decide what is undecided, empty where none are known
     """
@@ -78,12 +79,14 @@ class Verdict:
     elsewhere: VibrationEffect | None
     not_known: tuple[tuple[float, ...], str]
     over_friction: tuple[float, float] | None
+    steps: tuple[str, ...]
     notes: tuple[str, ...]
     more: str
 
     def __repr__(self) -> str:
         return (
-            f"Verdict({self.scene.id!r}: rigid theory {self.answer}, e changes by {self.here.told}, "
+            f"Verdict({self.scene.id!r}: rigid theory {self.answer}, {self.here.of} changes by "
+            f"{self.here.told}, "
             f"vibration takes {100 * self.here.E_vib:.2g} % of E_0; {self.fidelity})"
         )
 
@@ -113,6 +116,7 @@ def assess(
     budget_s: float = BUDGET,
     workers: int = 1,
     tell: Tell = lambda sentence: None,
+    of: str = "e",
 ) -> Verdict:
     """Say whether rigid theory may be used for a scene, beside its twin that cannot vibrate.
 
@@ -124,10 +128,12 @@ def assess(
         ``auto`` takes the reduced model with its known error, and finite elements where that error leaves the
         answer open, or is that of scenes unlike this one, and the budget allows. Other inclinations than the
         scene's are computed with the reduced model.
-    tolerance : change of e that may be neglected
+    tolerance : change that may be neglected
     budget_s : wall time of the finite elements, s
     workers : runs at a time, 1 or 2
-    tell : called with a sentence before something that takes long
+    tell : called with a sentence before something that takes long, and after each step
+    of : the change of which number: "e", or as shares of E_0 the "energy" that the body keeps or the work of
+        "friction"
 
     Raises
     ------
@@ -136,54 +142,72 @@ def assess(
     RunError
         No model gives a restitution at the scene's inclination.
     """
-    _check(fidelity, tolerance, budget_s)
+    _check(fidelity, tolerance, budget_s, of)
     bodies = Case(scene).bodies
     lacking = not_reduced(bodies)
     reduced = fidelity == "modal" or not lacking
-    quick, notes = _quick(scene, tell) if reduced else (None, [LACKING.format(lacking)])
+    quick, notes = _quick(scene, of, tell) if reduced else (None, [LACKING.format(lacking)])
+    screened = screening(bodies)
+    steps = [f"rigid theory: T1/tau = {screened.ratio:.2f}, {screened.published}"]
+    steps += [_step("the reduced model", quick, tolerance)] if quick else []
+    for step in steps:
+        tell(step)
     here, used, more = quick, "modal", "--fidelity solid"
     # where nothing like the scene was computed both ways, the reduced model's error is not known well enough
     unlike = quick is not None and not known_error(scene).alike
     open_still = quick is None or unlike or quick.answer(tolerance) == "undecided"
     if fidelity == "solid" or (fidelity == "auto" and open_still):
         least = LEAST_LEVELS if fidelity == "solid" else 1
-        solid, told, more = _solid(scene, least, tolerance, budget_s, workers, quick is not None, tell)
+        allowed = of, tolerance
+        solid, told, more = _solid(scene, least, allowed, budget_s, workers, quick is not None, tell, steps)
         here, used = (solid, "solid") if solid else (quick, "modal")
         notes += told
         more = f"--fidelity solid {more}" if more and fidelity == "solid" else more
     if here is None:
         raise RunError(" ".join(notes))
     off = 0.0 if quick is None else abs(quick.value - here.value)
-    others, not_known = _over_angles(scene, off) if reduced else (None, ((), ""))
+    others, not_known = _over_angles(scene, of, off) if reduced else (None, ((), ""))
     return Verdict(
         scene,
         tolerance,
         used,
-        screening(bodies),
+        screened,
         here,
         others,
         not_known,
-        None if quick is None else _over_friction(scene),
+        None if quick is None else _over_friction(scene, of),
+        tuple(steps),
         tuple(notes),
         more if here.answer(tolerance) == "undecided" else "",
     )
 
 
-def _quick(scene: Scene, tell: Tell) -> tuple[VibrationEffect | None, list[str]]:
+def _quick(scene: Scene, of: str, tell: Tell) -> tuple[VibrationEffect | None, list[str]]:
     """Return what the reduced model says, None where it has no answer; and notes."""
     tell("the reduced model, at this inclination and at others ...")
     pair = modal_pair(scene)
-    if failed := unfinished(pair):
+    if failed := unfinished(pair, of):
         return None, [f"The reduced model has no answer here: {failed}"]
-    return modal_effect(scene, pair), []
+    return modal_effect(scene, pair, of), []
 
 
-def _check(fidelity: str, tolerance: float, budget_s: float) -> None:
+def _step(by: str, effect: VibrationEffect | None, tolerance: float, took_s: float | None = None) -> str:
+    """Say what a step found, and in which wall time, s, if that is told."""
+    time = "" if took_s is None else f" in {about_s(took_s)}"
+    if effect is None:
+        return f"{by}{time}: no band yet"
+    return f"{by}{time}: {effect.of} changes by {effect.told}: {effect.answer(tolerance)}"
+
+
+def _check(fidelity: str, tolerance: float, budget_s: float, of: str) -> None:
     if fidelity not in FIDELITIES:
         remedy = f"Use one of {', '.join(FIDELITIES)}."
         raise SceneError("is not a fidelity of a verdict.", key="fidelity", value=fidelity, remedy=remedy)
+    if of not in CHANGED:
+        remedy = f"Use one of {', '.join(CHANGED)}."
+        raise SceneError("is not a number whose change is judged.", key="of", value=of, remedy=remedy)
     if not 0.0 < tolerance < 1.0:
-        remedy = "It is the change of e that may be neglected: give one such as 0.05."
+        remedy = "It is the change that may be neglected: give one such as 0.05."
         raise SceneError("must lie between 0 and 1.", key="tolerance", value=tolerance, remedy=remedy)
     if not 0.0 < budget_s < 1e6:
         raise SceneError("must lie above 0 and below 1e6 s.", key="budget", value=f"{budget_s:g} s")
@@ -192,23 +216,24 @@ def _check(fidelity: str, tolerance: float, budget_s: float) -> None:
 def _solid(
     scene: Scene,
     least: int,
-    tolerance: float,
+    allowed: tuple[str, float],
     budget_s: float,
     workers: int,
     has_quick: bool,
     tell: Tell,
+    steps: list[str],
 ) -> tuple[VibrationEffect | None, list[str], str]:
     """Return what finite elements say, None where the budget allows too few levels or no run gives an e.
 
     Notes on it follow, and the options with which another level would run. ``least`` levels run whatever the
-    budget. ``has_quick``: the reduced model has an answer, which counts where finite elements have none.
+    budget. ``has_quick``: the reduced model has an answer, which counts where finite elements have none. A
+    sentence on each level is added to ``steps``; ``allowed`` is the change of what that may be neglected.
     """
+    (of, tolerance), begun = allowed, set[str]()
 
     def decides(levels: Sequence[LevelRun]) -> bool:
-        effect = solid_effect([level.runs for level in levels])
+        effect = solid_effect([level.runs for level in levels], of)
         return effect is not None and effect.answer(tolerance) != "undecided"
-
-    begun = set[str]()
 
     def announce(progress: Progress | Notice) -> None:
         if isinstance(progress, Progress) and progress.note not in begun:
@@ -223,16 +248,22 @@ def _solid(
         if least == LEAST_LEVELS or not has_quick:
             raise
         return None, [f"Finite elements have no answer here: {refused}"], ""
-    effect = solid_effect([level.runs for level in levels.done])
+    for number, level in enumerate(levels.done, 1):
+        by = f"finite elements, level {number}, cells of {plain(1e3 * level.size, 2)} mm"
+        steps.append(
+            _step(by, solid_effect([one.runs for one in levels.done[:number]], of), tolerance, level.wall_s)
+        )
+        tell(steps[-1])
+    effect = solid_effect([level.runs for level in levels.done], of)
     if effect is not None and effect.answer(tolerance) != "undecided":
         return effect, [], ""
     note, more = _stopped(levels)
-    return effect, [*note, *([] if effect else [_nothing(levels.done)])], more
+    return effect, [*note, *([] if effect else [_nothing(levels.done, of)])], more
 
 
-def _nothing(levels: Sequence[LevelRun]) -> str:
-    """Say why levels tell nothing of the change of e."""
-    failed = unfinished(pair_of(levels[-1].runs))
+def _nothing(levels: Sequence[LevelRun], of: str) -> str:
+    """Say why levels tell nothing of the change of a number."""
+    failed = unfinished(pair_of(levels[-1].runs), of)
     if failed:
         return f"Finite elements have no answer here: {failed}"
     if len(levels) < LEAST_LEVELS:
@@ -257,7 +288,9 @@ def _stopped(levels: LevelChain) -> tuple[list[str], str]:
     return [note], f'--budget "{enough}"'
 
 
-def _over_angles(scene: Scene, off: float) -> tuple[VibrationEffect | None, tuple[tuple[float, ...], str]]:
+def _over_angles(
+    scene: Scene, of: str, off: float
+) -> tuple[VibrationEffect | None, tuple[tuple[float, ...], str]]:
     """Return the largest change of the reduced model over other inclinations, and where it has no answer.
 
     ``off`` is its error at the scene's own inclination, as far as finite elements show it.
@@ -268,19 +301,19 @@ def _over_angles(scene: Scene, off: float) -> tuple[VibrationEffect | None, tupl
         try:
             one = inclined(scene, angle)
             pair = modal_pair(one)
-            failed = unfinished(pair)
+            failed = unfinished(pair, of)
         except SceneError as error:
             failed = str(error)
         if failed:
             missing.append(angle)
             why = why or failed
         else:
-            changes.append(modal_effect(one, pair).at_least(off))
+            changes.append(modal_effect(one, pair, of).at_least(off))
     return (largest(changes) if changes else None), (tuple(missing), why)
 
 
-def _over_friction(scene: Scene) -> tuple[float, float] | None:
-    """Return the range of the change of e over the ends of the interval of f, by the reduced model."""
+def _over_friction(scene: Scene, of: str) -> tuple[float, float] | None:
+    """Return the range of the change over the ends of the interval of f, by the reduced model."""
     surface = scene.surface
     if surface.friction_low == surface.friction_high:
         return None
@@ -288,5 +321,5 @@ def _over_friction(scene: Scene) -> tuple[float, float] | None:
     for f in (surface.friction_low, surface.friction, surface.friction_high):
         one = replace(scene, surface=replace(surface, state="custom", friction=f))
         pair = modal_pair(one)
-        values += [] if unfinished(pair) else [modal_effect(one, pair).value]
+        values += [] if unfinished(pair, of) else [modal_effect(one, pair, of).value]
     return (min(values), max(values)) if values else None

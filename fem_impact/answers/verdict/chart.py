@@ -100,11 +100,11 @@ def chart(verdict: Verdict) -> Picture:
     ratio = np.array([verdict.screening.ratio])
     e, tolerance = (np.abs(some.change), abs(here.value), here.band), verdict.tolerance
     vibration = some.E_vib, here.E_vib, here.E_vib_band
-    panels = (
-        _panel("size of the change of e", some, e, own, ratio, (Mark(tolerance, f"allowed: {tolerance:g}"),)),
-        _panel("energy of vibration over E_0", some, vibration, own, ratio),
-    )
-    return Picture("design-chart", caption(some, "yielding" if yields else "elastic"), panels)
+    marks = (Mark(tolerance, f"allowed: {tolerance:g}"),)
+    panels = [_panel("energy of vibration over E_0", some, vibration, own, ratio)]
+    if here.of == "e":  # the other rods' changes of other numbers are not stored
+        panels.insert(0, _panel("size of the change of e", some, e, own, ratio, marks))
+    return Picture("design-chart", caption(some, "yielding" if yields else "elastic"), tuple(panels))
 
 
 def _panel(

@@ -15,7 +15,7 @@ from fem_impact.answers.refine.extrapolate import (
     level_limits,
     vibration_floor,
 )
-from fem_impact.answers.verdict.reliability import known_error
+from fem_impact.answers.verdict.reliability import CHANGED, known_error
 from fem_impact.answers.verdict.twins import twins
 from fem_impact.case.case import Case
 from fem_impact.case.plates import half_space_error, is_thin
@@ -41,6 +41,13 @@ THIN_PLATE = (
     "may be off is added."
 )
 
+CALLED: Mapping[str, str] = {
+    "e": "e",
+    "energy": "the energy that the body keeps, of E_0,",
+    "friction": "the work of friction, of E_0,",
+}
+"""What the numbers of `CHANGED` are called in a sentence."""
+
 Answer = Literal["yes", "no", "undecided"]
 Pair = tuple[Outcome, Outcome]
 """With vibration and without it, on the same mesh."""
@@ -48,12 +55,13 @@ Pair = tuple[Outcome, Outcome]
 
 @dataclass(frozen=True, slots=True)
 class VibrationEffect:
-    """The change of e by vibration at one inclination.
+    """The change of a number by vibration at one inclination.
 
     Attributes
     ----------
+    of : which number, of `CHANGED`
     angle : rad
-    value : e with vibration less e of the twin that cannot vibrate
+    value : the number with vibration less that of the twin that cannot vibrate
     band : half-width that should hold the error of ``value``; inf where nothing is known of that error
     E_vib, E_vib_band : energy of vibration over E_0, and its half-width
     free, stiff : the outcomes, of the finest mesh where there are several
@@ -64,6 +72,7 @@ class VibrationEffect:
     errors : half-widths of shares of E_0, by their names in an outcome's energy, as far as they are known
     """
 
+    of: str
     angle: float
     value: float
     band: float
@@ -92,17 +101,17 @@ class VibrationEffect:
         )
 
     def answer(self, tolerance: float) -> Answer:
-        """Say whether rigid theory may be used if e may be off by ``tolerance``."""
+        """Say whether rigid theory may be used if the number may be off by ``tolerance``."""
         if abs(self.value) - self.band > tolerance:
             return "no"
         return "yes" if abs(self.value) + self.band <= tolerance else "undecided"
 
 
-def unfinished(pair: Pair) -> str:
-    """Return why a pair of twins says nothing, empty where it does."""
+def unfinished(pair: Pair, of: str = "e") -> str:
+    """Return why a pair of twins says nothing of a number, empty where it does."""
     for run, which in zip(pair, ("with", "without"), strict=True):
-        if not run.validity.finished or or_none(run.restitution.edge.e) is None:
-            return f"the run {which} vibration gives no e: {run.validity.stopped_because}"
+        if not run.validity.finished or or_none(CHANGED[of][0].of(run)) is None:
+            return f"the run {which} vibration gives no {of}: {run.validity.stopped_because}"
     return ""
 
 
@@ -112,18 +121,19 @@ def modal_pair(scene: Scene) -> Pair:
     return simulate(free, "modal"), simulate(stiff, "modal")
 
 
-def modal_effect(scene: Scene, pair: Pair) -> VibrationEffect:
-    """Return what the reduced model says, with its known error."""
+def modal_effect(scene: Scene, pair: Pair, of: str = "e") -> VibrationEffect:
+    """Return what the reduced model says of the change of a number, with its known error."""
     error, bodies = known_error(untargeted(scene)), Case(scene).bodies
     thin = half_space_error(bodies) * abs(known(pair[0].restitution.edge.e)) if is_thin(bodies) else 0.0
     return VibrationEffect(
+        of,
         scene.impact.angle,
-        _difference(pair),
-        error.change_of_e + thin,
+        _difference(pair, of),
+        error.changes[of] + thin,
         known(pair[0].energy.vibration),
         error.shares["vibration"],
         *pair,
-        error.sentence + THIN_PLATE.format(thin) * bool(thin),
+        error.sentence(of) + THIN_PLATE.format(thin) * bool(thin),
         REDUCED,
         REDUCED,
         f"known error of {REDUCED}",
@@ -131,20 +141,20 @@ def modal_effect(scene: Scene, pair: Pair) -> VibrationEffect:
     )
 
 
-def solid_effect(levels: Sequence[MeshRuns]) -> VibrationEffect | None:
+def solid_effect(levels: Sequence[MeshRuns], of: str = "e") -> VibrationEffect | None:
     """Return what finite elements say on the levels of a scene and its twin, from coarse to fine.
 
     It is None where fewer than two levels give a coefficient of both, or the last does not resolve its
     contact.
     """
-    useful = [level for level in levels if not unfinished(pair_of(level))]
+    useful = [level for level in levels if not unfinished(pair_of(level), of)]
     used = useful[-3:]
     limits, bands = level_limits([replace(level, runs=level.runs[:1]) for level in used])
     if isinstance(limits, Unknown) or isinstance(bands, Unknown):
         return None
     coarse, fine = used[-2:]
     free, stiff = pair_of(fine)
-    changes, wide = [[_difference(pair_of(level))] for level in used], [level.wide for level in used]
+    changes, wide = [[_difference(pair_of(level), of)] for level in used], [level.wide for level in used]
     value, band = level_limit([level.size for level in used], changes, wide)
     E_vib, E_vib_band = (of[VIBRATION.name] for of in (limits, bands))
     errors = {
@@ -153,6 +163,7 @@ def solid_effect(levels: Sequence[MeshRuns]) -> VibrationEffect | None:
         if key.name in bands
     }
     return VibrationEffect(
+        of,
         free.motion.alpha,
         value,
         band,
@@ -181,13 +192,14 @@ def _size(level: MeshRuns) -> str:
     return f"{level.size * 1e3:.3g} mm"
 
 
-def _difference(pair: Sequence[Outcome]) -> float:
-    """Return e with vibration less e without it."""
-    return known(pair[0].restitution.edge.e) - known(pair[1].restitution.edge.e)
+def _difference(pair: Pair, of: str) -> float:
+    """Return a number with vibration less that without it."""
+    key = CHANGED[of][0]
+    return float(known(key.of(pair[0])) - known(key.of(pair[1])))
 
 
 def largest(effects: Sequence[VibrationEffect]) -> VibrationEffect:
-    """Return the largest change of e of several inclinations."""
+    """Return the largest change of several inclinations."""
     return max(effects, key=lambda effect: abs(effect.value))
 
 

@@ -17,7 +17,8 @@ from fem_impact.answers.verdict.screening import screening
 from fem_impact.answers.verdict.twins import twins
 from fem_impact.case.case import Case
 from fem_impact.case.measured import summary
-from fem_impact.outcome.keys import known, or_none
+from fem_impact.outcome.keys import Key, known, or_none
+from fem_impact.outcome.record import KEY_TABLE
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.read import read_dict
 
@@ -32,18 +33,24 @@ COMPARED: Mapping[str, Callable[[Mapping[str, float]], float]] = {
     "plastic": lambda stored: stored["plastic"],
 }
 """Shares of E_0, by their names in an outcome's energy, from the stored values of the finite elements."""
+CHANGED: Mapping[str, tuple[Key, Callable[[Mapping[str, float]], float]]] = {
+    "e": (KEY_TABLE["e_edge"], lambda stored: stored["e"]),
+    "energy": (KEY_TABLE["E_r_over_E_0"], COMPARED["rigid"]),
+    "friction": (KEY_TABLE["W_friction_over_E_0"], COMPARED["friction"]),
+}
+"""Numbers whose change by vibration is judged: their keys, and their stored values by finite elements."""
 LIKE = log(1.5)
 """Largest difference of the logarithms of T1/tau between a scene and a set whose error counts for it."""
 
 
 @dataclass(frozen=True, slots=True)
 class ModelDiscrepancy:
-    """One scene by both models: the change of e by vibration, and shares of E_0 by `COMPARED`."""
+    """One scene by both models: changes by vibration, by the names of `CHANGED`, and shares by `COMPARED`."""
 
     name: str
     scene: Scene
-    modal: float
-    solid: float
+    modal: Mapping[str, float]
+    solid: Mapping[str, float]
     shares_modal: Mapping[str, float]
     shares_solid: Mapping[str, float]
 
@@ -54,20 +61,19 @@ class KnownError:
 
     Attributes
     ----------
-    change_of_e : of the change of e by vibration
+    changes : of the changes by vibration, by `CHANGED`
     shares : of shares of E_0, by `COMPARED`
     compared : the scenes whose errors these are
     alike : whether these scenes have a near T1/tau and the same materials; else they are all there are
     """
 
-    change_of_e: float
+    changes: Mapping[str, float]
     shares: Mapping[str, float]
     compared: tuple[str, ...]
     alike: bool
 
-    @property
-    def sentence(self) -> str:
-        """Say the error and what it was found on."""
+    def sentence(self, of: str) -> str:
+        """Say the error of the change of a number and what it was found on."""
         scenes = ", ".join(self.compared)
         which = (
             f"scenes of like T1/tau ({scenes})"
@@ -76,8 +82,8 @@ class KnownError:
             "of which has a like T1/tau and these materials"
         )
         return (
-            f"Beside the finite elements the reduced model's change of e by vibration is off by up to "
-            f"{self.change_of_e:.2g}, its E_vib by up to {self.shares['vibration']:.2g} of E_0, over {which}."
+            f"Beside the finite elements the reduced model's change of {of} by vibration is off by up to "
+            f"{self.changes[of]:.2g}, its E_vib by up to {self.shares['vibration']:.2g} of E_0, over {which}."
         )
 
 
@@ -88,7 +94,7 @@ def known_error(scene: Scene) -> KnownError:
     near = [name for name in same if abs(log(screening(Case(_stored(name)).bodies).ratio / ratio)) <= LIKE]
     counted = [discrepancy(name) for name in near or stored()]
     return KnownError(
-        max(abs(one.modal - one.solid) for one in counted),
+        {of: max(abs(one.modal[of] - one.solid[of]) for one in counted) for of in CHANGED},
         {
             name: max(abs(one.shares_modal[name] - one.shares_solid[name]) for one in counted)
             for name in COMPARED
@@ -126,8 +132,8 @@ def discrepancy(name: str) -> ModelDiscrepancy:
     return ModelDiscrepancy(
         name,
         scene,
-        known(whole.restitution.edge.e) - known(twin.restitution.edge.e),
-        coarse["e"] - stiff["e"],
+        {of: float(known(key.of(whole)) - known(key.of(twin))) for of, (key, _) in CHANGED.items()},
+        {of: value(coarse) - value(stiff) for of, (_, value) in CHANGED.items()},
         {name: or_none(getattr(whole.energy, name)) or 0.0 for name in COMPARED},
         {name: of(fine) for name, of in COMPARED.items()},
     )

@@ -7,7 +7,7 @@ from math import degrees, inf, isclose
 from typing import Any
 
 from fem_impact.answers.verdict.assess import Verdict
-from fem_impact.answers.verdict.effect import Answer, VibrationEffect
+from fem_impact.answers.verdict.effect import CALLED, Answer, VibrationEffect
 from fem_impact.answers.verdict.screening import Screening
 from fem_impact.outcome.keys import Unknown, known, or_none
 from fem_impact.outcome.limitation import texts
@@ -22,7 +22,7 @@ from fem_impact.scene.types import Scene
 from fem_impact.scene.write import digest, to_dict
 from fem_impact.tables.text import wrapped
 
-SCHEMA = "fem-impact/verdict/1"
+SCHEMA = "fem-impact/verdict/2"
 LEAST_SHARE = 0.005
 """Shares of E_0 below it are not named among those of the rest."""
 
@@ -53,7 +53,8 @@ def box(v: Verdict) -> tuple[Line, Line, Line]:
 def _may(v: Verdict) -> str:
     return (
         f"{v.answer.upper()}: at this inclination, {degrees(v.scene.impact.angle):.4g} degrees, vibration "
-        f"changes e by {v.here.told}{doubt(v.here)}, by {v.here.models} (allowed: {v.tolerance:g}). "
+        f"changes {CALLED[v.here.of]} by {v.here.told}{doubt(v.here)}, by {v.here.models} (allowed: "
+        f"{v.tolerance:g}). "
         f"{_anywhere(v)}"
     )
 
@@ -75,7 +76,8 @@ def _anywhere(v: Verdict) -> str:
     if v.worst is v.here:
         return f"No other inclination has a larger change{by}{everywhere}."
     return (
-        f"At the worst inclination, {degrees(v.worst.angle):.0f} degrees, it changes e by {v.worst.told}"
+        f"At the worst inclination, {degrees(v.worst.angle):.0f} degrees, it changes {v.here.of} by "
+        f"{v.worst.told}"
         f"{doubt(v.worst)}{by}{everywhere or f'; {THERE[v.worst.answer(v.tolerance)]}'}."
     )
 
@@ -138,6 +140,7 @@ def basis(v: Verdict) -> tuple[Line, ...]:
         ("T1/tau and gamma", f"{v.screening.sentence}."),
         ("with vibration", _motion(free)),
         ("the same scene with a rod that cannot vibrate", _motion(stiff)),
+        *((f"step {number}", f"{step}.") for number, step in enumerate(v.steps, 1)),
         ("fidelity", f"{v.fidelity}. {v.here.source}"),
         ("heat of the contact", _heat(free)),
         *_other_angles(v),
@@ -236,7 +239,10 @@ def _friction(v: Verdict) -> Line:
         )
         return title, told
     low, high = v.over_friction
-    return title, f"over {ends} the reduced model's change of e runs from {low:+.3f} to {high:+.3f}."
+    return (
+        title,
+        f"over {ends} the reduced model's change of {v.here.of} runs from {low:+.3f} to {high:+.3f}.",
+    )
 
 
 def not_covered(v: Verdict) -> tuple[str, ...]:
@@ -264,14 +270,14 @@ def document(v: Verdict, command: str = "fem-impact assess") -> dict[str, Any]:
         "scene": to_dict(v.scene),
         "scene_digest": digest(v.scene),
         "versions": installed_versions(),
-        "tolerance": v.tolerance,
+        "within": {"of": v.here.of, "change": v.tolerance},
         "fidelity": v.fidelity,
         "answer": v.answer,
         "answer_any_angle": v.worst_answer,
         "here": _change_entry(v.here),
         "worst": _change_entry(v.worst) if v.worst else None,
         "not_known_rad": list(v.not_known[0]),
-        "change_of_e_over_friction": list(v.over_friction) if v.over_friction else None,
+        "change_over_friction": list(v.over_friction) if v.over_friction else None,
         "screening": {
             "T1_s": v.screening.period,
             "tau_s": v.screening.duration,
@@ -279,6 +285,7 @@ def document(v: Verdict, command: str = "fem-impact assess") -> dict[str, Any]:
             "gamma_per_m0_3815": v.screening.gamma,
             "published": v.screening.published,
         },
+        "steps": list(v.steps),
         "box": [list(line) for line in box(v)],
         "next_step": f"{command} {v.more}" if v.more else None,
         "basis": [list(line) for line in basis(v)],
@@ -296,7 +303,7 @@ def _or_null(half: float) -> float | None:
 def _change_entry(change: VibrationEffect) -> dict[str, Any]:
     return {
         "angle_rad": change.angle,
-        "change_of_e": change.value,
+        "change": change.value,
         "band": _or_null(change.band),
         "rests_on": change.models,
         "E_vib_over_E_0": change.E_vib,

@@ -23,6 +23,7 @@ from fem_impact.case.case import Case
 from fem_impact.case.plates import half_space_error
 from fem_impact.errors import RunError, SceneError
 from fem_impact.outcome.keys import Unknown, known
+from fem_impact.outcome.record import KEY_TABLE
 from fem_impact.run.resolution import without_end
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.read import read_toml
@@ -162,7 +163,7 @@ def test_an_inclined_scene_turns_rod_and_velocity_together():
     ],
 )
 def test_the_answer_is_open_where_the_band_straddles_the_tolerance(value, band, said):
-    change = VibrationEffect(0.0, value, band, 0.0, 0.0, None, None, "", "", "", "", {})
+    change = VibrationEffect("e", 0.0, value, band, 0.0, 0.0, None, None, "", "", "", "", {})
     assert change.answer(0.05) == said
 
 
@@ -177,7 +178,7 @@ def test_the_known_error_is_that_of_scenes_of_like_ratio():
     error = known_error(load("t4"))
     own = discrepancy("t4")
     assert error.compared == ("t4",)
-    assert error.change_of_e == abs(own.modal - own.solid) > 0.02
+    assert error.changes["e"] == abs(own.modal["e"] - own.solid["e"]) > 0.02
     long = known_error(load("t2"))
     assert set(long.compared) == {"t2", "t3-machined", "t3-contaminated", "t3-cleaned"}
 
@@ -186,8 +187,10 @@ def test_a_scene_unlike_all_gets_the_largest_error_of_all():
     error = known_error(aluminium())
     assert not error.alike
     assert len(error.compared) == len(stored()) == 13
-    assert error.change_of_e == max(abs(one.modal - one.solid) for one in map(discrepancy, stored()))
-    assert "none of which has a like T1/tau and these materials" in error.sentence
+    assert error.changes["e"] == max(
+        abs(one.modal["e"] - one.solid["e"]) for one in map(discrepancy, stored())
+    )
+    assert "none of which has a like T1/tau and these materials" in error.sentence("e")
     other = known_error(replace_all(load("t5b"), {"projectile.material": "alumina"}))  # T1/tau is near
     assert other == error
 
@@ -252,6 +255,25 @@ def test_auto_takes_levels_until_the_answer_is_clear(monkeypatch):
     assert (found.fidelity, found.answer, len(asked)) == ("solid", "yes", 2)
     assert asked[0] > asked[1]
     assert found.here.band < 0.005
+
+
+def test_each_step_says_what_it_found(monkeypatch):
+    meshed(monkeypatch, [0.0, 0.001])
+    told = []
+    steps = assess(load("t5b"), tolerance=0.02, budget_s=1e5, tell=told.append).steps
+    assert [step.split(":")[0].split(", cells")[0] for step in steps] == [
+        *("rigid theory", "the reduced model", "finite elements, level 1", "finite elements, level 2")
+    ]
+    assert steps[1].endswith("undecided") and steps[2].endswith("no band yet") and steps[3].endswith("yes")
+    assert set(steps) < set(told)
+
+
+@pytest.mark.parametrize(("of", "key"), [("energy", "E_r_over_E_0"), ("friction", "W_friction_over_E_0")])
+def test_the_change_of_another_number_is_that_of_two_runs(of, key):
+    here = assess(load("t5b"), "modal", of=of).here
+    free, stiff = (KEY_TABLE[key].of(run) for run in (here.free, here.stiff))
+    assert here.value == free - stiff != 0.0
+    assert here.band == known_error(load("t5b")).changes[of] > 0.0
 
 
 def test_what_finite_elements_show_of_the_reduced_models_error_counts_at_other_inclinations(monkeypatch):
@@ -416,8 +438,9 @@ def test_the_command_prints_three_lines_first_and_writes_a_page(cli):
         (("t5b", "--length", "80 mm"), 2, "describes a rod, but a scene is named too"),
         ((), 2, "no scene is given"),
         (("--length", "80 mm"), 2, "--diameter"),
-        (("t5b", "--tolerance", "five"), 2, "is not a number"),
-        (("t5b", "--tolerance", "5"), 3, "between 0 and 1"),
+        (("t5b", "--within", "e five"), 2, "is not a change of a number"),
+        (("t5b", "--within", "mu 5 %"), 2, "Name one of e, energy, friction"),
+        (("t5b", "--within", "e 500 %"), 3, "between 0 and 1"),
         (("t5b", "--budget", "60"), 2, "has no unit"),
         (("t5bb",), 2, "Did you mean t5b"),
     ],
@@ -519,11 +542,11 @@ def test_the_band_of_the_reduced_model_holds_what_a_half_space_under_a_thin_plat
         replace_all(load("plate-10mm"), {"barrier.thickness": thickness}) for thickness in ("8 mm", "12 mm")
     )
     change, plain = (modal_effect(scene, modal_pair(scene)) for scene in (thin, thick))
-    told = known_error(thin).change_of_e
+    told = known_error(thin).changes["e"]
     share = (change.band - told) / known(change.free.restitution.edge.e)
     assert share == pytest.approx(half_space_error(Case.of(thin).bodies), rel=1e-12)
     assert "The plate is thin beside the contact" in change.source
-    assert plain.band == known_error(thick).change_of_e
+    assert plain.band == known_error(thick).changes["e"]
 
 
 def test_one_level_decides_nothing(monkeypatch):
@@ -576,11 +599,11 @@ def test_friction_without_an_interval_is_said_to_count_as_exact():
 
 
 def test_an_undecided_reduced_model_names_the_command_that_may_decide(cli):
-    line = ("assess", "t5b", "--fidelity", "modal", "--tolerance", "0.02", "--set", "impact.angle=44 deg")
+    line = ("assess", "t5b", "--fidelity", "modal", "--within", "e 0.02", "--set", "impact.angle=44 deg")
     _, out, _ = cli(*line)
-    command = "fem-impact assess t5b --set 'impact.angle=44 deg' --tolerance 0.02 --fidelity solid"
+    command = "fem-impact assess t5b --set 'impact.angle=44 deg' --within 'e 0.02' --fidelity solid"
     assert f"Next step: {command}\n" in out
-    _, out, _ = cli("assess", "t5b", "--fidelity", "modal", "--tolerance", "0.5")
+    _, out, _ = cli("assess", "t5b", "--fidelity", "modal", "--within", "e 0.5")
     assert "Next step" not in out
 
 
