@@ -190,6 +190,7 @@ REASONS = {
     "effect_choices": "made by hand",
     "mesh_limit": "one mesh only; a study at two tip sizes fills it",
     "mesh_band": "one mesh only; a study at two tip sizes fills it",
+    "model_band": "no reduced model",
 }
 
 

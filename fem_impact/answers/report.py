@@ -44,6 +44,8 @@ class Request:
         report of something else in ``out`` is known.
     first : int
         So many scenes of each family alone, where the study draws them; 0: all.
+    seed : int
+        Of the scenes that it draws; 0: the study's own.
     """
 
     out: Path
@@ -52,6 +54,7 @@ class Request:
     line: str = ""
     cases: str = ""
     first: int = 0
+    seed: int = 0
 
     @property
     def about(self) -> str:
@@ -65,8 +68,9 @@ class Request:
     @property
     def _asked(self) -> list[str]:
         """Return what a command line asks for beside the study's name."""
-        first = [f"--first {self.first}"] if self.first else []
-        return [*self.ids, *first, *(["--quick"] if self.quick else [])]
+        drawn = {"first": self.first, "seed": self.seed}
+        options = [f"--{name} {number}" for name, number in drawn.items() if number]
+        return [*self.ids, *options, *(["--quick"] if self.quick else [])]
 
 
 @dataclass(frozen=True, slots=True)

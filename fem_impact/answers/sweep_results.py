@@ -46,7 +46,7 @@ LOW, HIGH = "_low", "_high"
 
 def known_bands(outcome: Outcome) -> dict[str, float]:
     """Return the half-widths of an outcome by key; none where it has none."""
-    return dict(or_none(outcome.validity.mesh_band) or {})
+    return dict(or_none(outcome.half_widths) or {})
 
 
 def require_columns(names: Sequence[str]) -> None:

@@ -45,17 +45,15 @@ def summary() -> dict[str, Any]:
 
 
 @cache
-def reduced_table() -> tuple[dict[str, Any], ...]:
-    """Return each stored scene's quantities by reduced model and finite elements; None: not known.
+def reduced_pairs() -> tuple[dict[str, float], ...]:
+    """Return a row a scene that ran by the reduced model and by finite elements.
 
-    Scenes from which constants of the reduced model were read are left out.
+    It holds where the scene stands, and by how much numbers of the reduced model differ, over their scales
+    (`fem_impact.run.modal_error`); nan where one model does not know a number. ``fem-impact study coverage``
+    makes the table: its sheet ``pairs``.
     """
-    texts = ("name", "group")
-    read = (
-        {key: text if key in texts else float(text) if text else None for key, text in row.items()}
-        for row in csv.DictReader(_data("reduced.csv").splitlines())
-    )
-    return tuple(row for row in read if row["group"] != "calibration")
+    rows = csv.DictReader(_data("pairs.csv").splitlines())
+    return tuple({key: float(text or "nan") for key, text in row.items() if key != "scene"} for row in rows)
 
 
 def _data(name: str) -> str:

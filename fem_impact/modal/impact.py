@@ -34,10 +34,11 @@ from fem_impact.modal.motion import (
     Start,
     Touched,
 )
-from fem_impact.modal.pressed import PressedSite, pressed_sites
+from fem_impact.modal.pressed import pressed_sites
 from fem_impact.modal.rod import ModalRod, modal_rod
 from fem_impact.modal.sites import lowest_place
 from fem_impact.modal.touch import spent
+from fem_impact.outcome.groups import ContactSite
 from fem_impact.physics.beam import horizon
 from fem_impact.physics.contact import fall
 from fem_impact.physics.contact_law import ContactLaw
@@ -98,7 +99,7 @@ class ModalResult:
     residual: float
     fallen: float
     contacts: Array
-    sites: tuple[PressedSite, ...]
+    sites: tuple[ContactSite, ...]
     laid: bool
     force: float
     finished: bool

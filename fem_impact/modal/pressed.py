@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import cos, sin, sqrt
 
 import numpy as np
@@ -14,31 +13,10 @@ from fem_impact.modal.motion import SITE, Touched
 from fem_impact.modal.rod import ModalRod
 from fem_impact.modal.sites import skin
 from fem_impact.modal.touch import OWN, flow_of
+from fem_impact.outcome.groups import ContactSite
 
 
-@dataclass(frozen=True, slots=True)
-class PressedSite:
-    """One place of contact, as finite elements record it.
-
-    Attributes
-    ----------
-    start, end : first and last touch, s
-    impulse_n, impulse_t : on the rod, N s
-    low, high : ends along t of the skin that was pressed, m, as it lay before, from what touched first
-    width : across the plane of motion, m; depth : largest indentation of the barrier, m
-    """
-
-    start: float
-    end: float
-    impulse_n: float
-    impulse_t: float
-    low: float
-    high: float
-    width: float
-    depth: float
-
-
-def pressed_sites(case: Case, rod: ModalRod, held: Touched) -> tuple[PressedSite, ...]:
+def pressed_sites(case: Case, rod: ModalRod, held: Touched) -> tuple[ContactSite, ...]:
     """Return the places of contact in the order of their first touch."""
     own = np.flatnonzero((held.site[:, SITE.known] == OWN) & (held.site[:, SITE.end] > 0.0))
     laid = np.flatnonzero((held.flats.deepest > 0.0).any(axis=1))
@@ -49,7 +27,7 @@ def pressed_sites(case: Case, rod: ModalRod, held: Touched) -> tuple[PressedSite
     return tuple(sorted(found, key=lambda site: site.start))
 
 
-def _pressed(case: Case, rod: ModalRod, held: Touched, s: int) -> PressedSite:
+def _pressed(case: Case, rod: ModalRod, held: Touched, s: int) -> ContactSite:
     """Return a site with a contact of its own."""
     flow, of = flow_of(held, s), held.site[s]
     across = 2.0 * of[SITE.deepest] if flow.yields else of[SITE.deepest]  # a Hertzian contact is narrower
@@ -61,7 +39,7 @@ def _pressed(case: Case, rod: ModalRod, held: Touched, s: int) -> PressedSite:
     return _site([of], middle - half, middle + half, 2.0 * wide, depth)
 
 
-def _laid(case: Case, rod: ModalRod, held: Touched, f: int) -> PressedSite:
+def _laid(case: Case, rod: ModalRod, held: Touched, f: int) -> ContactSite:
     """Return a straight part that lay along the barrier; the barrier gives way by its share of the depth."""
     flats, pair = held.flats, case.contact
     rows = [held.site[s] for s in flats.ends[f]]
@@ -77,16 +55,16 @@ def _laid(case: Case, rod: ModalRod, held: Touched, f: int) -> PressedSite:
     return _site(rows, low, high, 2.0 * float(wide[cells].max()), depth)
 
 
-def _site(rows: list[Array], low: float, high: float, width: float, depth: float) -> PressedSite:
+def _site(rows: list[Array], low: float, high: float, width: float, depth: float) -> ContactSite:
     """Return a place of contact from the rows of its sites, see `SiteIndex`."""
     touched = [of for of in rows if of[SITE.end] > 0.0]
-    return PressedSite(
+    return ContactSite(
         start=float(min(of[SITE.start] for of in touched)),
         end=float(max(of[SITE.end] for of in touched)),
         impulse_n=float(sum(of[SITE.impulse_n] for of in rows)),
         impulse_t=float(sum(of[SITE.impulse_t] for of in rows)),
-        low=low,
-        high=high,
+        low_t=low,
+        high_t=high,
         width=width,
         depth=depth,
     )

@@ -74,6 +74,17 @@ def locate(now: ModalState, sites: Sites, s: int, c: float, sn: float) -> tuple[
 
 
 @inlined
+def seen(now: ModalState, sites: Sites, of: Array, s: int, c: float, sn: float) -> tuple[float, float, float]:
+    """Return the length of a site's arm, its depth in the surface under it and its place, m; the arm is kept.
+
+    ``of`` is the site's row, see `SiteIndex`.
+    """
+    of[SITE.arm_t], of[SITE.arm_n], depth, place = locate(now, sites, s, c, sn)
+    arm = np.hypot(of[SITE.arm_t], of[SITE.arm_n])
+    return arm, depth + of[SITE.sunk_n], place - of[SITE.sunk_t]
+
+
+@inlined
 def fastest(now: ModalState, modes: Modes, sites: Sites, s: int, arm: float) -> float:
     """Return a bound of the speed, m/s, at which a site with an ``arm``, m, may come in free flight."""
     rigid = now.rigid
@@ -104,12 +115,10 @@ def unknown_site(
         of = held.site[s]
         if of[SITE.known] > 0.0 or of[SITE.wake] > steps:
             continue
-        arm_t, arm_n, depth, _ = locate(now, sites, s, c, sn)
-        depth += of[SITE.sunk_n]
+        arm, depth, _ = seen(now, sites, of, s, c, sn)
         if depth > 0.0:
             return s
-        of[SITE.arm_t], of[SITE.arm_n] = arm_t, arm_n
-        of[SITE.wake] = steps + rest(now, modes, sites, s, np.hypot(arm_t, arm_n), -depth, dt, pressed)
+        of[SITE.wake] = steps + rest(now, modes, sites, s, arm, -depth, dt, pressed)
     return -1
 
 
@@ -127,9 +136,7 @@ def look(
             of[SITE.awake] = 0.0
             continue
         was, before = of[SITE.depth], of[SITE.place]
-        arm_t, arm_n, depth, place = locate(now, sites, s, c, sn)
-        of[SITE.arm_t], of[SITE.arm_n] = arm_t, arm_n
-        depth, place = depth + of[SITE.sunk_n], place - of[SITE.sunk_t]
+        arm, depth, place = seen(now, sites, of, s, c, sn)
         of[SITE.depth], of[SITE.place] = depth, place
         if of[SITE.awake] == 0.0:
             of[SITE.awake], of[SITE.rate], of[SITE.moved] = 1.0, 0.0, 0.0
@@ -138,7 +145,7 @@ def look(
         of[SITE.rate], of[SITE.moved] = (depth - was) / dt, place - before
         gap = -depth - held.state[s, IN_GROOVE.top]
         if of[SITE.touches] == 0.0 and of[SITE.known] == OWN and gap > 0.0:
-            of[SITE.wake] = steps + rest(now, modes, sites, s, np.hypot(arm_t, arm_n), gap, dt, pressed)
+            of[SITE.wake] = steps + rest(now, modes, sites, s, arm, gap, dt, pressed)
 
 
 @inlined
@@ -203,8 +210,8 @@ def strikes(
         of = site[s]
         if of[SITE.wake] > steps:
             continue
-        arm_t, arm_n, depth, place = locate(now, sites, s, c, sn)
-        depth, place, was = depth + of[SITE.sunk_n], place - of[SITE.sunk_t], of[SITE.depth]
+        was = of[SITE.depth]
+        arm, depth, place = seen(now, sites, of, s, c, sn)
         of[SITE.depth] = depth
         if of[SITE.known] == 0.0:
             if depth > 0.0:
@@ -219,7 +226,7 @@ def strikes(
             return True
         gap = -depth - held.state[s, IN_GROOVE.top]
         if gap > 0.0:
-            of[SITE.wake] = steps + rest(now, modes, sites, s, np.hypot(arm_t, arm_n), gap, dt, False)
+            of[SITE.wake] = steps + rest(now, modes, sites, s, arm, gap, dt, False)
     return False
 
 

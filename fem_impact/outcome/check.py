@@ -13,7 +13,7 @@ from fem_impact.errors import ResultError, did_you_mean
 from fem_impact.options import FIDELITIES
 from fem_impact.outcome.keys import Key, Kind
 
-SCHEMA_VERSION = 11
+SCHEMA_VERSION = 12
 """Raised whenever a key is renamed, removed, added or changes its meaning."""
 
 # JSON Schema of a value by its kind, and the text of the error message
@@ -77,6 +77,8 @@ def check_record(values: Mapping[str, Any], keys: tuple[Key, ...], source: str) 
             wrong = "has a contact that ends before it starts"
             raise _fault(wrong, "contacts", values["contacts"], source)
     _check_bands(values["mesh_limit"] or {}, values["mesh_band"] or {}, table, source)
+    if min((values["model_band"] or {}).values(), default=0.0) < 0.0:
+        raise _fault("gives a half-width below zero", "model_band", values["model_band"], source)
     _check_reasons(values, table, source)
 
 

@@ -76,6 +76,12 @@ class Validity:
         "standard error of means over places of the barrier's grid; three times as wide where a mesh ran at "
         "one place.",
     )
+    model_band: Mapping[str, float] | Unknown = key(
+        "model_band",
+        "as the key",
+        "Half-width about a number of the reduced model that holds nine in ten results of finite elements, "
+        "by stored scenes like this one.",
+    )
 
 
 @group

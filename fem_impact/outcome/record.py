@@ -108,13 +108,22 @@ class Outcome:
         return {name: value.reason for name, value in values if isinstance(value, Unknown)}
 
     def estimate(self, key: Key | str) -> tuple[Num, float | None]:
-        """Return limit and half-width that meshes give a number, else its value in this run and None.
+        """Return limit and half-width that meshes give a number, else its value in this run.
+
+        The reduced model has a half-width beside its value, the others None.
 
         ``key`` is that of the number or its name, such as ``"e_edge"`` (UsageError: there is none).
         """
         key = _key_named(key)
-        limits, bands = (or_none(v) or {} for v in (self.validity.mesh_limit, self.validity.mesh_band))
-        return (limits[key.name], bands[key.name]) if key.name in bands else (key.of(self), None)
+        halves, limits = or_none(self.half_widths) or {}, or_none(self.validity.mesh_limit) or {}
+        half = halves.get(key.name)
+        return (key.of(self) if half is None else limits.get(key.name, key.of(self))), half
+
+    @property
+    def half_widths(self) -> Mapping[str, float] | Unknown:
+        """Half-widths by key: of the limits of meshes, of the reduced model about its values."""
+        told = self.validity
+        return told.model_band if self.provenance.fidelity == "modal" else told.mesh_band
 
     def told(self, key: Key | str, scale: float = 1.0) -> str:
         """Return a number times ``scale`` as text: with its half-width to the digits that hold.

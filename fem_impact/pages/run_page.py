@@ -97,7 +97,7 @@ def verdict_page(verdict: Verdict, document: dict[str, Any], charted: Markup) ->
         f"Computed {free.provenance.created_utc} with {versions}. Digest of the scene "
         f"{document['scene_digest']}."
     )
-    lead = f"{scene.title}. Change of e that may be neglected: {verdict.tolerance:g}."
+    lead = f"{scene.title}. Change of {verdict.here.of} that may be neglected: {verdict.tolerance:g}."
     return html.page(f"May rigid theory be used: {scene.id}", "verdict", lead, footer, body)
 
 
@@ -222,7 +222,7 @@ def _cards(outcome: Outcome, rigid: Outcome | None, friction: FrictionSpread | N
     shown = [restitution, ("impulse ratio µ", "mu", ""), ("Ω", "Omega_rad_per_s", " rad/s")]
     more = [("peak force", "peak_force_N", " N"), ("flash temperature", "flash_temperature_K", " K")]
     shown += [one for one in more if not isinstance(KEY_TABLE[one[1]].of(outcome), Unknown)]
-    bands, numbers = outcome.validity.mesh_band, []
+    bands, numbers = outcome.half_widths, []
     missing = bands.reason if isinstance(bands, Unknown) else ""
     for label, name, unit in shown:
         key = KEY_TABLE[name]

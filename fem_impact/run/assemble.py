@@ -48,6 +48,7 @@ from fem_impact.scene.write import digest
 
 ONE_POINT = Unknown("only finite elements find where the bodies touch: this fidelity has one contact point")
 NO_TARGET = Unknown("the scene gives a mesh, not the error it allows")
+NOT_REDUCED = Unknown("it is told of the reduced model alone")
 FIRST_ALONE = "the scene asks for the first impact alone (impact.until)"
 GRAVITY_TOLD, GRAVITY_RULES = 0.01, 0.5  # speed gained by falling over the approach: told, and too much
 
@@ -189,6 +190,7 @@ def _validity(
         achieved_wall=NO_TARGET,
         mesh_limit=Unknown(unmeshed),
         mesh_band=Unknown(unmeshed),
+        model_band=NOT_REDUCED,
     )
 
 

@@ -2,23 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
-
-import numpy as np
 
 from fem_impact.case.case import Case
-from fem_impact.case.measured import reduced_table
 from fem_impact.modal.impact import Arrival, ModalResult, solve
-from fem_impact.modal.pressed import PressedSite
-from fem_impact.outcome.groups import ContactSite, Energy, Heat, Markers, RunCost
+from fem_impact.outcome.groups import Energy, Heat, Markers, RunCost
 from fem_impact.outcome.keys import Num, Unknown, unknown
 from fem_impact.outcome.limitation import limitations
 from fem_impact.outcome.record import Outcome
 from fem_impact.progress import Progress
 from fem_impact.run.assemble import ImpactEnd, Reduction
 from fem_impact.run.common import HARDER, MASSIVE, RESIDUAL_LIMIT, UNBENT, apart, plastic_shares, rod_flows
+from fem_impact.run.modal_error import half_widths, place_of, sentence
 
 HALVINGS = 2  # of the time step
 CHOICES = Unknown("effects are weighed for the finite elements; `fem-impact check` lists them")
@@ -71,14 +67,14 @@ def reduce(case: Case, result: ModalResult) -> Outcome:
     )
     turned = abs(result.Omega_b) * float(result.contacts[-1, 1])
     tilted = f"The barrier turns by up to {turned:.2g} rad in contact, but its surface is taken as level."
-    return Reduction.of(case, end).outcome(
+    outcome = Reduction.of(case, end).outcome(
         _energy(case, result),
         unknown(Markers, "the camera's markers are followed on the finite elements only"),
         unknown(Heat, "heat is followed on the finite elements only"),
         _cost(result),
         peak_force=result.force,
         choices=CHOICES,
-        sites=tuple(map(_site, result.sites)),
+        sites=result.sites,
         unmeshed="the reduced model has no second mesh",
         limited=limitations(
             "model",
@@ -86,23 +82,17 @@ def reduce(case: Case, result: ModalResult) -> Outcome:
             *_dent(case),
             LAID if result.laid else "",
             LEVEL if turns else "",
-            *beside_solid(case),
             tilted if turned > TILT_TOLD else "",
         ),
     )
-
-
-def _site(site: PressedSite) -> ContactSite:
-    return ContactSite(
-        start=site.start,
-        end=site.end,
-        impulse_n=site.impulse_n,
-        impulse_t=site.impulse_t,
-        low_t=site.low,
-        high_t=site.high,
-        width=site.width,
-        depth=site.depth,
+    place = place_of(case, outcome)
+    said = outcome.validity
+    said = replace(
+        said,
+        model_band=half_widths(place, outcome),
+        limitations=(*said.limitations, *limitations("model", sentence(place, outcome))),
     )
+    return replace(outcome, validity=said)
 
 
 def _energy(case: Case, result: ModalResult) -> Energy:
@@ -181,41 +171,3 @@ def _skins(case: Case, sheared: float, friction: float) -> tuple[Num, Num, Num]:
     if rod_flows(case):
         return SOFT_ROD, SOFT_ROD, HARDER if case.contact.barrier_yields else 0.0
     return sheared, HARDER if case.contact.rod_yields else 0.0, sheared - friction
-
-
-def beside_solid(case: Case) -> tuple[str, ...]:
-    """Return how far the reduced model is from the finite elements, over the stored scenes and on a set."""
-    rows = reduced_table()
-    parts = [error_text(rows, key, name, unit) for key, name, unit in COMPARED]
-    sentences = [
-        "Known error of each number of the reduced model by itself, not of a change by vibration: its "
-        f"difference from finite elements over {len(rows)} yielding scenes (the measured sets, and scenes "
-        "drawn at random on coarser meshes), as the values that half of the scenes and nine tenths of them "
-        f"stay below: {', '.join(parts)}.",
-    ]
-    measured = next((row for row in rows if row["name"] == case.scene.measured), None)
-    if measured:
-        values = ", ".join(
-            f"{name} {measured[f'{key}_modal']:.3g} beside {measured[f'{key}_solid']:.3g}{unit}"
-            for key, name, unit in COMPARED
-            if measured[f"{key}_solid"] is not None
-        )
-        sentences.append(f"On {case.scene.measured}: {values}.")
-    return tuple(sentences)
-
-
-COMPARED = (
-    ("e", "e", ""),
-    ("mu", "mu", ""),
-    ("Omega", "Omega", " rad/s"),
-    ("E_vib", "E_vib", " of E_0"),
-    ("skin", "friction and sheared skin of the barrier", " of E_0"),
-)
-
-
-def error_text(rows: Sequence[Mapping[str, Any]], key: str, name: str, unit: str) -> str:
-    """Return median and nine-tenths quantile of a quantity's error as text."""
-    pairs = [(row[f"{key}_modal"], row[f"{key}_solid"]) for row in rows]
-    errors = [abs(modal - solid) for modal, solid in pairs if solid is not None]
-    half, most = np.quantile(errors, [0.5, 0.9])
-    return f"{name} {half:.2g} and {most:.2g}{unit}"

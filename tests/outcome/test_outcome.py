@@ -106,6 +106,8 @@ def test_an_estimate_is_the_limit_of_two_meshes_or_the_run_itself():
     assert OUTCOME.estimate(mu) == (0.597, None)
     assert altered(OUTCOME, mesh_limit={"mu": 0.6}).estimate(mu) == (0.597, None)  # a mean of one mesh
     assert altered(OUTCOME, mesh_limit={"mu": 0.6}, mesh_band={"mu": 0.01}).estimate(mu) == (0.6, 0.01)
+    reduced = altered(OUTCOME, fidelity="modal", model_band={"mu": 0.02})
+    assert reduced.estimate(mu) == (mu.of(OUTCOME), 0.02) and reduced.estimate("e_edge")[1] is None
 
 
 def test_shares_stand_in_the_places_that_list_them():
@@ -148,7 +150,7 @@ def test_a_record_of_an_earlier_version_is_refused_in_one_sentence():
 
     old = {"schema_version": 2, "mu": 0.5, "bands": None}
     text = json.dumps(signed(old))
-    words = r'^old.json: key "schema_version" = 2 is not the version 11 that this program reads; compute'
+    words = r'^old.json: key "schema_version" = 2 is not the version 12 that this program reads; compute'
     with pytest.raises(ResultError, match=words):
         Outcome.from_json(text, "old.json")
 
@@ -163,7 +165,7 @@ def test_a_record_of_an_earlier_version_is_refused_in_one_sentence():
         ({"steps": -1}, r'"steps" = -1 must be a whole number'),
         ({"finished": None}, r'"finished" = None must not be null'),
         ({"fidelity": "liquid"}, r'"fidelity" = liquid must be one of rigid, modal, solid'),
-        ({"schema_version": 99}, r'"schema_version" = 99 is not the version 11'),
+        ({"schema_version": 99}, r'"schema_version" = 99 is not the version 12'),
         ({"muu": 1.0}, r'unknown key "muu". Did you mean mu\?'),
         ({"effects": "friction"}, r'"effects" = friction must be a list of texts'),
         (
@@ -176,6 +178,7 @@ def test_a_record_of_an_earlier_version_is_refused_in_one_sentence():
         ({"mesh_limit": {"steps": 1.0}}, r'names "steps", a key that meshes give no limit'),
         ({"mesh_band": {"mu": 0.1}}, r'names "mu", which has no limit'),
         ({"mesh_limit": {"mu": 0.5}, "mesh_band": {"mu": -1.0}}, r"a half-width below zero"),
+        ({"model_band": {"mu": -1.0}}, r"half-width below zero"),
         ({"mesh_limit": {"mu": "0.5"}}, r"must map names to finite numbers"),
         ({"reasons": {"mu": "because"}}, r"reasons"),
     ],

@@ -1,8 +1,4 @@
-"""The reduced model beside the finite elements: measured sets, calibration, scenes it was not read from.
-
-Its table `beside` is what every outcome of the reduced model is judged by: a copy stands in
-``fem_impact/case/data/reduced.csv``.
-"""
+"""The reduced model beside the finite elements: measured sets, calibration, scenes it was not read from."""
 
 from __future__ import annotations
 

@@ -165,6 +165,17 @@ def limits_of(*levels):
     return level_limits([level.runs for level in levels])
 
 
+def test_shares_that_flow_and_friction_take_have_half_of_the_widest_band_at_least():
+    """What one takes less, the others take; a body that does not yield takes nothing, whatever the mesh."""
+    outcome = simulate(QUICK, "rigid")
+    energy = replace(outcome.energy, friction=0.1, plastic_rod=0.0, plastic_barrier=0.5)
+    less = replace(energy, plastic_barrier=0.4)
+    meshes = [MeshRuns(size, [replace(outcome, energy=of)]) for size, of in ((2.0, energy), (1.0, less))]
+    bands = known(level_limits(meshes)[1])
+    assert bands["E_plastic_barrier_over_E_0"] > 0.1 and bands["E_plastic_rod_over_E_0"] == 0.0
+    assert bands["W_friction_over_E_0"] == bands["E_plastic_barrier_over_E_0"] / 2
+
+
 def test_a_contact_a_few_nodes_wide_has_three_times_the_largest_change_as_its_band(quick):
     """A line of contact one cell wide is pressed as hard as its cells are large, and agrees with itself."""
     pilot, before, last = quick[0].done

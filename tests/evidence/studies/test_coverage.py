@@ -25,7 +25,6 @@ from fem_impact.evidence.studies.coverage.judge import (
     ends,
     times,
     told_errors,
-    told_of_reduced,
 )
 from fem_impact.evidence.studies.coverage.run import (
     DEFAULT,
@@ -39,7 +38,9 @@ from fem_impact.evidence.studies.coverage.run import (
 from fem_impact.evidence.studies.coverage.scenes import BENCH, KINDS, OWN, RANGES, DrawnScene, drawn
 from fem_impact.evidence.studies.coverage.twelve import TWELVE
 from fem_impact.jobs.job import Failure
+from fem_impact.outcome.record import KEY_TABLE
 from fem_impact.progress import Notice, Progress
+from fem_impact.scene.types import MEASURED_SETS
 
 SCENE = DrawnScene("tube-0", "tube", {"barrier": {"material": "copper"}}, "", {})
 
@@ -215,37 +216,42 @@ def test_shares_have_wilson_intervals_and_the_factor_that_is_needed():
     assert row["needed"] == pytest.approx(2.0)
 
 
-def test_the_error_of_the_reduced_model_is_read_from_what_it_tells():
-    text = (
-        "nine tenths stay below, of scene 1 and 2: "
-        "e 0.027 and 0.072, mu 1e-2 and 3e-2, E_vib 0.002 and 0.016 of E_0."
-    )
-    modal = outcome_maker.outcome(
-        mesh_limit=None, mesh_band=None, limitations=[{"kind": "model", "text": text}], mu=0.3, e_edge=0.5
-    )
-    assert [told_of_reduced(modal, name) for name in ("e", "mu", "E_vib", "Omega")] == [
-        0.072,
-        0.03,
-        0.016,
-        None,
-    ]
-    results = {
-        (SCENE.name, MODAL): CoverageResult(modal),
-        (SCENE.name, DEFAULT): CoverageResult(banded(mu=0.34, e_edge=0.55)),
+def both_models(modal=None, **solid):
+    """Results of one scene by the reduced model and by finite elements; one place of contact each."""
+    site = {name: 0.0 for name in SITE_KEYS}
+    known = {"contact_sites": [site], "mesh_limit": None, "mesh_band": None}
+    reduced = {"fidelity": "modal", "model_band": {"mu": 0.03, "e_edge": 0.07, "Omega_rad_per_s": 0.1}}
+    default = {"contact_sites": [site], "fidelity": "solid", **solid}
+    return {
+        (SCENE.name, MODAL): CoverageResult(
+            banded(**known | reduced | {"mu": 0.3, "e_edge": 0.5} | (modal or {}))
+        ),
+        (SCENE.name, DEFAULT): CoverageResult(
+            banded({"mu": 0.34, "e_edge": 0.55}, {"mu": 0.01, "e_edge": 0.01}, **default)
+        ),
     }
-    table = told_errors([SCENE], results).set_index("quantity")
-    assert set(table["told"]) == {REDUCED} and table["inside"].to_dict() == {
-        "e": True,
-        "mu": False,
-        "E_vib": True,
-    }
+
+
+SITE_KEYS = [key.name for key in KEY_TABLE["contact_sites"].entries]
+
+
+def test_half_widths_of_the_reduced_model_are_held_against_what_finite_elements_know():
+    table = told_errors([SCENE], both_models()).set_index("quantity")
+    assert set(table["told"]) == {REDUCED} and table["inside"].to_dict() == {"e": True, "mu": False}
+    wide = both_models(mesh_band={"mu": 0.2, "e_edge": 0.01})
+    assert told_errors([SCENE], wide)["quantity"].tolist() == ["e"]
+
+
+def test_models_that_followed_other_strikes_are_not_compared():
+    assert told_errors([SCENE], both_models(finished=False)).empty
+    two = 2 * [{name: 0.0 for name in SITE_KEYS}]
+    assert told_errors([SCENE], both_models({"contact_sites": two})).empty
 
 
 def test_every_quantity_of_the_reduced_model_is_told_by_a_real_outcome():
     outcome = fem_impact.simulate(fem_impact.load("t5b"), "modal")
-    told = {name: told_of_reduced(outcome, name) for name in KEYS}
-    assert all(told[name] > 0 for name in ("e", "mu", "Omega", "E_vib"))
-    assert told["e"] != told["mu"]
+    told = {name: outcome.estimate(KEYS[name])[1] for name in ("e", "mu", "Omega", "E_vib", "friction")}
+    assert all(half > 0 for half in told.values()) and told["e"] != told["mu"]
 
 
 def test_told_times_are_judged_by_class_and_factor():
@@ -276,8 +282,16 @@ def test_finer_runs_follow_where_there_are_numbers(tmp_path):
 def test_a_first_part_may_be_asked_for(tmp_path):
     part, whole = Request(tmp_path, first=2), Request(tmp_path)
     few, every = study.scenes(part), study.scenes(whole)
-    assert len(few) == 2 * (len(FAMILIES) + len(TWELVE)) and all(scene in every for scene in few)
+    assert len(few) == 2 * (len(FAMILIES) + len(TWELVE)) + len(MEASURED_SETS) and all(
+        scene in every for scene in few
+    )
     assert part.command("coverage") == "fem-impact study coverage --first 2" and part.about != whole.about
+
+
+def test_another_seed_draws_other_scenes(tmp_path):
+    own, other = study.scenes(Request(tmp_path, first=1)), study.scenes(Request(tmp_path, first=1, seed=7))
+    alike = [a.name for a, b in zip(own, other, strict=True) if a == b]
+    assert set(alike) == {*MEASURED_SETS}
 
 
 def test_the_report_counts_and_shows(tmp_path):

@@ -1,14 +1,11 @@
 """The study of the reduced model: scenes on both models, near or not, and the stored copy of its table."""
 
 import pandas
-import pytest
 from study_fakes import outcome, published
 
 from fem_impact.answers.report import Request
-from fem_impact.case.measured import reduced_table
 from fem_impact.evidence.studies.reduced import (
     COUNT,
-    HEAD,
     KEYS,
     MODELS,
     SIDES,
@@ -50,9 +47,3 @@ def test_a_difference_beyond_the_limit_is_not_near():
     columns = pandas.MultiIndex.from_product([KEYS, MODELS])
     (sentence,) = report_of(pandas.DataFrame([values], ["reduced-0"], columns)).findings
     assert "in 0 of 1 scenes" in sentence and "in 0, both in 0" in sentence
-
-
-def test_the_stored_table_has_the_columns_of_the_study():
-    assert tuple(reduced_table()[0]) == HEAD
-    assert {row["group"] for row in reduced_table()} >= {"measured", "hypercube"}
-    assert len([r for r in reduced_table() if r["group"] == "measured"]) == pytest.approx(13)

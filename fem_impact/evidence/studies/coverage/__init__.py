@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from fem_impact.answers.report import Request, StudyReport
 from fem_impact.evidence.studies.coverage.report import report_of
 from fem_impact.evidence.studies.coverage.run import DEFAULT, FINEST, MODAL, NEXT, CoverageResult, CoverageRun
-from fem_impact.evidence.studies.coverage.scenes import DrawnScene, drawn
+from fem_impact.evidence.studies.coverage.scenes import SEED, DrawnScene, drawn
 from fem_impact.jobs.job import Failure
 
 __all__ = ["conclude", "plan"]
@@ -23,10 +23,11 @@ Results = Mapping[str, CoverageResult | Failure]
 
 def scenes(request: Request) -> list[DrawnScene]:
     """Return the scenes of the study, a first part of them where that is asked for, or the quick one."""
+    seed = request.seed or SEED
     if request.quick:
-        return drawn(QUICK_COUNT, QUICK_ANGLES)
+        return drawn(QUICK_COUNT, QUICK_ANGLES, seed)
     count = request.first or COUNT
-    return drawn(count, min(count, ANGLES))
+    return drawn(count, min(count, ANGLES), seed)
 
 
 def plan(request: Request, results: Results) -> list[CoverageRun]:
@@ -54,7 +55,7 @@ def conclude(request: Request, results: Results) -> StudyReport:
         for run in plan(request, results)
         if run.name in results
     }
-    return report_of(scenes(request), done)
+    return report_of(scenes(request), done, request.seed or SEED)
 
 
 def _result(result: CoverageResult | Failure) -> CoverageResult:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -10,9 +9,9 @@ from typing import TYPE_CHECKING
 from fem_impact.case.size import time_class
 from fem_impact.evidence.studies.coverage.run import DEFAULT, FINER, FINEST, MODAL, CoverageResult
 from fem_impact.evidence.studies.coverage.scenes import DrawnScene
-from fem_impact.outcome.keys import or_none
-from fem_impact.outcome.limitation import texts
+from fem_impact.outcome.keys import Unknown, or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
+from fem_impact.run.modal_error import scale_of
 
 if TYPE_CHECKING:
     import pandas
@@ -33,11 +32,11 @@ LEVELS, LEVELS_TWO, REDUCED = "levels", "levels, two finer", "reduced model"
 beside finite elements."""
 ZERO = 1e-9
 """In the unit of the quantity: what is smaller on both sides is zero by physics and tells nothing."""
+KNOWN = 0.1
+"""Widest half-width of finite elements, over `scale_of`, that tells an error of the reduced model."""
 FACTOR = 2.0  # within which a forecast of time counts as met
 AIM = 0.95
 LOWEST, HIGHEST = "low", "high"
-# e .03 and .07, as the reduced model tells the errors that half of its scenes and nine tenths stay below
-_SENTENCE = r"(?<![\w.]){} [\d.e+-]+ and ([\d.]+(?:e[+-]?\d+)?)"
 Results = Mapping[tuple[str, str], CoverageResult]
 """Results by scene and model."""
 
@@ -79,18 +78,17 @@ def told_errors(scenes: Iterable[DrawnScene], results: Results) -> pandas.DataFr
 
 
 def _of_scene(scene: DrawnScene, results: Results) -> Iterator[ToldError]:
-    runs = {model: _known(results.get((scene.name, model))) for model in (DEFAULT, FINER, FINEST, MODAL)}
-    default, finer, finest, modal = runs.values()
+    default, finer, finest = (_known(results.get((scene.name, model))) for model in (DEFAULT, FINER, FINEST))
     place = scene.name, scene.family, scene.group
     for told, run in ((LEVELS, finer), (LEVELS_TWO, finest)):
         if default and run and _is_finer(run, default):
             for name, key in KEYS.items():
                 yield from _row((*place, told, name), default.estimate(key), run, key)
-    best = finest or finer or default
-    if modal and best:
+    modal, solid = of_reduced(scene, results)
+    if modal and solid:
         for name, key in KEYS.items():
-            half = told_of_reduced(modal, name)
-            yield from _row((*place, REDUCED, name), (modal.estimate(key)[0], half), best, key)
+            if reduced_error(modal, solid, key) is not None:
+                yield from _row((*place, REDUCED, name), modal.estimate(key), solid, key)
 
 
 def _known(result: CoverageResult | None) -> Outcome | None:
@@ -116,16 +114,27 @@ def _row(
             yield ToldError(*place, value, half, truth, finest)
 
 
-def told_of_reduced(outcome: Outcome, quantity: str) -> float | None:
-    """Return the error that nine tenths stay below, as the reduced model tells it; None where it does not."""
-    banded = outcome.estimate(KEYS[quantity])[1]
-    if banded is not None:
-        return banded
-    for sentence in texts(outcome.validity.limitations, "model"):
-        found = re.search(_SENTENCE.format(re.escape(quantity)), sentence)
-        if found and "nine tenths" in sentence:
-            return float(found[1])
-    return None
+def of_reduced(scene: DrawnScene, results: Results) -> tuple[Outcome | None, Outcome | None]:
+    """Return a scene by the reduced model and by the finest finite elements, None where one lacks its like.
+
+    Alike are those that followed one place of contact to its end: finite elements end before another end of
+    the projectile strikes, which the reduced model follows.
+    """
+    known = (_known(results.get((scene.name, model))) for model in (FINEST, FINER, DEFAULT))
+    both = _known(results.get((scene.name, MODAL))), next((run for run in known if run is not None), None)
+    alike = (run and run.validity.finished and len(or_none(run.contact.sites) or ()) == 1 for run in both)
+    return both if all(alike) else (None, None)
+
+
+def reduced_error(modal: Outcome, solid: Outcome, key: str) -> float | None:
+    """Return by how much the reduced model differs in a number, over its scale.
+
+    None where one does not know it, or finite elements know it only within `KNOWN`.
+    """
+    (value, _), (truth, half), scale = modal.estimate(key), solid.estimate(key), scale_of(key, modal)
+    if isinstance(value, Unknown) or isinstance(truth, Unknown) or half is None or half > KNOWN * scale:
+        return None
+    return float(value - truth) / scale
 
 
 def coverage(errors: pandas.DataFrame, by: list[str]) -> pandas.DataFrame:

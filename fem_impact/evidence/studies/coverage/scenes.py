@@ -7,6 +7,7 @@ them, each at five angles.
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import cos, log, pi, radians, sin
@@ -29,14 +30,19 @@ from fem_impact.evidence.studies.coverage.families import (
 )
 from fem_impact.evidence.studies.coverage.twelve import TWELVE
 from fem_impact.scene.library import materials
+from fem_impact.scene.types import MEASURED_SETS
+from fem_impact.scene.write import to_toml
 
 if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
 
 
 SEED = 20261126
+"""Of the scenes by which the reduced model tells its error."""
 OWN = "twelve bodies"
 """Name of the family of `TWELVE`."""
+TESTED = "measured sets"
+"""Name of the family of the thirteen measured sets."""
 RANGES: Mapping[str, tuple[float, float]] = {
     "diameter": (5e-3, 40e-3),  # m, even in its logarithm
     "speed": (0.1, 20.0),  # m/s, even in its logarithm
@@ -101,18 +107,18 @@ class DrawnScene:
         return load(path)
 
 
-def drawn(count: int, angles: int) -> list[DrawnScene]:
-    """Return so many scenes of each family, and the twelve bodies at so many of their angles.
+def drawn(count: int, angles: int, seed: int = SEED) -> list[DrawnScene]:
+    """Return so many scenes of each family, the twelve bodies at so many of their angles, and measured sets.
 
-    More of them hold the fewer, so that stored runs are kept.
+    More of them hold the fewer, so that stored runs are kept. The measured sets stand beside the twelve.
     """
-    random = [one for family in FAMILIES for one in _of_family(family, count)]
-    return [*random, *_of_twelve(angles)]
+    random = [one for family in FAMILIES for one in _of_family(family, count, seed)]
+    return [*random, *_of_twelve(angles, seed), *(_of_tests() if angles else ())]
 
 
-def _of_family(family: str, count: int) -> Iterator[DrawnScene]:
+def _of_family(family: str, count: int, drawn_by: int) -> Iterator[DrawnScene]:
     """Yield the scenes of a family."""
-    seed = SEED, [*FAMILIES].index(family)
+    seed = drawn_by, [*FAMILIES].index(family)
     rows, turns = _rows(RANGES, count, seed), _metals(count, seed)
     kinds = _turns(KINDS, count, np.random.default_rng([*seed, 1]))
     for at, (values, kind, (rod, metal)) in enumerate(zip(rows, kinds, turns, strict=True)):
@@ -122,15 +128,22 @@ def _of_family(family: str, count: int) -> Iterator[DrawnScene]:
         yield _stated(name, family, projectile, rod, barrier, values)
 
 
-def _of_twelve(angles: int) -> Iterator[DrawnScene]:
+def _of_twelve(angles: int, drawn_by: int) -> Iterator[DrawnScene]:
     """Yield the twelve bodies at their first angle, all of them at their second, and so on."""
-    seed, count = (SEED, len(FAMILIES)), angles * len(TWELVE)
+    seed, count = (drawn_by, len(FAMILIES)), angles * len(TWELVE)
     numbers = zip(_rows(BENCH, count, seed), _metals(count, seed), strict=True)
     for at in range(angles):
         for body, (projectile, every) in TWELVE.items():
             values, (rod, metal) = next(numbers)
             name = f"{body} at {every[at]:g} deg".replace(" -", " minus ").replace(" ", "-")
             yield _stated(name, OWN, projectile, rod, {"material": metal}, {**values, "angle": every[at]})
+
+
+def _of_tests() -> Iterator[DrawnScene]:
+    """Yield the measured sets."""
+    for name in MEASURED_SETS:
+        tables = tomllib.loads(to_toml(load(name)))
+        yield DrawnScene(name, TESTED, {**tables, "save": {"frames": 0}}, "", {})
 
 
 def _rows(ranges: Mapping[str, tuple[float, float]], count: int, seed: Sequence[int]) -> list[Values]:

@@ -1,0 +1,170 @@
+"""How far the reduced model is off for a scene: half-widths that hold nine in ten finite-element results.
+
+Scenes drawn at random ran by both models (`fem_impact.case.measured.reduced_pairs`). Where a
+scene stands among them is told by the numbers of `Place`. The error expected there is the mean of the stored
+ones, of which each counts the more the nearer its scene stands. A half-width is a multiple of it, conformal
+as jackknife+ (Barber et al. 2021, doi:10.1214/20-AOS1965): the multiple is each stored scene's own error over
+what the others let expect of it, and the `HELD` quantile over the scenes is told. No distribution is assumed,
+only that the scene is of the kind of those that were drawn.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from math import ceil, hypot, inf, log10, sqrt
+from typing import NamedTuple
+
+import numpy as np
+
+from fem_impact.arrays import Array
+from fem_impact.case.case import Case
+from fem_impact.case.measured import reduced_pairs
+from fem_impact.outcome.keys import Unknown, or_none
+from fem_impact.outcome.record import KEY_TABLE, Outcome
+from fem_impact.physics.contact_law import contact_law
+
+HELD = 0.9
+"""Share of differences from finite elements that a half-width holds."""
+NEAR = 1.5  # standard deviations of the stored numbers at which a scene counts exp(-1/2)
+COMMON = 1.0  # scenes' weight of the mean over all of them
+TOLD = (
+    *("e_edge", "mu", "V_n_m_per_s", "V_t_m_per_s", "Omega_rad_per_s"),
+    *("E_r_over_E_0", "E_vib_over_E_0", "W_friction_over_E_0"),
+)
+"""Keys of the numbers whose error is told."""
+
+
+class Place(NamedTuple):
+    """Where a scene stands: decimal logarithms of dimensionless numbers, each within the ends of `ENDS`.
+
+    Attributes
+    ----------
+    yields : speed of approach over that at which the contact begins to yield
+    rings : first bending period over the estimated time of contact
+    sticks : friction over the impulse ratio at which sliding stops
+    wall, edge : wall of a tube, or radius of a solid body, and radius of the edge that touches, over the
+        estimated depth of the contact
+    turns : mass of the body over that which its contact feels
+    """
+
+    yields: float
+    rings: float
+    sticks: float
+    wall: float
+    edge: float
+    turns: float
+
+
+ENDS = (-1.0, 2.5), (-1.5, 1.5), (-1.5, 1.5), (-0.5, 2.0), (-2.0, 2.0), (0.0, 1.0)
+"""Lower and upper end of each number of `Place`: what lies beyond one behaves as at the end."""
+
+
+def place_of(case: Case, outcome: Outcome) -> Place:
+    """Return where a scene stands that the reduced model has computed."""
+    pair, bodies = case.contact, case.bodies
+    law, depth = contact_law(pair), pair.estimate.depth
+    begins = sqrt(0.8 * law.yield_force * law.yield_depth / pair.effective_mass) if law.limit < inf else inf
+    x, z = pair.touch_point
+    bore = float(bodies.body.inner_radius(np.array(z))) if hasattr(bodies.body, "inner_radius") else 0.0
+    stops = abs(or_none(outcome.restitution.mu_c) or 0.0)
+    numbers = Place(
+        yields=pair.approach / begins,
+        rings=bodies.bending_period / bodies.estimate.duration,
+        sticks=pair.f / stops if stops else inf,
+        wall=(max(abs(float(bodies.body.radius(np.array(z)))), abs(x)) - bore) / depth,
+        edge=pair.principal_radii[0] / depth,
+        turns=pair.reduced[0] / pair.effective_mass,
+    )
+    return Place(
+        *(
+            min(max(log10(number) if number > 0.0 else -inf, low), high)
+            for number, (low, high) in zip(numbers, ENDS, strict=True)
+        )
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Stored:
+    """Scenes by both models.
+
+    Attributes
+    ----------
+    places : (n, 6) numbers of `Place`
+    errors : (n, k) distances of both models in each of `TOLD`, over `scale_of`; nan where it is not known
+    """
+
+    places: Array
+    errors: Array
+
+    def half_width(self, place: Array, of: int) -> float:
+        """Return the half-width, over `scale_of`, of a number of `TOLD` at a place (6,).
+
+        Outside the ends of the stored places it is the widest that a stored scene would be told.
+        """
+        known = np.isfinite(self.errors[:, of])
+        places, errors = self.places[known], self.errors[known, of]
+        expected = _expected(places, errors, self.places.std(axis=0))
+        if self.outside(place):
+            return float((errors / expected).max() * expected.max())
+        halves = np.sort(errors / expected * _expected(places, errors, self.places.std(axis=0), place))
+        return float(halves[min(ceil(HELD * (len(errors) + 1)), len(errors)) - 1])
+
+    def outside(self, place: Array) -> tuple[str, ...]:
+        """Return the names of numbers of a place (6,) that lie beyond all stored ones."""
+        beyond = (place < self.places.min(axis=0)) | (place > self.places.max(axis=0))
+        return tuple(name for name, far in zip(Place._fields, beyond, strict=True) if far)
+
+
+def _expected(places: Array, errors: Array, spread: Array, at: Array | None = None) -> Array:
+    """Return (n,) what all stored errors but one let expect at the place of that one, or ``at`` one place."""
+    away = ((places if at is None else at)[..., None, :] - places) / (NEAR * spread)
+    weights = np.exp(-0.5 * (away**2).sum(axis=-1)) + COMMON / len(errors)
+    weights = np.broadcast_to(weights, (len(errors), len(errors))) * (1.0 - np.eye(len(errors)))
+    return np.asarray(weights @ errors / weights.sum(axis=1))
+
+
+def scale_of(key: str, outcome: Outcome) -> float:
+    """Return the scale of errors of a number: 1, speed, m/s, or that over the radius of gyration, rad/s."""
+    motion, unit = outcome.motion, KEY_TABLE[key].unit
+    speed = hypot(motion.v_n, motion.v_t)
+    return {"m/s": speed, "rad/s": speed / sqrt(motion.k_squared)}.get(unit, 1.0)
+
+
+def half_widths(place: Place, outcome: Outcome) -> dict[str, float]:
+    """Return half-widths, by key, of those numbers of `TOLD` that an outcome of the reduced model knows."""
+    at, table = np.array(place), stored()
+    halves = {
+        key: table.half_width(at, of) * scale_of(key, outcome)
+        for of, key in enumerate(TOLD)
+        if or_none(KEY_TABLE[key].of(outcome)) is not None
+    }
+    if or_none(outcome.restitution.paper.e) is not None:
+        halves["e_paper"] = halves["e_edge"]  # arms a little apart take nearly the same share of the approach
+    return halves
+
+
+def sentence(place: Place, outcome: Outcome) -> str:
+    """Say what the half-widths are, and where they are those of unlike scenes."""
+    table, sites = stored(), outcome.contact.sites
+    far = table.outside(np.array(place))
+    told = (
+        f"Half-widths hold nine in ten results of finite elements, by {len(table.places)} scenes that both "
+        "models computed; they say nothing of the change of a number by vibration."
+    )
+    if far:
+        told += f" None of them is like this one in {', '.join(far)}: the widest count."
+    if not isinstance(sites, Unknown) and len(sites) > 1:
+        told += " More than one place touches, which none of them has."
+    return told
+
+
+@cache
+def stored() -> Stored:
+    """Return the stored scenes."""
+    rows = reduced_pairs()
+
+    def columns(names: tuple[str, ...]) -> Array:
+        return np.array([[row[name] for name in names] for row in rows])
+
+    return Stored(columns(Place._fields), np.abs(columns(TOLD)))

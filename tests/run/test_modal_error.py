@@ -1,0 +1,74 @@
+"""The told error of the reduced model: conformal half-widths from stored scenes, and where a scene stands."""
+
+from math import log10
+
+import numpy as np
+import pytest
+
+from fem_impact import load, replace, simulate
+from fem_impact.case.case import Case
+from fem_impact.outcome.limitation import texts
+from fem_impact.run import modal_error
+from fem_impact.run.modal_error import HELD, TOLD, Place, Stored, half_widths, place_of, scale_of, stored
+
+
+def drawn(n, seed):
+    """Places, and errors that are ten times larger at one end of the first number than at the other."""
+    rng = np.random.default_rng(seed)
+    places = rng.uniform(0.0, 1.0, (n, len(Place._fields)))
+    return places, np.abs(rng.standard_normal((n, 1))) * 0.02 * 10.0 ** places[:, :1]
+
+
+def test_nine_in_ten_new_scenes_lie_inside_and_the_width_follows_the_scene():
+    places, errors = drawn(150, 1)
+    table, (new, truth) = Stored(places, errors), drawn(400, 2)
+    halves = np.array([table.half_width(place, 0) for place in new])
+    within = np.array([not table.outside(place) for place in new])
+    held = (truth[:, 0] <= halves)[within]
+    assert within.sum() > 300 and HELD - 0.05 < held.mean() < HELD + 0.05
+    low, high = halves[within & (new[:, 0] < 0.2)], halves[within & (new[:, 0] > 0.8)]
+    assert np.median(high) > 1.4 * np.median(low)
+
+
+def test_scenes_of_one_place_give_the_order_statistic_of_their_errors():
+    errors = np.arange(1.0, 20.0)[:, None]  # 19 of them: the 18th is the smallest that holds nine tenths
+    places = np.zeros((19, len(Place._fields)))
+    places[0], places[1] = -1e-9, 1e-9  # so that the numbers have a spread
+    half = Stored(places, errors).half_width(places[2], 0)
+    # each over the mean of the others, times that mean
+    assert half == pytest.approx(18.0, rel=1e-9)
+
+
+def test_numbers_that_are_not_known_do_not_count_and_unlike_scenes_get_the_widest():
+    places, errors = drawn(60, 3)
+    some = Stored(places, np.where(np.arange(60)[:, None] < 30, errors, np.nan))
+    assert some.half_width(places[0], 0) == Stored(places, np.hstack([some.errors])).half_width(places[0], 0)
+    table, far = Stored(places, errors), places[0].copy()
+    far[2] = 5.0
+    assert table.outside(far) == ("sticks",) and table.outside(places[0]) == ()
+    assert table.half_width(far, 0) > errors[:, 0].mean() * 2
+
+
+def test_a_scene_stands_where_its_numbers_say():
+    scene = load("t5b")
+    outcome, case = simulate(scene, "modal"), Case.of(scene, "modal")
+    place = place_of(case, outcome)
+    assert place.sticks == pytest.approx(log10(0.57 / abs(outcome.restitution.mu_c)))
+    assert place.rings == pytest.approx(log10(0.58), abs=0.01)  # T1/tau as the run prints it
+    assert place.edge == pytest.approx(log10(3e-3 / case.contact.estimate.depth))
+    tube = replace(scene, "projectile.bore", [["0 mm", "5.5 mm"], ["80 mm", "5.5 mm"]])
+    assert place_of(Case.of(tube, "modal"), simulate(tube, "modal")).wall < place.wall - 0.2
+
+
+def test_an_outcome_tells_half_widths_in_its_units_and_what_it_is_unlike(monkeypatch):
+    outcome = simulate(load("t5b"), "modal")
+    halves = outcome.half_widths
+    assert set(halves) == {*TOLD, "e_paper"} and all(half > 0.0 for half in halves.values())
+    assert halves["e_paper"] == halves["e_edge"] and outcome.estimate("e_edge")[1] == halves["e_edge"]
+    fast = simulate(replace(load("t5b"), "impact.v_n", "-1.48 m/s"), "modal")
+    assert scale_of("V_n_m_per_s", fast) != scale_of("V_n_m_per_s", outcome)
+    far = Place(*(np.array(stored().places.max(axis=0)) + 1.0))
+    assert "None of them is like this one in" in modal_error.sentence(far, outcome)
+    assert half_widths(far, outcome)["mu"] > halves["mu"]
+    told = " ".join(texts(outcome.validity.limitations, "model"))
+    assert f"{len(stored().places)} scenes" in told and "None of them" not in told
