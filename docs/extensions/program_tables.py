@@ -17,6 +17,7 @@ from fem_impact.errors import EXIT_CODES
 from fem_impact.evidence.problems.catalogue import PROBLEMS, problem
 from fem_impact.outcome.keys import markdown_table
 from fem_impact.outcome.record import KEYS
+from fem_impact.pages.bibliography import references
 from fem_impact.scene import fields, library
 from fem_impact.scene.family import FAMILIES
 from fem_impact.scene.parameter import Parameter
@@ -197,12 +198,17 @@ def exit_codes() -> str:
     return Table.of(("exit code", "meaning"), EXIT_CODES.items(), left=range(2)).markdown()
 
 
+def bibliography() -> str:
+    """Every entry of the bibliography under its key."""
+    return "\n\n".join(f"({one.key})=\n\n`{one.key}` {one.text}" for one in references())
+
+
 PARTS = {
     make.__name__.replace("_", "-"): make
     for make in (
         *(scene_numbers, scene_choices, scene_units, materials, material_sources, friction_pairs),
         *(surfaces, effects, problems),
-        *(outcome_keys, commands, studies, exit_codes),
+        *(outcome_keys, commands, studies, exit_codes, bibliography),
     )
 }
 

@@ -10,7 +10,6 @@ from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fem_impact.answers.friction_spread import FrictionSpread, friction_spread
 from fem_impact.cli.options import Options, add_out, add_text, stated_budget
 from fem_impact.cli.parser import CommandParser
 from fem_impact.cli.paths import checked_out, shown_path, told_kept
@@ -32,6 +31,7 @@ from fem_impact.tables.table import Table
 from fem_impact.tables.text import plain, with_band, wrapped
 
 if TYPE_CHECKING:
+    from fem_impact.answers.friction_spread import FrictionSpread
     from fem_impact.case.case import Case
     from fem_impact.case.size import RunSize
     from fem_impact.outcome.groups import Energy
@@ -87,6 +87,7 @@ def run(options: Options) -> int:
     if options.resume and options.fidelity in ("rigid", "modal"):
         problem = f"is for finite elements only: a {options.fidelity} run takes seconds."
         raise UsageError(problem, key="--resume", remedy="Leave it out.")
+    from fem_impact.answers.friction_spread import friction_spread
     from fem_impact.answers.simulate import compiled, on_levels, simulate
 
     say_kept(scene, options)
@@ -227,8 +228,7 @@ def print_outcome(
     ``spread``: what the interval of friction changes, told beside each number.
     """
     lines = [headed(outcome.provenance.scene_id, outcome.provenance.scene_title), ""]
-    spread = spread or FrictionSpread("", {})
-    lines += [*wrapped(spread.said), ""] if spread.said else []
+    lines += [*wrapped(spread.said), ""] if spread and spread.said else []
     rows = _motion_rows(outcome, own_tests)
     lines += [_motion_line(outcome, *row, spread) for row in rows]
     wrong = [one for one in by_weight(outcome.validity.limitations) if one.kind in WRONG_NUMBERS]
@@ -241,13 +241,14 @@ def print_outcome(
     lines += ["", *wrapped(f"of the initial energy, E_0 = {_number(outcome.energy.E_0)} J{added}{of}:")]
     listed = _listed_shares(outcome)
     lines += [
-        _line(label, outcome.told(key, 100.0), "%", spread.told(key, 100.0)) for label, key in listed.items()
+        _line(label, outcome.told(key, 100.0), "%", _changed(spread, key, 100.0))
+        for label, key in listed.items()
     ]
     if above := above_modes(outcome.energy):
         lines += [_line(ABOVE, plain(100 * above), "%")]
     missing = 100 * outcome.energy.residual
     lines += [_line("not accounted for", plain(missing, 2) if abs(missing) >= 1e-3 else "under 0.001", "%")]
-    lines += ["", _line(HEATING, outcome.told(SKIN, 100.0), "%", spread.told(SKIN, 100.0))]
+    lines += ["", _line(HEATING, outcome.told(SKIN, 100.0), "%", _changed(spread, SKIN, 100.0))]
     lines += _contact_lines(outcome, spread)
     if or_none(outcome.energy.below_floor):
         floor = _value(outcome.energy.vibration_floor)
@@ -316,18 +317,22 @@ def _percent(value: Num) -> str:
     return f"not known: {value.reason}" if isinstance(value, Unknown) else f"{100 * value:.2g} %"
 
 
-def _motion_line(outcome: Outcome, label: str, name: str, unit: str, spread: FrictionSpread) -> str:
+def _motion_line(outcome: Outcome, label: str, name: str, unit: str, spread: FrictionSpread | None) -> str:
     key = KEY_TABLE[name]
-    return _line(label, outcome.told(key), unit, spread.told(key))
+    return _line(label, outcome.told(key), unit, _changed(spread, key))
 
 
-def _contact_lines(outcome: Outcome, spread: FrictionSpread) -> list[str]:
+def _contact_lines(outcome: Outcome, spread: FrictionSpread | None) -> list[str]:
     """Return peak force and flash temperature, of those that are known."""
     return [
-        _line(label, outcome.told(key), key.unit, spread.told(key))
+        _line(label, outcome.told(key), key.unit, _changed(spread, key))
         for label, key in (("peak force", PEAK), ("flash temperature", FLASH))
         if not isinstance(key.of(outcome), Unknown)
     ]
+
+
+def _changed(spread: FrictionSpread | None, key: Key, scale: float = 1.0) -> str:
+    return spread.told(key, scale) if spread else ""
 
 
 def _line(label: str, told: str, unit: str, spread: str = "") -> str:

@@ -6,7 +6,6 @@ import base64
 import gzip
 import hashlib
 import json
-import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -20,6 +19,7 @@ from fem_impact.errors import MissingLibraryError, ResultError
 from fem_impact.figures.live import live
 from fem_impact.figures.panels import Picture
 from fem_impact.figures.still import draw
+from fem_impact.pages.bibliography import behind
 from fem_impact.tables.table import Table
 from fem_impact.tables.text import markup
 
@@ -156,9 +156,7 @@ def sources(named: Iterable[str]) -> Markup:
     named : iterable of str
         Names of effects, and "film" where there is one.
     """
-    used = {"always", *named}
-    listed = tomllib.loads(_data("sources.toml"))["source"]
-    papers = bullets(entry["text"] for entry in listed if used & set(entry["for"]))
+    papers = bullets(one.text for one in behind(["figures", *named]))
     return section("Sources", details("Papers behind what was used", papers))
 
 

@@ -6,7 +6,6 @@ from dataclasses import dataclass, field
 import outcome_maker
 import pytest
 
-from fem_impact.answers.friction_spread import FrictionSpread
 from fem_impact.options import RunOptions
 from fem_impact.outcome.record import KEYS
 from fem_impact.progress import Progress
@@ -53,7 +52,6 @@ def stand(monkeypatch):
     table = types.SimpleNamespace(document=document, text="the table", runs=("sets/t4",))
     film = types.SimpleNamespace(path=None, notes=["install libegl1"])
     for place, result in {
-        "fem_impact.cli.run.friction_spread": lambda: FrictionSpread("", {}),
         "fem_impact.answers.simulate.simulate": lambda: stand.outcome or an_outcome(),
         "fem_impact.evidence.runner.run_study": lambda: table,
         "fem_impact.films.film.render": lambda: film,
@@ -61,5 +59,6 @@ def stand(monkeypatch):
         "fem_impact.pages.write.write_report": lambda: "report.html",
     }.items():
         monkeypatch.setattr(place, work(place.rpartition(".")[2], result))
+    monkeypatch.setattr("fem_impact.answers.friction_spread.friction_spread", lambda *_: None)
     monkeypatch.setattr("fem_impact.pages.write.present", lambda *_: ["no film: no GL"])
     return stand
