@@ -15,7 +15,6 @@ from fem_impact.physics.contact import FLAT
 from fem_impact.scene import library
 from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.impact import BESIDE, FIRST
-from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.strikes import Following
 from fem_impact.scene.types import Scene
 from fem_impact.scene.units import format_quantity
@@ -330,17 +329,6 @@ def flat_part(bodies: Bodies) -> str:
     return f"a {part} that lands all at once"
 
 
-def require_turned(rod: ProjectileSpec, asked: str) -> None:
-    """Refuse what is not offered for a user's mesh as the projectile, which is fixed (SceneError)."""
-    if rod.own_mesh is not None:
-        raise SceneError(
-            f"is fixed, but {asked} rests on meshes of the program's own.",
-            key="projectile.mesh",
-            value=rod.own_mesh.path,
-            remedy="Run it on two meshes of your own, or with two values of accuracy.tip_size.",
-        )
-
-
 def not_reduced(bodies: Bodies) -> str:
     """Return what the reduced model has no answer for, empty where it has one."""
     obstacles = {
@@ -356,8 +344,6 @@ def require_own_mesh(bodies: Bodies, fidelity: str) -> None:
     mesh, scene = bodies.rod.own_mesh, bodies.scene
     if mesh is None:
         return
-    if scene.accuracy.target is not None:
-        require_turned(bodies.rod, "accuracy.target")
     if fidelity == "modal":
         problem = (
             "has no radii of a smooth tip and no outline, on which the reduced model's contact law rests."

@@ -15,7 +15,7 @@ from fem_impact.answers.refine.extrapolate import MeshRuns, QuantityLimit, quant
 from fem_impact.answers.refine.quantities import QUANTITIES
 from fem_impact.answers.refine.work import Levels, LevelsJob
 from fem_impact.case.case import Case
-from fem_impact.errors import RunError
+from fem_impact.errors import RunError, SceneError
 from fem_impact.files.lock import directory_lock
 from fem_impact.jobs.executors import LocalProcesses
 from fem_impact.jobs.job import Failure, Job, Work
@@ -86,11 +86,16 @@ class CostStudy:
 
 
 def jobs_of(scene: Scene, finer: int, budget_s: float) -> list[Work[Outcome | Levels]]:
-    """Return models, levels at one place and at two, and, without a budget, variants of the default run."""
+    """Return models, levels at one place and at two, and, without a budget, variants of the default run.
+
+    A model that refuses the scene is left out.
+    """
     scene = replace_all(scene, {"save.frames": 0})
     scene = replace(scene, accuracy=replace(scene.accuracy, target=None, offsets=None))
     jobs: list[Work[Outcome | Levels]] = [
-        Job(f"{scene.id}: {fidelity}", scene, fidelity) for fidelity in ("rigid", "modal")
+        Job(f"{scene.id}: {fidelity}", scene, fidelity)
+        for fidelity in ("rigid", "modal")
+        if _is_computed(scene, fidelity)
     ]
     for places, kind in PLACES.items():
         at = replace(scene, accuracy=replace(scene.accuracy, offsets=places))
@@ -102,6 +107,14 @@ def jobs_of(scene: Scene, finer: int, budget_s: float) -> list[Work[Outcome | Le
         changed = {name: replace_all(scene, changes) for name, changes in variants.items()}
         jobs += [LevelsJob(f"{scene.id}: {name}", one) for name, one in changed.items()]
     return jobs
+
+
+def _is_computed(scene: Scene, fidelity: str) -> bool:
+    try:
+        Case.of(scene, fidelity)
+    except SceneError:
+        return False
+    return True
 
 
 def measure(

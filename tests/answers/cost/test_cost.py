@@ -5,6 +5,7 @@ import json
 import re
 
 import pytest
+from benchmarks.own_mesh_memory import half_box
 from cost_fakes import LIMIT, Here, fake_levels, run
 
 import fem_impact.run.simulate
@@ -189,3 +190,8 @@ def test_a_scene_that_asks_for_an_error_is_measured_without_it():
         job for job in jobs_of(replace(SCENE, "accuracy", "5 %"), 1, 30.0) if job.name.endswith("levels")
     ]
     assert levels.scene.accuracy.target is None
+
+
+def test_a_mesh_of_the_users_own_is_measured_without_the_reduced_model(tmp_path):
+    names = [job.name for job in jobs_of(half_box(tmp_path, 4, 2, 10), 1, 30.0)]
+    assert names == ["box: rigid", "box: levels", "box: two places"]
