@@ -193,5 +193,5 @@ def test_a_scene_that_asks_for_an_error_is_measured_without_it():
 
 
 def test_a_mesh_of_the_users_own_is_measured_without_the_reduced_model(tmp_path):
-    names = [job.name for job in jobs_of(half_box(tmp_path, 4, 2, 10), 1, 30.0)]
+    names = [job.name for job in jobs_of(half_box(tmp_path, 8, 4, 10), 1, 30.0)]
     assert names == ["box: rigid", "box: levels", "box: two places"]
