@@ -51,7 +51,7 @@ class CostStudy:
     Attributes
     ----------
     scene : Scene
-    limits : of each quantity, those of the levels that tell the narrowest band of e
+    limits : of each quantity, those of the finest levels, at two places where these tell any
     levels : by number of places, as they ran
     settings : judged, in order of processor time
     failures : jobs without a result, with the reason
@@ -182,7 +182,7 @@ def conclude(scene: Scene, results: CostRuns) -> CostStudy:
         raise RunError(
             f"{scene.id}: no two levels gave a result that resolves the contact. {reasons}".strip()
         )
-    finest, judged = told[-1], list[Judged]()  # those at two places, where they tell any
+    finest, judged = told[-1], list[Judged]()
     for places, found in levels.items():
         for n in range(2, len(found.meshes) + 1):
             first, is_default = found.meshes[:n], places == 1 and n == found.default

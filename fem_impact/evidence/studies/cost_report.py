@@ -254,8 +254,9 @@ def _level_sheet(costs: Mapping[str, CostStudy]) -> Sheet:
     """Return one row per level at two places: what it took, what it gave, the limits with all before it."""
     rows: list[tuple[Cell, ...]] = []
     for name, cost in costs.items():
-        for n, level in enumerate(levels.meshes if (levels := cost.levels.get(2)) else (), 1):
-            limits = quantity_limits(levels.meshes[:n]) if levels else {}
+        meshes = levels.meshes if (levels := cost.levels.get(2)) else ()
+        for n, level in enumerate(meshes, 1):
+            limits = quantity_limits(meshes[:n])
             told = [
                 f"{limit.value:.4f} ± {limit.band:.4f}" if (limit := limits.get(of)) else None
                 for of in TARGETED
