@@ -68,6 +68,7 @@ def assess(options: Options) -> int:
     from fem_impact.answers.verdict.dropped import dropped
     from fem_impact.answers.verdict.sentences import document
     from fem_impact.jobs.executors import cores
+    from fem_impact.scene.impact import FIRST
 
     budget = stated_budget(options)
     means = BUDGET if budget is None else budget, min(options.workers or cores(), 2)
@@ -93,6 +94,10 @@ def assess(options: Options) -> int:
         raise KeyboardInterrupt(f"an assessment that is stopped keeps nothing: {remedy}") from None
     # without the options that the next step may add
     answer = document(verdict, command_line(options, "assess", *SHORT, *SHAPE, "within"))
+    if scene.impact.until != FIRST:
+        from fem_impact.answers.verdict.sequence import sequence_verdict
+
+        answer["sequence"] = sequence_verdict(scene, verdict.tolerance)
     if case is not None:
         from fem_impact.answers.verdict.transfer import transfer
 
@@ -138,6 +143,9 @@ def _text(answer: dict[str, Any]) -> str:
 
     lines = [line for title, sentence in answer["box"] for line in wrapped(f"{title} {sentence}")]
     lines += [f"Next step: {answer['next_step']}"] if answer["next_step"] else []
+    if "sequence" in answer:
+        lines += ["", "The strikes that follow"]
+        lines += [line for sentence in answer["sequence"] for line in wrapped(sentence)]
     lines += ["", "What this rests on", *lines_of(answer["basis"], indent="  ")]
     lines += ["", "What it does not cover"]
     lines += [line for sentence in answer["not_covered"] for line in wrapped(f"- {sentence}", "  ")]

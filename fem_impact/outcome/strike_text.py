@@ -26,6 +26,20 @@ def told(strikes: Strikes) -> list[str]:
     ]
 
 
+def levels_told(levels: Sequence[Strikes]) -> str:
+    """Say how far the strikes of the last two levels of meshes differ, nothing where there are no two."""
+    known = [one.each for one in levels[-2:] if not isinstance(one.each, Unknown)]
+    if len(known) < 2:
+        return ""
+    coarse, fine = known
+    changes = [
+        f"strike {number} {a.approach:.3g} to {b.approach:.3g} m/s with e {a.e:.3g} to {b.e:.3g}"
+        for number, (a, b) in enumerate(zip(coarse, fine, strict=False), 1)
+        if a.fidelity == b.fidelity == "solid" and a.part == b.part
+    ]
+    return f"From the last level of meshes but one to the last: {', '.join(changes)}." if changes else ""
+
+
 def strikes_table(each: Sequence[StrikeRecord]) -> Table:
     """Return a row a strike."""
     rows = [_row(number, one) for number, one in enumerate(each, 1)]

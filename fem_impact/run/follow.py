@@ -17,10 +17,11 @@ if TYPE_CHECKING:
     from fem_impact.case.case import Case
     from fem_impact.outcome.record import Outcome
     from fem_impact.run.modal_strikes import ModalCourse
+    from fem_impact.run.solid_strikes import SolidCourse
     from fem_impact.solid.run import SolidResult
 
 LATER = "Strikes of a rigid body after those of a finer model do not feel its vibration."
-STILL = "The vibration that finite elements left counts as damped before the next strike."
+PASSED = "Modes take over {:.0%} of the vibration that finite elements left; the rest counts as damped."
 CHANGE = (
     "Strikes after the first {count} are those of the {model} model. Of strike {count} it gives "
     "e = {new.e:.3g}, a spin after it of {new.Omega:.3g} rad/s and {new.after:.3g} J of motion; the "
@@ -68,7 +69,7 @@ class _Course:
     body : with the records of its strikes
     state : its rigid motion after the last of them, at first before it touches
     finish : how the last stage ended
-    modal : the vibration, once modes have computed a strike
+    solid, modal : with the vibration, once finite elements or modes have computed a strike
     told : what limits trust
     """
 
@@ -78,6 +79,7 @@ class _Course:
     body: Followed
     state: State
     finish: Finish = Finish.COUNTED
+    solid: SolidCourse | None = None
     modal: ModalCourse | None = None
     told: list[str] = field(default_factory=list)
 
@@ -110,8 +112,8 @@ class _Course:
 
     def _by_rigid(self) -> None:
         self.state, self.finish = self.body.go_on(self.state)
-        if self.modal:
-            self.modal.swing_on(self.state)
+        if vibrating := self.modal or self.solid:
+            vibrating.swing_on(self.state)
 
     def _by_modes(self) -> None:
         from fem_impact.run.modal_strikes import ModalCourse
@@ -120,7 +122,10 @@ class _Course:
             self.modal = ModalCourse.at_first(self.case, self.body)
         else:
             self.modal = ModalCourse.going_on(self.case, self.body, self.state)
-            self.modal.damped = self.body.each[-1].vibration
+            if self.solid:
+                self.modal.q, self.modal.rate = self.solid.in_modes_of(self.modal.rod)
+                self.modal.damped = self.solid.damped + self.solid.held - self.modal.vibration
+                self.told.append(PASSED.format(self.modal.vibration / (self.solid.held or 1.0)))
         self.finish = self.modal.to_the_end()
         self.state = self.modal.state
 
@@ -128,15 +133,16 @@ class _Course:
         from fem_impact.run.solid_strikes import SolidCourse
 
         assert self.end is not None, "finite elements compute the first strike"
-        course = SolidCourse.at_first(self.body, self.end)
-        self.finish = course.to_the_end(self.options)
-        self.state, self.told = course.state, [*self.told, *course.limits]
+        self.solid = SolidCourse.at_first(self.body, self.end)
+        self.finish = self.solid.to_the_end(self.options)
+        self.state, self.told = self.solid.state, [*self.told, *self.solid.limits]
 
     def _tell_change(self, model: str, count: int) -> None:
         """Tell how far the model of the next strikes is from that of the last one, which both compute."""
         old = self.body.each[-1]
         self.told.append(CHANGE.format(model=model, count=count, old=old, new=self._again(model, old)))
-        self.told.append(LATER if model == "rigid" else STILL)
+        if model == "rigid":
+            self.told.append(LATER)
 
     def _again(self, model: str, old: StrikeRecord) -> StrikeRecord:
         """Return a strike as another model computes it, without vibration before it."""

@@ -8,21 +8,25 @@ oscillator. The barrier is a new block under each strike.
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from math import sqrt
 
 import numpy as np
 
+from fem_impact.arrays import Array
 from fem_impact.case.bodies import Bodies, LaterStrike
 from fem_impact.case.case import Case
 from fem_impact.case.record import BodyRecord, ContactRecord, expected_record, joined
 from fem_impact.errors import SceneError
 from fem_impact.fem.flight import FreeVibration
+from fem_impact.modal.rod import ModalRod
+from fem_impact.modal.sites import skin
 from fem_impact.options import RunOptions
 from fem_impact.outcome.strikes import StrikeRecord
 from fem_impact.run.modal_strikes import ModalCourse, modal_loss, one_strike, swung
 from fem_impact.run.resolution import unresolved
 from fem_impact.run.strikes import LEAST_BY_LAW, Followed
 from fem_impact.solid.build import START_GAP, build
-from fem_impact.solid.carry import carry, later_view, lowered
+from fem_impact.solid.carry import carry, later_view, lowered, turned
 from fem_impact.solid.run import SolidResult, solve
 from rigid.strikes import Finish, State, next_touch
 
@@ -37,6 +41,8 @@ ELSEWHERE = (
 STOPPED = "Strike {} is not that of finite elements, which did not see its end. {}"
 NARROW = "Of strike {} {}."
 """What is told of a strike whose contact is narrow: its number, and how narrow."""
+NEAR, ALIKE = 0.1, 0.9
+"""Logarithm of the ratio of frequencies, and cosine between movements, within which two modes are one."""
 WITHIN = 1.5  # cells beyond skin that may touch, within which a strike counts as on it
 
 
@@ -153,6 +159,31 @@ class SolidCourse:
                 break
         return Finish.COUNTED
 
+    def in_modes_of(self, rod: ModalRod) -> tuple[Array, Array]:
+        """Return amplitudes and rates (k,) of the reduced model's modes, sqrt(kg) m, sqrt(kg) m/s.
+
+        Both models have modes of the same rod on other meshes: those of like frequency that move what may
+        touch alike are one, and keep their energy. Vibration without such a partner is left out.
+        """
+        modes, last = self.vibration.modes, self.last
+        back = self.case.scene.impact.angle - self.begun  # to the attitude in which the other's modes stand
+        sites = range(len(rod.sites.along_t))
+        x = turned(last.model.geometry.rod_points - last.view.rigid(last.model.initial_state()).centre, back)
+        free = np.flatnonzero(~last.model.geometry.rod.mesh.is_hanging)
+        nearest = [int(np.hypot(*(x[free][:, [0, 2]] - skin(rod.sites, s, 0.0)).T).argmin()) for s in sites]
+        shape = turned(modes.shape[last.model.layout.rod[free[nearest]]], back)
+        own = np.concatenate([shape[:, 0], shape[:, 2]])
+        other = np.concatenate([rod.sites.along_t, rod.sites.along_n])
+        alike = (own / np.linalg.norm(own, axis=0)).T @ (other / np.linalg.norm(other, axis=0))
+        alike[np.abs(np.log(rod.omega / modes.omega[:, None])) > NEAR] = 0.0
+        q, rate = np.zeros(len(rod.omega)), np.zeros(len(rod.omega))
+        for i, row in enumerate(alike):
+            j = int(np.abs(row).argmax())
+            if abs(row[j]) > ALIKE and i == int(np.abs(alike[:, j]).argmax()):
+                size = np.sign(row[j]) * sqrt(2.0) * modes.omega[i]  # amplitudes are those of the half rod
+                q[j], rate[j] = size * self.vibration.a[i] / rod.omega[j], size * self.vibration.b[i]
+        return q, rate
+
     def swing_on(self, state: State) -> None:
         """Take over a later state of the rigid body; what the modes lose meanwhile is damping."""
         held, modes = self.held, self.vibration.modes
@@ -181,7 +212,7 @@ class SolidCourse:
 
     def _strike(self, before: State, later: LaterStrike, options: RunOptions) -> bool:
         """Strike at a later state in flight; return whether the bodies part again."""
-        turned = before.alpha - self.state.alpha
+        turn = before.alpha - self.state.alpha
         self.body.gravity += self.body.work(self.state, before)
         self.swing_on(before)
         zones = self.case.zones
@@ -195,7 +226,7 @@ class SolidCourse:
         centre = np.array([motion.centre[0], 0.0, before.height])
         moved = replace(motion, centre=centre, V_n=before.V_n, V_t=before.V_t, Omega=before.Omega)
         vibration = replace(self.vibration, modes=view.modes)
-        model = lowered(carry(model, view, self.last, turned, moved, vibration), START_GAP)
+        model = lowered(carry(model, view, self.last, turn, moved, vibration), START_GAP)
         taken = vibration.energy
         end = solve(case, replace(options, out=None, resume=False), model, view, one_strike(self.case))
         if not end.separated:

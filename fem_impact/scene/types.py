@@ -6,14 +6,14 @@ are the same object and pass the same checks.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import get_args
 
 from fem_impact.errors import SceneError
 from fem_impact.scene import fields
 from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.checks import check_choice, check_id, check_names, check_numbers, check_text
-from fem_impact.scene.impact import WAYS, Impact
+from fem_impact.scene.impact import FIRST, WAYS, Impact
 from fem_impact.scene.material import Material
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.strikes import Following
@@ -148,6 +148,11 @@ class Scene:
     def materials(self) -> dict[str, Material]:
         """The materials of both bodies by the section that states them."""
         return {"projectile": self.projectile.material, "barrier": self.barrier.material}
+
+    @property
+    def first_impact(self) -> Scene:
+        """The scene without what follows its first impact."""
+        return replace(self, impact=replace(self.impact, until=FIRST), strikes=Following())
 
     @property
     def relative(self) -> Impact:

@@ -76,7 +76,7 @@ class Separation:
             return np.inf
         start, t = self.model.start[0][self.view.places], np.arange(0.0, self.horizon, SAMPLE)
         arm = self.tail - self.view.mass @ start / self.view.mass.sum()
-        angle, ground = self.view.angle(state, self.model), self.model.ground
+        angle, ground = -self.view.angle(state, self.model), self.model.ground  # from n towards t
         heights = _rigid_heights(arm, motion, t, angle)
         if ground.turns:
             along = _rigid_along(arm, motion, t, angle)

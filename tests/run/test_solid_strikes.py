@@ -3,12 +3,18 @@
 import numpy as np
 import pytest
 
+from fem_impact.case.case import Case
 from fem_impact.errors import SceneError
+from fem_impact.modal.rod import modal_rod
+from fem_impact.modal.sites import skin
 from fem_impact.outcome.limitation import texts
 from fem_impact.run.simulate import simulate
+from fem_impact.run.solid_strikes import SolidCourse
+from fem_impact.run.strikes import Followed
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.write import to_dict
+from fem_impact.solid.run import solve
 
 FALL = {
     "impact.slope": "0 deg",
@@ -68,6 +74,25 @@ def test_what_is_carried_on_is_told(elastic):
     told = " ".join(texts(elastic.validity.limitations, "model"))
     assert "2 strikes are computed with finite elements of one rod" in told
     assert "Strikes after the first 2 are those of the modal model" in told
+
+
+def test_modes_take_over_the_vibration_of_finite_elements():
+    """Where the rod may touch, both move alike at the same time."""
+    case = Case.of(capsule(**{"accuracy.tip_size": "2 mm", "impact.until": "2 strikes"}), "solid")
+    course = SolidCourse.at_first(Followed.of(case), solve(case))
+    rod, last = modal_rod(case.bodies), course.last
+    q, rate = course.in_modes_of(rod)
+    held = 0.5 * float((rate**2 + (rod.omega * q) ** 2).sum())
+    assert held == pytest.approx(course.held, rel=0.02)
+    points = last.model.geometry.rod_points - last.view.rigid(last.model.initial_state()).centre
+    modes = course.vibration.modes
+    for s in range(len(rod.sites.along_t)):
+        node = int(np.hypot(*(points[:, [0, 2]] - skin(rod.sites, s, 0.0)).T).argmin())
+        moves = modes.shape[last.model.layout.rod[node]]
+        moved, speed = moves @ course.vibration.a, moves @ (modes.omega * course.vibration.b)
+        along = rod.sites.along_t[s], rod.sites.along_n[s]
+        assert [one @ q for one in along] == pytest.approx(moved[[0, 2]], abs=0.1 * np.abs(moved).max())
+        assert [one @ rate for one in along] == pytest.approx(speed[[0, 2]], abs=0.1 * np.abs(speed).max())
 
 
 @pytest.mark.slow

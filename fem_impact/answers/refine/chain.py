@@ -38,6 +38,7 @@ from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import Unknown, known
 from fem_impact.outcome.limitation import limitations
 from fem_impact.outcome.record import Outcome
+from fem_impact.outcome.strike_text import levels_told
 from fem_impact.progress import Notice
 from fem_impact.run.resolution import NOT_RESOLVED, without
 from fem_impact.run.simulate import begin
@@ -358,6 +359,7 @@ class LevelChain:
                 *outcome.validity.limitations,
                 *limitations("run", ended if cut else "", missed),
                 *limitations("resolution", counted.left, counted.narrow if len(upto) > 1 else "", short),
+                *limitations("resolution", levels_told([level.outcome.strikes for level in upto])),
             ),
         )
         return replace(

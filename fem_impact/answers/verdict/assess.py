@@ -143,6 +143,7 @@ def assess(
         No model gives a restitution at the scene's inclination.
     """
     _check(fidelity, tolerance, budget_s, of)
+    scene = scene.first_impact
     bodies = Case(scene).bodies
     lacking = not_reduced(bodies)
     reduced = fidelity == "modal" or not lacking

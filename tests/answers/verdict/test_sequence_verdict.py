@@ -1,0 +1,33 @@
+"""The verdict on a sequence of strikes."""
+
+import pytest
+
+from fem_impact.answers.verdict.sequence import sequence_verdict
+from fem_impact.run.simulate import simulate
+from fem_impact.scene.shipped import load, replace_all
+
+FLOOR = {"impact.slope": "0 deg", "impact.until": "2 strikes", "surface.friction": 0.57}
+
+
+def test_a_hardest_strike_in_which_both_models_agree_only_within_a_wide_tolerance():
+    scene = replace_all(load("quick"), FLOOR)
+    rigid, modal = (simulate(scene, fidelity).strikes for fidelity in ("rigid", "modal"))
+    number = modal.hardest_energy
+    ours, theirs = rigid.each[number - 1], modal.each[number - 1]
+    apart = abs(ours.lost - theirs.lost) / theirs.before
+    assert 1e-4 < apart < 0.4
+    strict, loose = (sequence_verdict(scene, tolerance) for tolerance in (0.5 * apart, 0.5))
+    assert strict[0].startswith("NO") and strict[1].startswith("NO")
+    assert loose[0].startswith("YES") and loose[1].startswith("YES")
+    assert f"{theirs.approach:.3g} m/s" in loose[0]
+
+
+@pytest.mark.parametrize("angle, ends", [("60 deg", "1."), ("0 deg", "not known")])
+def test_the_speed_of_the_other_end_is_told_beside_the_first(angle, ends):
+    scene = replace_all(load("quick"), FLOOR | {"impact.angle": angle, "impact.v_t": "0 m/s"})
+    if ends == "not known":
+        scene = replace_all(scene, {"restitution": 0.5})
+        assert "not by itself" in sequence_verdict(scene, 0.05)[-1]
+        return
+    modal = simulate(scene, "modal").strikes
+    assert f"strikes {modal.other_end:.3g} times as fast" in sequence_verdict(scene, 0.05)[-1]
