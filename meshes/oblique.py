@@ -100,7 +100,8 @@ def stood_up(
     """
     masses = _Masses.of(points, cells)
     down = _direction(tip) if isinstance(tip, tuple) else _signed(masses.axis(), tip)
-    turn = _turn(down, _beside(down))
+    # the axis of the file that is y, or x where the tip points along y
+    turn = _turn(down, np.asarray(np.eye(3)[0 if abs(down[1]) > 1.0 - ON else 1]))
     if whole:
         turn = _turn(down, _normal(points, cells, masses, turn))
     found = "" if isinstance(tip, tuple) else ", the axis of least inertia"
@@ -121,11 +122,6 @@ def _signed(axis: FloatArray, tip: str) -> FloatArray:
     """Return an axis pointing to falling z, or y or x where it is square to z; for "+axis" to rising."""
     last = [part for part in axis if abs(part) > ON][-1]
     return np.asarray(axis * (-np.sign(last) if tip == "-axis" else np.sign(last)))
-
-
-def _beside(down: FloatArray) -> FloatArray:
-    """Return the axis of the file that is y, or x where the tip points along y."""
-    return np.asarray(np.eye(3)[0 if abs(down[1]) > 1.0 - ON else 1])
 
 
 def _turn(down: FloatArray, normal: FloatArray) -> FloatArray:

@@ -151,18 +151,14 @@ def revolved(line: FloatArray, bore: FloatArray | None, across: int) -> Revolved
     inner = np.zeros((0, 2)) if bore is None else np.array(bore, np.float64)
     plain = Revolved(line, inner, section(across), across)
     if plain.is_stack:
-        across = _across(plain)
+        # the cells over the diameter of a stack, no fewer than the body has
+        radius, thinnest = float(plain.line[:, 0].max()), min(high - low for low, high in plain.plates)
+        least = 0.5 * min(thinnest, plain.wall)
+        cubes = min(2.0 * radius / (0.5 * thinnest), MOST)
+        # cells between two circles, n over the diameter, stand out by R pi^2 / (8 n^2) over their chords
+        even = np.sqrt(np.pi**2 / 8.0 * radius / (SAGITTA * least))
+        across = max(plain.across, 2 * ceil(0.5 * max(cubes, float(even)) - 1e-9))
     if bore is None:
         return replace(plain, half=section(across), across=across)
     front = np.interp(max(inner[0, 1], 1e-9 * line[-1, 1]), line[:, 1], line[:, 0])
     return replace(plain, half=bored_section(across, float(inner[0, 0] / front)), across=across)
-
-
-def _across(body: Revolved) -> int:
-    """Return the cells over the diameter of a stack, no fewer than the body has."""
-    radius, thinnest = float(body.line[:, 0].max()), min(high - low for low, high in body.plates)
-    least = 0.5 * min(thinnest, body.wall)
-    cubes = min(2.0 * radius / (0.5 * thinnest), MOST)
-    # cells between two circles, n over the diameter, stand out by R pi^2 / (8 n^2) over their chords
-    even = np.sqrt(np.pi**2 / 8.0 * radius / (SAGITTA * least))
-    return max(body.across, 2 * ceil(0.5 * max(cubes, float(even)) - 1e-9))

@@ -230,7 +230,14 @@ def _finished(
     place = np.full(len(points), -1, dtype=np.int64)
     place[used] = np.arange(len(used))
     mesh = from_cells(points[used], new.reshape(cells.shape), half_body_tags)
-    _require_fair(mesh)
+    worst = scaled_jacobians(mesh).min(axis=1)
+    cell = int(np.argmin(worst))
+    if worst[cell] < WORST:
+        z = float(mesh.points[mesh.cells[cell], 2].mean())
+        raise MeshError(
+            f"cells about z = {z:.6g} m are too skewed (scaled Jacobian {worst[cell]:.2g}, least {WORST}): "
+            "make the shape smoother there or take more cells across"
+        )
     if zones:
         try:
             mesh = _refined(body, mesh, zones, buffer, np.arange(len(cells)) < rest)
@@ -268,17 +275,6 @@ def _refined(
         fine = refine(mesh, zones, kept.snap, buffer=buffer, frozen=frozen)
         require_positive(fine)
     return fine
-
-
-def _require_fair(mesh: HexMesh) -> None:
-    worst = scaled_jacobians(mesh).min(axis=1)
-    cell = int(np.argmin(worst))
-    if worst[cell] < WORST:
-        z = float(mesh.points[mesh.cells[cell], 2].mean())
-        raise MeshError(
-            f"cells about z = {z:.6g} m are too skewed (scaled Jacobian {worst[cell]:.2g}, least {WORST}): "
-            "make the shape smoother there or take more cells across"
-        )
 
 
 def _run(body: Revolved, heights: FloatArray, first: int, high: float) -> int:

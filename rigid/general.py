@@ -98,7 +98,16 @@ class General:
         singular = np.abs(np.linalg.det(A)) <= 1e-12 * np.abs(A).max(axis=(-1, -2))
         refuse(singular, "the equations are singular: no finite impulse gives this restitution", singular)
         after = Motion(*np.moveaxis(np.linalg.solve(A, b[..., None])[..., 0], -1, 0))
-        _check_result(self, after)
+        # refuse a solution in which the barrier pulls, or a closed impact that gains energy
+        v_n, v_t, omega, mass, P_1n, k2 = floats(
+            self.v_n, self.v_t, self.omega, self.mass, self.P_1n, self.k2
+        )
+        push = mass * (after.V_n - v_n) - P_1n
+        refuse(~(push > 0), "the barrier can only push, but its normal impulse would be {value} N s", push)
+        if self.is_closed:
+            before = kinetic_energy(v_n, v_t, omega, mass=mass, k2=k2)
+            gain = kinetic_energy(*after, mass=mass, k2=k2) - before
+            refuse(gain > 1e-9 * before, "these coefficients would make {value} J from nothing", gain)
         return after
 
 
@@ -136,14 +145,3 @@ def _inertia_and_arms(s: General) -> tuple[Floats, ...]:
     I = np.asarray(s.mass, dtype=np.float64) * np.asarray(s.k2, dtype=np.float64)
     after = (s.J, I), (s.D_c, s.d_c), (s.D_d, s.d_d)
     return floats(I, *(old if new is None else new for new, old in after))
-
-
-def _check_result(s: General, after: Motion) -> None:
-    """Refuse a solution in which the barrier pulls, or a closed impact that gains energy."""
-    v_n, v_t, omega, mass, P_1n, k2 = floats(s.v_n, s.v_t, s.omega, s.mass, s.P_1n, s.k2)
-    push = mass * (after.V_n - v_n) - P_1n
-    refuse(~(push > 0), "the barrier can only push, but its normal impulse would be {value} N s", push)
-    if s.is_closed:
-        before = kinetic_energy(v_n, v_t, omega, mass=mass, k2=k2)
-        gain = kinetic_energy(*after, mass=mass, k2=k2) - before
-        refuse(gain > 1e-9 * before, "these coefficients would make {value} J from nothing", gain)

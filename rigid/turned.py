@@ -59,8 +59,15 @@ class Turned:
         if self.bore is not None:
             object.__setattr__(self, "bore", _vertices(self.bore, "bore"))
             self._check_wall()
-        self._check_density()
-        object.__setattr__(self, "_moments", self._integrated())
+        ends = [0.0, *(end for end, _ in self.density)]
+        if not all(a < b for a, b in pairwise(ends)):
+            raise ShapeError(f"segments must end one behind the other, got ends at {ends[1:]} m")
+        if not math.isclose(ends[-1], self.length, rel_tol=1e-9):
+            raise ShapeError(f"the last segment ends at {ends[-1]} m, the body at {self.length} m")
+        if not all(math.isfinite(rho) and rho > 0 for _, rho in self.density):
+            raise ShapeError(f"densities must be positive and finite, got {self.density}")
+        mass, _, z_c, k2 = self.moments_behind(0.0)
+        object.__setattr__(self, "_moments", (mass, z_c, k2))
 
     def _check_wall(self) -> None:
         """Refuse a bore that leaves the body or its wall."""
@@ -76,15 +83,6 @@ class Turned:
             # to .1 um: the place lies a little beside a vertex
             place, r, R = (f"{round(1e3 * x[thin[0]], 4):.3g} mm" for x in (z, inner, outer))
             raise ShapeError(f"the bore of radius {r} at {place} leaves no wall under radius {R}")
-
-    def _check_density(self) -> None:
-        ends = [0.0, *(end for end, _ in self.density)]
-        if not all(a < b for a, b in pairwise(ends)):
-            raise ShapeError(f"segments must end one behind the other, got ends at {ends[1:]} m")
-        if not math.isclose(ends[-1], self.length, rel_tol=1e-9):
-            raise ShapeError(f"the last segment ends at {ends[-1]} m, the body at {self.length} m")
-        if not all(math.isfinite(rho) and rho > 0 for _, rho in self.density):
-            raise ShapeError(f"densities must be positive and finite, got {self.density}")
 
     @property
     def length(self) -> float:
@@ -166,10 +164,6 @@ class Turned:
         mass = float(dm.sum())
         z_c = float(dm @ z) / mass
         return mass, 0.0, z_c, float(dm @ ((outer**2 + inner**2) / 4 + (z - z_c) ** 2)) / mass
-
-    def _integrated(self) -> tuple[float, float, float]:
-        mass, _, z_c, k2 = self.moments_behind(0.0)
-        return mass, z_c, k2
 
     def contact_point(self, alpha: ArrayLike) -> tuple[Floats, Floats]:
         """Lowest point (x, z), m, of the outline at inclination `alpha` (rad), below 0 on the side x < 0.

@@ -114,7 +114,11 @@ class ContactRecord:
         write_bytes(path, self._packed())
 
     def _packed(self) -> bytes:
-        arrays = {"sites": np.array([_row(site) for site in self.sites]).reshape(-1, len(SITE))}
+        rows = [
+            (site.start, site.end, site.impulse_n, site.impulse_t, *site.low, *site.high, site.depth)
+            for site in self.sites
+        ]
+        arrays = {"sites": np.array(rows).reshape(-1, len(SITE))}
         arrays["flags"] = np.array([self.left, self.resolved, self.crushed])
         for name, body in (("rod", self.rod), ("barrier", self.barrier)):
             if body is not None:
@@ -175,11 +179,6 @@ BODY = ("touched", "flowed", "strain", "edge", "reach", "spread")
 """Names of what the file of a record holds of each body."""
 SITE = ("start", "end", "impulse_n", "impulse_t", "low_t", "low_b", "high_t", "high_b", "depth")
 """Columns of its table of sites."""
-
-
-def _row(site: Site) -> list[float]:
-    """Return a site as a row of the file."""
-    return [site.start, site.end, site.impulse_n, site.impulse_t, *site.low, *site.high, site.depth]
 
 
 def _body(held: Mapping[str, Array], name: str) -> BodyRecord:

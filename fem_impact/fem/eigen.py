@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -116,18 +115,14 @@ def rod_modes(
     """
     matrices = (stiffness.spread, *stiffness.parts)
     arrays = [array for A in matrices for array in (A.indptr, A.indices, A.data)]
-    mark = _mark([*arrays, mass, fixed], count)
+    digest = hashlib.sha256(str(count).encode())
+    for array in [*arrays, mass, fixed]:
+        digest.update(np.ascontiguousarray(array).data)
+    mark = digest.hexdigest()
     if mark not in _LAST:
         _LAST.clear()
         _LAST[mark] = _solve(stiffness, mass, fixed, count)
     return _LAST[mark]
-
-
-def _mark(arrays: Iterable[NDArray[Any]], count: int) -> str:
-    digest = hashlib.sha256(str(count).encode())
-    for array in arrays:
-        digest.update(np.ascontiguousarray(array).data)
-    return digest.hexdigest()
 
 
 def _solve(stiffness: MassStiffness, mass: Array, fixed: NDArray[np.bool_], count: int) -> RodModes:

@@ -166,7 +166,13 @@ def _map(shaded: ShadedMap, panel: Panel) -> dict[str, Any]:
 
 
 def _layout(panel: Panel) -> dict[str, Any]:
-    low, high = _ends(panel)
+    # the least and the largest x that the panel shows
+    places = [np.asarray(series.x, float) for series in panel.series] + [
+        np.array([mark.at for mark in panel.marks])
+    ]
+    x = np.concatenate(places)
+    x = x[np.isfinite(x)]
+    low, high = (float(x.min()), float(x.max())) if len(x) else (0.0, 1.0)
     shapes = [_line("x", mark.at) for mark in panel.marks] + [_line("y", level.at) for level in panel.levels]
     return {
         "font": {"size": 12, "color": INK},
@@ -197,16 +203,6 @@ def _layout(panel: Panel) -> dict[str, Any]:
             ),
         ],
     }
-
-
-def _ends(panel: Panel) -> tuple[float, float]:
-    """Return the least and the largest x that the panel shows."""
-    places = [np.asarray(series.x, float) for series in panel.series] + [
-        np.array([mark.at for mark in panel.marks])
-    ]
-    x = np.concatenate(places)
-    x = x[np.isfinite(x)]
-    return (float(x.min()), float(x.max())) if len(x) else (0.0, 1.0)
 
 
 def _axis(label: str, ends: tuple[float, float] | None, panel: Panel) -> dict[str, Any]:

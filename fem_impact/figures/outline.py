@@ -67,7 +67,27 @@ def draw(body: Body, touch: tuple[float, float], parts: Sequence[Part], path: Pa
     """
     with figure(path, HEIGHT) as drawn:
         axes = drawn.add_subplot()
-        _fill(axes, body, parts)
+        # fill the wall of each segment above and below the axis in the colour of its material
+        from rigid import Turned
+
+        names = list(dict.fromkeys(name for _, name in parts))
+        begin = 0.0
+        for end, name in parts:
+            z = np.linspace(begin, end, POINTS)
+            inside = np.clip(z, 1e-6 * body.length, (1 - 1e-6) * body.length)  # at the ends those just inside
+            bore = body.inner_radius(inside) if isinstance(body, Turned) else np.zeros_like(z)
+            inner, outer = 1e3 * np.asarray(bore), 1e3 * np.asarray(body.radius(inside))
+            for side, label in ((1.0, name), (-1.0, "")):
+                axes.fill_between(
+                    1e3 * z,
+                    side * inner,
+                    side * outer,
+                    label=label,
+                    linewidth=0.8,
+                    facecolor=PALETTE[FILLS[names.index(name) % len(FILLS)]],
+                    edgecolor=INK,
+                )
+            begin = end
         mark(axes, touch, (0.0, body.z_c))
         axes.set(aspect="equal", xlabel="from the tip, mm", ylabel="from the axis, mm")
         drawn.legend(loc="outside upper center", ncols=4)
@@ -78,27 +98,3 @@ def mark(axes: Axes, touch: tuple[float, float], centre: tuple[float, float]) ->
     axes.axhline(0.0, color=QUIET, linewidth=0.7, dashes=(12, 3, 2, 3), label="axis")
     axes.plot(1e3 * touch[1], -1e3 * touch[0], "v", color=PALETTE["vermilion"], label="touches first")
     axes.plot(1e3 * centre[1], -1e3 * centre[0], "P", color=INK, label="mass centre")
-
-
-def _fill(axes: Axes, body: Body, parts: Sequence[Part]) -> None:
-    """Fill the wall of each segment above and below the axis in the colour of its material."""
-    from rigid import Turned
-
-    names = list(dict.fromkeys(name for _, name in parts))
-    begin = 0.0
-    for end, name in parts:
-        z = np.linspace(begin, end, POINTS)
-        inside = np.clip(z, 1e-6 * body.length, (1 - 1e-6) * body.length)  # at the ends those just inside
-        bore = body.inner_radius(inside) if isinstance(body, Turned) else np.zeros_like(z)
-        inner, outer = 1e3 * np.asarray(bore), 1e3 * np.asarray(body.radius(inside))
-        for side, label in ((1.0, name), (-1.0, "")):
-            axes.fill_between(
-                1e3 * z,
-                side * inner,
-                side * outer,
-                label=label,
-                linewidth=0.8,
-                facecolor=PALETTE[FILLS[names.index(name) % len(FILLS)]],
-                edgecolor=INK,
-            )
-        begin = end

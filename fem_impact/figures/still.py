@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,7 +16,6 @@ from fem_impact.tables.text import formula
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 
 LETTERS = 110
@@ -75,7 +73,19 @@ def draw(picture: Picture, path: str | Path) -> Path:
                 axes.tick_params(axis="y", labelleft=not panel.rows)
         for axes in grid[len(panels) :]:
             axes.set_visible(False)
-        _legend(drawn, grid, beside)
+        # draw one legend under all panels with ``beside`` columns, none for a single series or named bars
+        named: dict[str, Artist] = {}
+        for axes in grid:
+            for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
+                named.setdefault(label, handle)
+        if len(named) > 1:
+            drawn.legend(
+                list(named.values()),
+                list(named),
+                loc="outside lower center",
+                ncols=min(beside, len(named)),
+                labelcolor=INK,
+            )
     return path
 
 
@@ -100,7 +110,23 @@ def _panel(axes: Axes, panel: Panel) -> None:
         look: dict[str, Any] = {"ha": "right", "va": "bottom", "fontsize": 7.5, "color": INK, "zorder": 5}
         look |= {"bbox": {"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 1.0}}
         axes.text(0.99, level.at, formula(level.label), transform=axes.get_yaxis_transform(), **look)
-    _axes(axes, panel)
+    if panel.names:
+        axes.set_xticks(range(len(panel.names)), panel.names, rotation=35, ha="right", rotation_mode="anchor")
+    if panel.rows:
+        axes.set_yticks(range(len(panel.rows)), map(formula, panel.rows))
+        axes.set_ylim(len(panel.rows) - 0.5, -0.5)
+        axes.tick_params(axis="y", length=0)
+        axes.locator_params(axis="x", nbins=4, steps=[1, 2, 5, 10])
+        axes.xaxis.set_major_formatter("{x:g}")
+        axes.margins(x=0.22 if any(series.texts for series in panel.series) else 0.05)
+    if panel.logarithmic:
+        _logarithmic(axes)
+    if panel.equal:
+        axes.set_aspect("equal", adjustable="datalim")
+    if panel.x_range:
+        axes.set_xlim(panel.x_range)
+    if panel.y_range:
+        axes.set_ylim(panel.y_range)
     _marks(axes, panel)
     for part in panel.intervals:
         axes.axvspan(part.start, part.end, color="#eef2f6", zorder=0)
@@ -142,26 +168,6 @@ def _shade(axes: Axes, shaded: ShadedMap) -> None:
     bar.set_label(formula(shaded.label), color=QUIET)
 
 
-def _axes(axes: Axes, panel: Panel) -> None:
-    if panel.names:
-        axes.set_xticks(range(len(panel.names)), panel.names, rotation=35, ha="right", rotation_mode="anchor")
-    if panel.rows:
-        axes.set_yticks(range(len(panel.rows)), map(formula, panel.rows))
-        axes.set_ylim(len(panel.rows) - 0.5, -0.5)
-        axes.tick_params(axis="y", length=0)
-        axes.locator_params(axis="x", nbins=4, steps=[1, 2, 5, 10])
-        axes.xaxis.set_major_formatter("{x:g}")
-        axes.margins(x=0.22 if any(series.texts for series in panel.series) else 0.05)
-    if panel.logarithmic:
-        _logarithmic(axes)
-    if panel.equal:
-        axes.set_aspect("equal", adjustable="datalim")
-    if panel.x_range:
-        axes.set_xlim(panel.x_range)
-    if panel.y_range:
-        axes.set_ylim(panel.y_range)
-
-
 def _logarithmic(axes: Axes) -> None:
     from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
@@ -183,19 +189,3 @@ def _marks(axes: Axes, panel: Panel) -> None:
     look: dict[str, Any] = {"rotation": 90, "va": "top", "fontsize": 7.0, "color": QUIET, "zorder": 1.5}
     for mark, side in label_sides(panel.marks, *axes.get_xlim()):
         axes.text(mark.at, 0.99, formula(mark.label), transform=axes.get_xaxis_transform(), ha=side, **look)
-
-
-def _legend(drawn: Figure, grid: Sequence[Axes], beside: int) -> None:
-    """Draw one legend under all panels with ``beside`` columns, none for a single series or named bars."""
-    named: dict[str, Artist] = {}
-    for axes in grid:
-        for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
-            named.setdefault(label, handle)
-    if len(named) > 1:
-        drawn.legend(
-            list(named.values()),
-            list(named),
-            loc="outside lower center",
-            ncols=min(beside, len(named)),
-            labelcolor=INK,
-        )

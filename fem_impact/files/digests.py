@@ -81,7 +81,12 @@ def read_signed(text: str, source: str) -> dict[str, Any]:
     ResultError
         It is not JSON, not one record, a key stands twice, or the checksum is missing or wrong.
     """
-    values = _parsed(text, source)
+    try:
+        values = json.loads(text, object_pairs_hook=_unrepeated, parse_constant=_no_constant)
+    except (ValueError, RecursionError) as error:
+        raise ResultError(f"{source}: not a readable JSON record ({error}); it may be cut off.") from error
+    if not isinstance(values, dict):
+        raise ResultError(f"{source}: holds a JSON {type(values).__name__}, not a record of keys.")
     written = values.pop(CHECKSUM, None)
     if written is None:
         raise ResultError(f'{source}: key "{CHECKSUM}" is missing; the file is not complete.')
@@ -90,16 +95,6 @@ def read_signed(text: str, source: str) -> dict[str, Any]:
             f'{source}: key "{CHECKSUM}" = {str(written)[:16]}... does not match the contents; '
             "the file was damaged or edited. Compute it again or restore a copy."
         )
-    return values
-
-
-def _parsed(text: str, source: str) -> dict[str, Any]:
-    try:
-        values = json.loads(text, object_pairs_hook=_unrepeated, parse_constant=_no_constant)
-    except (ValueError, RecursionError) as error:
-        raise ResultError(f"{source}: not a readable JSON record ({error}); it may be cut off.") from error
-    if not isinstance(values, dict):
-        raise ResultError(f"{source}: holds a JSON {type(values).__name__}, not a record of keys.")
     return values
 
 

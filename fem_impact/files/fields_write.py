@@ -58,7 +58,17 @@ def write_mesh(path: Path, points: np.ndarray, cells: np.ndarray, static: Mappin
             ("ConnectivityIds", 8 * len(cells)),
         ):
             root[f"NumberOf{name}"] = np.array([count], dtype=np.int64)
-        _write_steps(root, static)
+        steps = root.create_group("Steps")
+        steps.attrs["NSteps"] = 0
+        _series(steps, "Values", np.float64)
+        for name in STEP_ROWS:
+            _series(steps, name, np.int64, columns=1 if name.startswith("C") else 0)
+        for kind in ("PointData", "CellData"):
+            root.create_group(kind)
+            steps.create_group(f"{kind}Offsets")
+        for name, values in static.items():
+            root["CellData"][name] = np.asarray(values)
+            _series(steps["CellDataOffsets"], name, np.int64)
 
 
 def add_frame(
@@ -87,20 +97,6 @@ def add_frame(
     _put_step(steps, "Values", at, time)
     root.file.flush()  # a run killed here must not leave a counted frame without its data
     steps.attrs["NSteps"] = at + 1
-
-
-def _write_steps(root: h5py.Group, static: Mapping[str, np.ndarray]) -> None:
-    steps = root.create_group("Steps")
-    steps.attrs["NSteps"] = 0
-    _series(steps, "Values", np.float64)
-    for name in STEP_ROWS:
-        _series(steps, name, np.int64, columns=1 if name.startswith("C") else 0)
-    for kind in ("PointData", "CellData"):
-        root.create_group(kind)
-        steps.create_group(f"{kind}Offsets")
-    for name, values in static.items():
-        root["CellData"][name] = np.asarray(values)
-        _series(steps["CellDataOffsets"], name, np.int64)
 
 
 def _series(group: h5py.Group, name: str, dtype: Any, columns: int = 0) -> h5py.Dataset:

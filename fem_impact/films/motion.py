@@ -208,51 +208,35 @@ def prepare(movement: Movement, field: str, times: Sequence[float] | np.ndarray)
     fields = movement.fields
     if field not in FIELDS:
         raise ResultError(f'field "{field}" cannot be drawn; choose one of {", ".join(FIELDS)}.')
-    rod_cells = _rod_cells(fields)
+    # (m, 8)
+    rod_cells = fields.cells[fields.static["body"] == 0] if "body" in fields.static else fields.cells[:0]
+    if not len(rod_cells):
+        raise ResultError(f'{fields.path}: cell data "body" names no rod (0).')
+    volumes = hex_volumes(fields.points, rod_cells)
+    if not (volumes > 0.0).all():
+        problem = f"cell {int(np.argmin(volumes))} of the rod has the volume {volumes.min():.3g} m3"
+        raise ResultError(f"{fields.path}: {problem}; the file is damaged.")
     weights = nodal_volumes(fields.points, rod_cells)
     rod = np.isin(np.arange(len(fields.points)), rod_cells)
     lowest = fields.points[rod][np.argmin(fields.points[rod, 2])]
     span = 2.0 * float(fields.points[rod, 1].max())
     distance = np.linalg.norm(fields.points - lowest, axis=1) / span
     looked = np.asarray(times)[np.unique(np.linspace(0, len(times) - 1, LOOKED).round()).astype(int)]
-    peak = _peak(movement, looked, rod, weights, distance, span)
-    near, far = _ranges(movement, field, looked, distance, rod)
-    contact = np.array([lowest[0], 0.0, min(lowest[2], 0.0)])
-    # no magnification within half a diameter of the contact, all of it beyond two diameters
-    share = np.clip((distance - 0.5) / 1.5, 0.0, 1.0)
-    fade = share**2 * (3.0 - 2.0 * share)
-    return FilmData(movement, field, rod, weights, fade, peak, contact, span, near, far)
-
-
-def _rod_cells(fields: FieldFile) -> np.ndarray:
-    """Return the cells of the rod ``(m, 8)``. Raises ResultError without any, or where one is inside out."""
-    cells = fields.cells[fields.static["body"] == 0] if "body" in fields.static else fields.cells[:0]
-    if not len(cells):
-        raise ResultError(f'{fields.path}: cell data "body" names no rod (0).')
-    volumes = hex_volumes(fields.points, cells)
-    if not (volumes > 0.0).all():
-        problem = f"cell {int(np.argmin(volumes))} of the rod has the volume {volumes.min():.3g} m3"
-        raise ResultError(f"{fields.path}: {problem}; the file is damaged.")
-    return cells
-
-
-def _peak(
-    movement: Movement,
-    times: np.ndarray,
-    rod: np.ndarray,
-    weights: np.ndarray,
-    distance: np.ndarray,
-    span: float,
-) -> float:
     fields, away, largest = movement.fields, distance[rod] > 2.0, 0.0
-    for time in times:
+    for time in looked:
         moved = movement.points(time)
         furthest = float(np.abs(moved - fields.points).max())
         if furthest > _FURTHEST * np.ptp(fields.points):
             raise ResultError(f"{fields.path}: at {time:.6g} s the motion moves points by {furthest:.3g} m.")
         bent = moved[rod] - rigid_motion(fields.points[rod], moved[rod], weights[rod])
         largest = max(largest, float(np.linalg.norm(bent[away], axis=1).max(initial=0.0)))
-    return nice_factor(_VISIBLE * span / largest) if largest > 0.0 else 1.0
+    peak = nice_factor(_VISIBLE * span / largest) if largest > 0.0 else 1.0
+    near, far = _ranges(movement, field, looked, distance, rod)
+    contact = np.array([lowest[0], 0.0, min(lowest[2], 0.0)])
+    # no magnification within half a diameter of the contact, all of it beyond two diameters
+    share = np.clip((distance - 0.5) / 1.5, 0.0, 1.0)
+    fade = share**2 * (3.0 - 2.0 * share)
+    return FilmData(movement, field, rod, weights, fade, peak, contact, span, near, far)
 
 
 def _colours(movement: Movement, field: str, time: float) -> np.ndarray:

@@ -148,7 +148,16 @@ def film_times(movement: Movement, field: str, span: Span) -> np.ndarray:
     if span.frames is not None and span.frames < 1:
         raise UsageError("is no number of frames: a film needs one.", key="--frames", value=span.frames)
     if span.first is not None or span.last is not None or span.speed is not None:
-        return _even(span, end)
+        first, last = span.first or 0.0, end if span.last is None else span.last
+        if not 0.0 <= first < last <= end * (1 + 1e-9):
+            shown = f"{first * 1e6:.4g} us to {last * 1e6:.4g} us"
+            remedy = f"Give times from 0 to {end * 1e6:.4g} us, the first before the last."
+            raise UsageError(
+                "lies outside what this film can show.", key="--from --until", value=shown, remedy=remedy
+            )
+        if span.speed is None:
+            return np.linspace(first, last, span.frames or FRAMES)
+        return np.linspace(first, last, max(2, round((last - first) / span.speed * FPS)))
     if movement.waves is None:
         stored = movement.fields.times
         count = len(stored) if span.frames is None else min(span.frames, len(stored))
@@ -156,19 +165,6 @@ def film_times(movement: Movement, field: str, span: Span) -> np.ndarray:
     parts = (PASSES * movement.waves.transit, movement.waves.end)
     marks = sorted({0.0, *(mark for mark in parts if mark < end * (1 - 1e-9)), end})
     return np.interp(np.linspace(0, len(marks) - 1, span.frames or FRAMES), np.arange(len(marks)), marks)
-
-
-def _even(span: Span, end: float) -> np.ndarray:
-    first, last = span.first or 0.0, end if span.last is None else span.last
-    if not 0.0 <= first < last <= end * (1 + 1e-9):
-        shown = f"{first * 1e6:.4g} us to {last * 1e6:.4g} us"
-        remedy = f"Give times from 0 to {end * 1e6:.4g} us, the first before the last."
-        raise UsageError(
-            "lies outside what this film can show.", key="--from --until", value=shown, remedy=remedy
-        )
-    if span.speed is None:
-        return np.linspace(first, last, span.frames or FRAMES)
-    return np.linspace(first, last, max(2, round((last - first) / span.speed * FPS)))
 
 
 def slow_motion(times: np.ndarray, at: int) -> float:

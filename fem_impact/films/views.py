@@ -184,8 +184,17 @@ class Overlay:
 
     def draw(self, pen: Any, true: np.ndarray, time: float) -> None:
         """Draw all marks at positions ``true`` (n, 3), m."""
-        self._scale(pen)
-        self._axes(pen)
+        # draw a length of 1, 2 or 5 times a power of ten, at most a third of the view
+        length = 1e-6 * nice_factor(self.place.width / 3 / self.view.pixels / 1e-6)
+        left, low = self.place.left + 12, self.place.top + 34
+        right = left + length * self.view.pixels
+        pen.line([(left, low), (right, low)], fill=INK, width=3)
+        write_at(pen, np.array([left, low - 18.0]), f"{length * 1e3:g} mm", INK)
+        corner = np.array([self.place.left + self.place.width - 56.0, self.place.top + 52.0])
+        for name, axis in (("t", [1.0, 0.0, 0.0]), ("n", [0.0, 0.0, 1.0])):
+            along = self.view.turned(np.array(axis)) * 34.0
+            arrow(pen, corner, corner + along, QUIET, 2)
+            write_at(pen, corner + 1.25 * along - np.array([4.0, 8.0]), name, INK)
         velocity = self.motion.movement.velocity(time, self.motion.weights)
         centre = self.motion.weights @ true / self.motion.weights.sum() * [1.0, 0.0, 1.0]
         middle = np.array([self.place.left + self.place.width / 2, self.place.top + self.place.height / 2])
@@ -194,21 +203,6 @@ class Overlay:
         arrow(pen, tail, head, PALETTE["vermilion"], 3)
         beside = np.array([10.0 + 0.7 * self.motion.span * self.view.pixels, -8.0])
         write_at(pen, tail + beside, f"{np.linalg.norm(velocity):.2f} m/s", PALETTE["vermilion"])
-
-    def _scale(self, pen: Any) -> None:
-        """Draw a length of 1, 2 or 5 times a power of ten, at most a third of the view."""
-        length = 1e-6 * nice_factor(self.place.width / 3 / self.view.pixels / 1e-6)
-        left, low = self.place.left + 12, self.place.top + 34
-        right = left + length * self.view.pixels
-        pen.line([(left, low), (right, low)], fill=INK, width=3)
-        write_at(pen, np.array([left, low - 18.0]), f"{length * 1e3:g} mm", INK)
-
-    def _axes(self, pen: Any) -> None:
-        corner = np.array([self.place.left + self.place.width - 56.0, self.place.top + 52.0])
-        for name, axis in (("t", [1.0, 0.0, 0.0]), ("n", [0.0, 0.0, 1.0])):
-            along = self.view.turned(np.array(axis)) * 34.0
-            arrow(pen, corner, corner + along, QUIET, 2)
-            write_at(pen, corner + 1.25 * along - np.array([4.0, 8.0]), name, INK)
 
 
 def arrow(pen: Any, tail: np.ndarray, head: np.ndarray, colour: str, width: int) -> None:

@@ -30,7 +30,16 @@ LEDGER = ("E_0", "vibration_floor", "below_floor", "residual")  # valid without 
 def unresolved(result: SolidResult) -> str:
     """Return why the contact was not resolved and what resolves it, an empty string where it was."""
     if result.peak_nodes < least_nodes(result.case.bodies):
-        return f'{NOT_RESOLVED} {_too_narrow(result)}, or accuracy.unresolved = "report"'
+        # how narrow the contact was when the force was largest, and what resolves it
+        bodies = result.case.bodies
+        h = contact_edge(bodies)
+        radius = h * sqrt(2 * max(result.peak_nodes, 1) / pi)
+        too_narrow = (
+            f"at its peak {result.peak_nodes} nodes of the half model were pressed, fewer than "
+            f"{least_nodes(bodies)}, on elements of {h * 1e3:.2g} mm. "
+            f"{advice(bodies, min(radius, contact_radius(bodies)))}"
+        )
+        return f'{NOT_RESOLVED} {too_narrow}, or accuracy.unresolved = "report"'
     lost = result.accounts["closing"] / result.E_0
     if lost > LOST:
         half = 0.5e3 * result.model.geometry.tip_size
@@ -45,18 +54,6 @@ def unresolved(result: SolidResult) -> str:
 def least_nodes(bodies: Bodies) -> int:
     """Return the nodes of the half model that a resolved contact presses at once: half a disc of cells."""
     return round(pi / 2 * LEAST[kind(bodies)] ** 2)
-
-
-def _too_narrow(result: SolidResult) -> str:
-    """Return how narrow the contact was when the force was largest, and what resolves it."""
-    bodies = result.case.bodies
-    h = contact_edge(bodies)
-    radius = h * sqrt(2 * max(result.peak_nodes, 1) / pi)
-    return (
-        f"at its peak {result.peak_nodes} nodes of the half model were pressed, fewer than "
-        f"{least_nodes(bodies)}, on elements of {h * 1e3:.2g} mm. "
-        f"{advice(bodies, min(radius, contact_radius(bodies)))}"
-    )
 
 
 def without(outcome: Outcome, reason: Unknown) -> Outcome:

@@ -79,14 +79,10 @@ def simulate_recorded(
     tests_of(scene)  # own tests that cannot be read are refused before any work
     if options.out is None:
         return _compute(case, replace(options, resume=False))
-    return _compute_in(options.out, case, options)
-
-
-def _compute_in(out: Path, case: Case, options: RunOptions) -> tuple[Outcome, ContactRecord | None]:
-    """Compute and write the files of the run to a directory, locked meanwhile."""
     from fem_impact.files.lock import directory_lock
     from fem_impact.files.run_directory import remove_drafts, remove_scene_alone
 
+    out = options.out
     with directory_lock(out):
         remove_drafts(out)
         resume = case.fidelity == "solid" and options.resume and (out / CHECKPOINT).exists()

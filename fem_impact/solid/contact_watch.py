@@ -59,7 +59,19 @@ class ContactWatch:
         if not self.model.book.touching:
             return False
         if isinstance(contact, SurfaceContact):
-            self._on_surface(contact, state)
+            # record pressed nodes of both surfaces, and the corners of the quads that they lie on
+            p, count = contact.points.memory, len(contact.rod.places)
+            over, under = np.flatnonzero(p[:count].any(axis=1)), np.flatnonzero(p[count:].any(axis=1))
+            quads, (on, by) = contact.last, (contact.rod.quads, contact.barrier.quads)
+            self._add(over, p[:count][:, [2, 0]], state.time)
+            corners = on[quads[count + under]]
+            share = np.zeros((count, 2))
+            np.add.at(share, corners, 0.25 * p[count + under][:, None][:, :, [2, 0]])
+            self._add(np.unique(corners), share, state.time)
+            nodes = np.union1d(under, by[quads[over]])
+            self.pressed[nodes] = True
+            sunk = -state.x[contact.barrier.places[nodes, 2]]
+            self.deepest[nodes] = np.maximum(self.deepest[nodes], sunk)
         elif isinstance(contact, MovingPlane):
             self._add(
                 np.flatnonzero(contact.points.memory[:, 2]), contact.points.memory[:, [2, 0]], state.time
@@ -69,21 +81,6 @@ class ContactWatch:
             step = np.array([self.model.book.step.impulse_n, self.model.book.step.impulse_t])
             self._add(here, np.broadcast_to(step / max(len(here), 1), (len(self.rod), 2)), state.time)
         return False
-
-    def _on_surface(self, contact: SurfaceContact, state: State) -> None:
-        """Record pressed nodes of both surfaces, and the corners of the quads that they lie on."""
-        p, count = contact.points.memory, len(contact.rod.places)
-        over, under = np.flatnonzero(p[:count].any(axis=1)), np.flatnonzero(p[count:].any(axis=1))
-        quads, (on, by) = contact.last, (contact.rod.quads, contact.barrier.quads)
-        self._add(over, p[:count][:, [2, 0]], state.time)
-        corners = on[quads[count + under]]
-        share = np.zeros((count, 2))
-        np.add.at(share, corners, 0.25 * p[count + under][:, None][:, :, [2, 0]])
-        self._add(np.unique(corners), share, state.time)
-        nodes = np.union1d(under, by[quads[over]])
-        self.pressed[nodes] = True
-        sunk = -state.x[contact.barrier.places[nodes, 2]]
-        self.deepest[nodes] = np.maximum(self.deepest[nodes], sunk)
 
     def _add(self, nodes: Ints, impulse: Array, time: float) -> None:
         self.first[nodes] = np.minimum(self.first[nodes], time)

@@ -87,20 +87,17 @@ class History:
     def observe(self, state: State) -> bool:
         """Append one row."""
         motion = self.view.rigid(state)
-        force_t, force_n = self._force(state)
+        # the mean force on the whole rod since the last row, N
+        span, now = state.time - self.last_time, self.model.book.impulse.copy()
+        gained = 2 * (now - self.last_impulse) / span if span > 0 else np.zeros(3)
+        self.last_time, self.last_impulse = state.time, now
+        force_t, force_n = float(gained[0]), float(gained[1])
         row: dict[str, float] = {history_column(k): v for k, v in self.watch.accounts.items()}
         row |= {"time_s": state.time, "force_n_N": force_n, "force_t_N": force_t}
         row |= {"contact_nodes": self.model.book.step.active}
         row |= {"V_n_m_per_s": motion.V_n, "V_t_m_per_s": motion.V_t, "Omega_rad_per_s": motion.Omega}
         self.writer.append(row)
         return False
-
-    def _force(self, state: State) -> tuple[float, float]:
-        """Return the mean force on the whole rod since the last row, N."""
-        span, now = state.time - self.last_time, self.model.book.impulse.copy()
-        gained = 2 * (now - self.last_impulse) / span if span > 0 else np.zeros(3)
-        self.last_time, self.last_impulse = state.time, now
-        return float(gained[0]), float(gained[1])
 
 
 @dataclass(slots=True)

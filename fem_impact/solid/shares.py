@@ -37,7 +37,10 @@ def run_time_shares(
         _count(seconds, "contact-heating", _shortest(partial(heat.observe, still)))
     # the nose of a rigid rest turns with or without the effect
     if isinstance(model.rod.frame, TurningFrame) and model.rod_stiffness is not None:
-        turning = _turning(model, still)
+        # the time, s, that the rod's frame takes in a step for turning
+        rod, n = model.rod, len(model.rod.d)
+        localising = _shortest(lambda: rod.frame.localise(still.x[:n], rod.d))
+        turning = localising + _shortest(lambda: rod.frame.add_force(rod.d, rod.y, still.force[:n]))
         _count(seconds, "large-rotation", turning)
         _count(seconds, model.rod.effect, -turning)
     return {
@@ -48,13 +51,6 @@ def run_time_shares(
 def _count(seconds: dict[str, float], effect: str, time: float) -> None:
     """Add a time, s, to an effect's sum."""
     seconds[effect] = seconds.get(effect, 0.0) + time
-
-
-def _turning(model: Model, still: State) -> float:
-    """Return the time, s, that the rod's frame takes in a step for turning."""
-    rod, n = model.rod, len(model.rod.d)
-    localising = _shortest(lambda: rod.frame.localise(still.x[:n], rod.d))
-    return localising + _shortest(lambda: rod.frame.add_force(rod.d, rod.y, still.force[:n]))
 
 
 def _shortest(act: Callable[[], object]) -> float:

@@ -116,7 +116,12 @@ class StepGuard:
     def observe(self, state: State) -> bool:
         """Set the step; stop at a folded or crushed element."""
         if not np.isfinite(state.v @ state.v):
-            raise RunError(self._not_finite(state))
+            layout = self.model.layout
+            nodes = np.concatenate([layout.rod, layout.barrier])
+            first = int(np.argmax(~np.isfinite(state.v[nodes]).all(axis=1)))
+            place = when_and_where(state, self.model.start[0][nodes[first]])
+            not_finite = f"The motion is not finite {place} What was computed before is kept. {REMEDY}"
+            raise RunError(not_finite)
         if len(self.places):
             self._follow(state)
         return bool(self.reason)
@@ -151,13 +156,6 @@ class StepGuard:
 
     def _where(self, state: State, element: int) -> str:
         return when_and_where(state, state.x[self.places[element]].mean(axis=0))
-
-    def _not_finite(self, state: State) -> str:
-        layout = self.model.layout
-        nodes = np.concatenate([layout.rod, layout.barrier])
-        first = int(np.argmax(~np.isfinite(state.v[nodes]).all(axis=1)))
-        place = when_and_where(state, self.model.start[0][nodes[first]])
-        return f"The motion is not finite {place} What was computed before is kept. {REMEDY}"
 
 
 def when_and_where(state: State, place: Array) -> str:

@@ -109,7 +109,15 @@ def recompute(*, mass: ArrayLike, **given: ArrayLike) -> dict[str, Floats]:
 def _columns(s: MeasuredSet) -> Iterator[AuditRecord]:
     """Audit the columns that follow from the velocities."""
     for column in COLUMNS:
-        at, half = _inputs(s, column)
+        # the inputs of every row, (n,) each, and half a unit of their last digit
+        d_c = column_arms(s.id).get(column, s.arms.d_c)
+        constants = {"d_c": d_c, "d_d": s.arms.d_d, "k2": s.k2, "mass": s.mass}
+        shape = s.motion["v_n"].shape
+        at = {name: s.motion[name] for name in MOTION}
+        half = {name: _half_units(s, name) for name in MOTION}
+        scale = {**dict.fromkeys(constants, 1.0), "k2": s.k2}
+        at |= {name: np.full(shape, value) for name, value in constants.items()}
+        half |= {name: np.full(shape, CONSTANTS[name] * scale[name]) for name in constants}
         slopes = sensitivities(recompute, at)[column]
         tolerance = _half_units(s, column) + sum(np.abs(slopes[k]) * half[k] for k in at)
         yield from _records(s, column, recompute(**at)[column], tolerance)
@@ -121,19 +129,6 @@ def _totals(s: MeasuredSet) -> Iterator[AuditRecord]:
     total = sum(s.printed[name] for name in parts)
     tolerance = sum(_half_units(s, name) for name in (*parts, "E_total"))
     yield from _records(s, "E_total", np.asarray(total), np.asarray(tolerance))
-
-
-def _inputs(s: MeasuredSet, column: str) -> tuple[dict[str, Floats], dict[str, Floats]]:
-    """Return the inputs of every row, (n,) each, and half a unit of their last digit."""
-    d_c = column_arms(s.id).get(column, s.arms.d_c)
-    constants = {"d_c": d_c, "d_d": s.arms.d_d, "k2": s.k2, "mass": s.mass}
-    shape = s.motion["v_n"].shape
-    at = {name: s.motion[name] for name in MOTION}
-    half = {name: _half_units(s, name) for name in MOTION}
-    scale = {**dict.fromkeys(constants, 1.0), "k2": s.k2}
-    at |= {name: np.full(shape, value) for name, value in constants.items()}
-    half |= {name: np.full(shape, CONSTANTS[name] * scale[name]) for name in constants}
-    return at, half
 
 
 def _half_units(s: MeasuredSet, column: str) -> Floats:

@@ -143,11 +143,7 @@ def sliding_path(
     p_f = LAWS[law](path, e, p_c)
     q = path.tangential_impulse(p_f)
     motion = Motion(v_n + p_f, v_t + q, omega + (d_c * p_f - d_d * q) / k2)
-    return _result(path, motion, p_c, p_f, q)
-
-
-def _result(path: Segments, motion: Motion, p_c: Floats, p_f: Floats, q: Floats) -> SlidingPath:
-    """Collect the result; refuse a rebound that needs more work than the compression stored."""
+    # collect the result; refuse a rebound that needs more work than the compression stored
     works = path.normal_work(p_f)
     stored = -sum(path.normal_work(p_c))
     returned = np.maximum(sum(works) + stored, 0.0)  # round-off can leave it below zero

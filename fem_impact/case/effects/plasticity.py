@@ -17,7 +17,7 @@ from fem_impact.physics.hardening import (
     linear_hardening,
     power_hardening,
 )
-from fem_impact.scene.flow import Flow, RambergOsgoodFlow, TableFlow
+from fem_impact.scene.flow import RambergOsgoodFlow, TableFlow
 
 if TYPE_CHECKING:
     from fem_impact.case.bodies import Bodies
@@ -85,7 +85,17 @@ def hardening_of(material: Material) -> HardeningLaw:
     if material.plastic_modulus is not None:
         return linear_hardening(material.yield_stress, material.plastic_modulus)
     if material.flow is not None:
-        return _of_flow(material, material.flow)
+        flow = material.flow
+        if isinstance(flow, TableFlow):
+            return TabulatedHardening(flow.points)
+        if isinstance(flow, RambergOsgoodFlow):
+            return ramberg_osgood(material.yield_stress, flow.n)
+        cold = (material.yield_stress, flow.B, flow.n)
+        stated = (material.heat_capacity, flow.m, flow.melting, flow.reference, flow.heat_share)
+        if None in stated:
+            return johnson_cook(*cold)
+        capacity, m, melting, reference, share = (number for number in stated if number is not None)
+        return johnson_cook(*cold, heat=share / (material.rho * capacity), span=melting - reference, m=m)
     key, value = "ultimate_stress", f"{material.ultimate_stress / 1e6:g} MPa"
     try:
         if material.law == "hardness" and material.hardness is not None:
@@ -96,19 +106,6 @@ def hardening_of(material: Material) -> HardeningLaw:
         instead = "law and hardness" if key == "hardness" else key
         remedy = f"Give one that fits, or in place of {instead} a tangent_modulus, hardening or flow curve."
         raise SceneError(str(error), key=f"{key} of {material.name}", value=value, remedy=remedy) from None
-
-
-def _of_flow(material: Material, flow: Flow) -> HardeningLaw:
-    if isinstance(flow, TableFlow):
-        return TabulatedHardening(flow.points)
-    if isinstance(flow, RambergOsgoodFlow):
-        return ramberg_osgood(material.yield_stress, flow.n)
-    cold = (material.yield_stress, flow.B, flow.n)
-    stated = (material.heat_capacity, flow.m, flow.melting, flow.reference, flow.heat_share)
-    if None in stated:
-        return johnson_cook(*cold)
-    capacity, m, melting, reference, share = (number for number in stated if number is not None)
-    return johnson_cook(*cold, heat=share / (material.rho * capacity), span=melting - reference, m=m)
 
 
 def number(bodies: Bodies) -> float:

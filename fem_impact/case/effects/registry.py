@@ -80,8 +80,26 @@ def check_effects(names: Sequence[str]) -> None:
     plain = [name.removeprefix("-") for name in names]
     if len(set(plain)) < len(plain):
         raise SceneError("names an effect twice.", key="effects", value=list(names))
-    _check_barrier(names, AUTO in names)
-    _check_needs(names)
+    barriers = [name for name in names if name in BARRIERS]
+    if len(barriers) > 1 or not (barriers or AUTO in names):
+        raise SceneError(
+            f"names {len(barriers)} barriers and needs exactly one.",
+            key="effects",
+            value=list(names),
+            remedy=f"Choose one of {', '.join(BARRIERS)}.",
+        )
+    # refuse a named effect whose prerequisites are switched off, or not named in a list without auto
+    barrier = next((name for name in names if name in BARRIERS), None)
+    for name, needs in ((effect.name, effect.needs) for effect in EFFECTS.values() if effect.needs):
+        excluded = [n for n in needs if f"-{n}" in names or (n in BARRIERS and barrier not in (None, n))]
+        missing = excluded if AUTO in names else [n for n in needs if n not in names]
+        if name in names and len(missing) == len(needs):
+            raise SceneError(
+                f'names "{name}", which means nothing without {" or ".join(needs)}.',
+                key="effects",
+                value=list(names),
+                remedy=f'Leave out "{name}", or add {" or ".join(needs)}.',
+            )
 
 
 def _check_known(name: str, auto: bool) -> None:
@@ -94,29 +112,3 @@ def _check_known(name: str, auto: bool) -> None:
     if name.removeprefix("-") in BARRIERS:
         hint = "There is always a barrier: name the one wanted."
     raise SceneError("is not an effect.", key="effects", value=name, remedy=hint)
-
-
-def _check_barrier(names: Sequence[str], auto: bool) -> None:
-    barriers = [name for name in names if name in BARRIERS]
-    if len(barriers) > 1 or not (barriers or auto):
-        raise SceneError(
-            f"names {len(barriers)} barriers and needs exactly one.",
-            key="effects",
-            value=list(names),
-            remedy=f"Choose one of {', '.join(BARRIERS)}.",
-        )
-
-
-def _check_needs(names: Sequence[str]) -> None:
-    """Refuse a named effect whose prerequisites are switched off, or not named in a list without auto."""
-    barrier = next((name for name in names if name in BARRIERS), None)
-    for name, needs in ((effect.name, effect.needs) for effect in EFFECTS.values() if effect.needs):
-        excluded = [n for n in needs if f"-{n}" in names or (n in BARRIERS and barrier not in (None, n))]
-        missing = excluded if AUTO in names else [n for n in needs if n not in names]
-        if name in names and len(missing) == len(needs):
-            raise SceneError(
-                f'names "{name}", which means nothing without {" or ".join(needs)}.',
-                key="effects",
-                value=list(names),
-                remedy=f'Leave out "{name}", or add {" or ".join(needs)}.',
-            )

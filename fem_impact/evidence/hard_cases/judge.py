@@ -50,18 +50,7 @@ def balance(result: SolidResult, history: Path) -> Balance:
     table = read_csv(history)
     E_0 = result.E_0
     heat = table.numbers("W_friction_J")
-    momentum, spin = _momenta(result)
-    return Balance(
-        residual=result.worst / E_0,
-        growth=float(np.max(-table.numbers("residual_J"), initial=0.0)) / E_0,
-        fed=float(np.max(-np.diff(heat), initial=0.0)) / E_0,
-        momentum=momentum,
-        spin=spin,
-    )
-
-
-def _momenta(result: SolidResult) -> tuple[float, float]:
-    """Return what linear and angular momentum about the origin miss of the contact's impulses."""
+    # what linear and angular momentum about the origin miss of the contact's impulses
     motion, impact, view = result.motion, result.case.scene.impact, result.view
     x = result.model.start[0][view.places]
     centre = view.mass @ x / view.mass.sum()
@@ -76,4 +65,11 @@ def _momenta(result: SolidResult) -> tuple[float, float]:
     before = motion.inertia * impact.omega + m * (centre[2] * impact.v_t - centre[0] * impact.v_n)
     turned = motion.spin - before + p[2] - moment
     arm = float(np.linalg.norm(centre))
-    return float(np.linalg.norm(gained - p[:2])) / size, abs(float(turned)) / (size * arm)
+    momentum, spin = float(np.linalg.norm(gained - p[:2])) / size, abs(float(turned)) / (size * arm)
+    return Balance(
+        residual=result.worst / E_0,
+        growth=float(np.max(-table.numbers("residual_J"), initial=0.0)) / E_0,
+        fed=float(np.max(-np.diff(heat), initial=0.0)) / E_0,
+        momentum=momentum,
+        spin=spin,
+    )

@@ -119,8 +119,21 @@ def figure_5(out: Path) -> Drawn:
     sentence = _sentence_5(table)
     with canvas(picture, 4.2, sentence) as drawn:
         axes = drawn.add_subplot()
-        _curve(axes, sets[0].k2)
-        _points(axes, table)
+        # draw mu_c between the measured angles, with interpolated e and arms
+        degrees = np.linspace(17, 60, 173)
+        x = np.radians(degrees)
+        at = at_angle(x)
+        mu_c = critical_ratio(-np.cos(x), -np.sin(x), e=at.e, d_c=at.d_c, d_d=at.d_d, k2=sets[0].k2)
+        between = "between them, e and arms interpolated"
+        axes.plot(degrees, mu_c, color=PALETTE["orange"], linewidth=1.3, label=between)
+        alpha, mu, mu_low, mu_high, mu_c, c_low, c_high = table.T
+        critical: dict[str, Any] = {"fmt": "s", "color": PALETTE["orange"], "markersize": 4.5, "capsize": 3}
+        label = r"critical ratio $\mu_c$: e within its 95 % interval, contact point ± 0.5 mm"
+        axes.errorbar(alpha, mu_c, yerr=(mu_c - c_low, c_high - mu_c), **critical, label=label)
+        measured: dict[str, Any] = {"fmt": "o", "color": PALETTE["blue"], "markersize": 5, "capsize": 3}
+        axes.errorbar(
+            alpha, mu, yerr=(mu - mu_low, mu_high - mu), **measured, label="measured mean μ, 95 % interval"
+        )
         axes.axhline(FRICTION, color=QUIET, linewidth=0.9, linestyle=(0, (5, 3)))
         axes.text(16.2, FRICTION + 0.012, "f = 0.57, handbook", color=QUIET, fontsize=8)
         axes.set(xlabel="inclination α, degrees", ylabel="impulse ratio", xlim=(15, 62), ylim=(0, 1.25))
@@ -139,28 +152,6 @@ def _row(s: MeasuredSet, mu_c: float) -> list[float]:
     critical = critical_ratio(mean["v_n"].mean, mean["v_t"].mean, e=e, **given)
     ends = float(critical.min()), float(critical.max())
     return [round(float(np.degrees(s.alpha)), 6), mu.mean, mu.low, mu.high, float(mu_c), *ends]
-
-
-def _curve(axes: Axes, k2: float) -> None:
-    """Draw mu_c between the measured angles, with interpolated e and arms."""
-    degrees = np.linspace(17, 60, 173)
-    x = np.radians(degrees)
-    at = at_angle(x)
-    mu_c = critical_ratio(-np.cos(x), -np.sin(x), e=at.e, d_c=at.d_c, d_d=at.d_d, k2=k2)
-    axes.plot(
-        degrees, mu_c, color=PALETTE["orange"], linewidth=1.3, label="between them, e and arms interpolated"
-    )
-
-
-def _points(axes: Axes, table: Floats) -> None:
-    alpha, mu, mu_low, mu_high, mu_c, c_low, c_high = table.T
-    critical: dict[str, Any] = {"fmt": "s", "color": PALETTE["orange"], "markersize": 4.5, "capsize": 3}
-    label = r"critical ratio $\mu_c$: e within its 95 % interval, contact point ± 0.5 mm"
-    axes.errorbar(alpha, mu_c, yerr=(mu_c - c_low, c_high - mu_c), **critical, label=label)
-    measured: dict[str, Any] = {"fmt": "o", "color": PALETTE["blue"], "markersize": 5, "capsize": 3}
-    axes.errorbar(
-        alpha, mu, yerr=(mu - mu_low, mu_high - mu), **measured, label="measured mean μ, 95 % interval"
-    )
 
 
 def _sentence_5(table: Floats) -> str:

@@ -64,7 +64,24 @@ def figure_6(out: Path) -> Drawn:
         axes = drawn.add_subplot()
         for curve, s, colour in zip(curves, angle_sets(), COLOURS, strict=True):
             _draw_6(axes, curve, s, PALETTE[colour])
-        _furnish(axes)
+        # set axes, grid and legend
+        axes.axhline(0.0, color=QUIET, linewidth=0.7)
+        axes.set(
+            xlabel="impulse ratio μ",
+            ylabel="total loss $(E_{ln} + E_{lt})/E_0$",
+            xlim=(0, 1.2),
+            ylim=(-0.06, 1.0),
+        )
+        axes.grid()
+        axes.plot([], [], "s", color=QUIET, label="critical ratio")
+        axes.errorbar([], [], xerr=[], yerr=[], fmt="o", color=QUIET, mec="black", label="measured, 95 %")
+        axes.plot([], [], color=QUIET, ls=(0, (1, 1.6)), label=r"beyond $\mu_c$")
+        axes.legend(
+            loc="lower right",
+            bbox_to_anchor=(1.0, 0.03),
+            title="band: 95 % interval of mean e",
+            title_fontsize=8,
+        )
     return Drawn(6, picture, sentence, _statements_6(share, curves))
 
 
@@ -99,24 +116,6 @@ def _draw_6(axes: Axes, curve: dict[str, Any], s: MeasuredSet, colour: str) -> N
     mu, remaining = s.statistics()["mu"], s.statistics()["E_r_over_E_0"]
     bars: dict[str, Any] = {"xerr": mu.high - mu.mean, "yerr": remaining.high - remaining.mean}
     axes.errorbar(mu.mean, 1 - remaining.mean, **bars, fmt="o", color=colour, mec="black", mew=0.6, capsize=2)
-
-
-def _furnish(axes: Axes) -> None:
-    """Set axes, grid and legend."""
-    axes.axhline(0.0, color=QUIET, linewidth=0.7)
-    axes.set(
-        xlabel="impulse ratio μ",
-        ylabel="total loss $(E_{ln} + E_{lt})/E_0$",
-        xlim=(0, 1.2),
-        ylim=(-0.06, 1.0),
-    )
-    axes.grid()
-    axes.plot([], [], "s", color=QUIET, label="critical ratio")
-    axes.errorbar([], [], xerr=[], yerr=[], fmt="o", color=QUIET, mec="black", label="measured, 95 %")
-    axes.plot([], [], color=QUIET, ls=(0, (1, 1.6)), label=r"beyond $\mu_c$")
-    axes.legend(
-        loc="lower right", bbox_to_anchor=(1.0, 0.03), title="band: 95 % interval of mean e", title_fontsize=8
-    )
 
 
 def _statements_6(share: list[float], curves: list[dict[str, Any]]) -> tuple[Statement, ...]:
@@ -161,7 +160,15 @@ def figure_7(out: Path) -> Drawn:
     )
     bands = {name: np.percentile(many, [2.5, 97.5], axis=0) for name, many in resampled.items()}
     measured = [_measured(s.recomputed()) for s in angle_sets()]
-    write_data(picture, COLUMNS_7, _rows_7(curves, bands, measured))
+    # the rows of `COLUMNS_7`: the calculated ones, then the measured ones
+    columns = [column for name in LOOKS for column in (curves[name], *bands[name])]
+    rows: list[list[float | str]] = [
+        ["curve", *map(float, row)] for row in zip(DEGREES, *columns, strict=True)
+    ]
+    for s, losses in zip(angle_sets(), measured, strict=True):
+        ends = [x for name in LOOKS for x in (losses[name].mean, losses[name].low, losses[name].high)]
+        rows.append(["measured", round(float(np.degrees(s.alpha)), 6), *ends])
+    write_data(picture, COLUMNS_7, rows)
     peaks = {}
     for name in ("total", "E_lt"):
         low, high = np.percentile(DEGREES[resampled[name].argmax(axis=1)], [2.5, 97.5])
@@ -190,20 +197,6 @@ def _measured(rows: dict[str, Floats]) -> dict[str, Statistic]:
     """Return the measured losses of one set; the total is 1 - E_r/E_0, independent of e_m."""
     losses = {"total": 1.0 - rows["E_r_over_E_0"], **{k: rows[f"{k}_over_E_0"] for k in ("E_lt", "E_ln")}}
     return {name: statistic(values) for name, values in losses.items()}
-
-
-def _rows_7(
-    curves: dict[str, Floats], bands: dict[str, Floats], measured: list[dict[str, Statistic]]
-) -> list[list[float | str]]:
-    """Return the rows of `COLUMNS_7`: the calculated ones, then the measured ones."""
-    columns = [column for name in LOOKS for column in (curves[name], *bands[name])]
-    rows: list[list[float | str]] = [
-        ["curve", *map(float, row)] for row in zip(DEGREES, *columns, strict=True)
-    ]
-    for s, losses in zip(angle_sets(), measured, strict=True):
-        ends = [x for name in LOOKS for x in (losses[name].mean, losses[name].low, losses[name].high)]
-        rows.append(["measured", round(float(np.degrees(s.alpha)), 6), *ends])
-    return rows
 
 
 def _draw_7(axes: Axes, name: str, curve: Floats, band: Floats, measured: list[Statistic]) -> None:

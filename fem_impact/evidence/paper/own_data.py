@@ -46,11 +46,21 @@ def own_coefficients(
     centre = impulse_centre(**mean, d_d=arms.d_d, k2=rod.k2)
     fall = float(mean["v_n"]), float(mean["v_t"])
     sizes = {"length_m": rod.length, "diameter_m": rod.diameter, "tip_radius_m": tip[1], "tip": tip[0]}
+    # each coefficient of the mean motion with its first-order and bootstrap intervals
+    linear, drawn = first_order(camera.motion, **body), bootstrap(camera.motion, **body)
+    estimates = {
+        name: {
+            "value": finite(linear[name].value),
+            "first_order": estimate_entry(linear[name]),
+            "bootstrap": estimate_entry(drawn[name]),
+        }
+        for name in linear
+    }
     document = {
         "tests": len(camera.tests),
         "rod": {**sizes, "mass_kg": rod.mass, "k_squared_m2": rod.k2, "alpha_rad": alpha},
         "arms": {"d_c_m": body["d_c"], "d_d_m": body["d_d"], "source": source},
-        "coefficients": _estimates(camera.motion, body),
+        "coefficients": estimates,
         "scatter": {
             name: statistic_entry(statistic(values))
             for name, values in tests.items()
@@ -64,19 +74,6 @@ def own_coefficients(
         ],
     }
     return {**document, "notes": _notes(camera, tests, document)}
-
-
-def _estimates(motion: Mapping[str, Floats], body: Mapping[str, Any]) -> dict[str, Any]:
-    """Return each coefficient of the mean motion with its first-order and bootstrap intervals."""
-    linear, drawn = first_order(motion, **body), bootstrap(motion, **body)
-    return {
-        name: {
-            "value": finite(linear[name].value),
-            "first_order": estimate_entry(linear[name]),
-            "bootstrap": estimate_entry(drawn[name]),
-        }
-        for name in linear
-    }
 
 
 def _notes(camera: Camera, tests: Mapping[str, Floats], document: Mapping[str, Any]) -> list[str]:

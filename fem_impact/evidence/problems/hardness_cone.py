@@ -32,7 +32,6 @@ from fem_impact.scene.library import material
 from fem_impact.scene.parameter import Parameter
 from fem_impact.solid.contact.surface import SurfaceContact
 from fem_impact.solid.march import march
-from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
 from fem_impact.solid.stepguard import StepGuard
 from meshes import HexMesh, Zone
@@ -78,18 +77,6 @@ def _block(cell: float) -> HexMesh:
     return meshes.block([-far, 0.0, -far], [far, far, 0.0], base, [fine] * LEVELS)
 
 
-def _model(p: Values, law: Hardening, friction: float, cells: int, speed: float) -> Model:
-    """Return the cone just over the block, moving down at a speed, m/s, that nothing changes."""
-    cell, wide = RADIUS_M / cells, WIDE * RADIUS_M
-    line = np.array([[0.0, 0.0], [wide, wide / tan(p["angle"])]])
-    cone = meshes.rod(line, 1.2 * wide, 2 * round(wide / cell))
-    points = placed(cone.mesh.points, 0.0, 0.0)
-    metal = p["E"], p["nu"], p["rho"]
-    block = Block(_block(cell), cell, *metal, law)
-    velocity = np.tile([0.0, 0.0, -speed], (len(points), 1))
-    return body_model(FreeBody(cone, points, velocity, *metal, friction=friction, block=block, driven=True))
-
-
 def press(p: Values, law: Hardening, friction: float, cells: int) -> tuple[Indentation, int, int]:
     """Press the cone in through the solver; return what it met, steps and cells.
 
@@ -99,7 +86,15 @@ def press(p: Values, law: Hardening, friction: float, cells: int) -> tuple[Inden
         If a cell folds or is crushed.
     """
     speed = cone_speed(metal_of(p, law))
-    model = _model(p, law, friction, cells, speed)
+    # the cone just over the block, moving down at a speed, m/s, that nothing changes
+    cell, wide = RADIUS_M / cells, WIDE * RADIUS_M
+    line = np.array([[0.0, 0.0], [wide, wide / tan(p["angle"])]])
+    cone = meshes.rod(line, 1.2 * wide, 2 * round(wide / cell))
+    points = placed(cone.mesh.points, 0.0, 0.0)
+    metal = p["E"], p["nu"], p["rho"]
+    block = Block(_block(cell), cell, *metal, law)
+    velocity = np.tile([0.0, 0.0, -speed], (len(points), 1))
+    model = body_model(FreeBody(cone, points, velocity, *metal, friction=friction, block=block, driven=True))
     if not isinstance(model.contact, SurfaceContact):
         raise TypeError("a cone on a block touches a surface")
     state, force, guard = model.initial_state(), ForceRecorder(model), StepGuard(model, 20)

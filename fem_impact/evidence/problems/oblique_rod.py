@@ -223,30 +223,6 @@ def _contacts(result: SolidResult, exact: ObliqueRebound, around: list[ObliqueRe
     return Check.shown("contacts", "1", contacts, len(exact.contacts), note)
 
 
-def _checks(result: SolidResult, drop: RodDrop) -> tuple[Check, ...]:
-    """Compare with the reference; the allowed is the sum of what errors of the mesh make of it."""
-    impact, motion = result.case.scene.impact, result.motion
-    d_c = drop.rod.arms(impact.angle)[0]
-    e = float(rigid.restitution(impact.v_n, motion.V_n, motion.Omega, d_c, impact.omega))
-    mu = (motion.V_t - impact.v_t) / (motion.V_n - impact.v_n)
-    exact = drop.rebound(ReferenceChange())
-    around = [drop.rebound(change) for change in drop.errors(result.model.geometry.tip_size)]
-    values = _values(exact)
-    spread = [sum(abs(v - x) for v in each) for x, *each in zip(values, *map(_values, around), strict=True)]
-    computed = (e, mu, bending_energy(result) / result.E_0)
-    coupled = _coupled(drop.p, exact)
-    return (
-        *(
-            Check.shown(name, "1", value, wanted, COUPLED)
-            if name in coupled
-            else Check(name, "1", value, wanted, LEDGER + allowed, "absolute")
-            for name, value, wanted, allowed in zip(NAMES, computed, values, spread, strict=True)
-        ),
-        _contacts(result, exact, around),
-        Check("energy ledger / E_0", "1", result.worst / result.E_0, 0.0, LEDGER, "at most"),
-    )
-
-
 def _allow(p: Values, drop: RodDrop) -> None:
     """Refuse a contact wider than the rounded edge or narrower than a cell."""
     half = drop.ellipse.half_axes(drop.touch())[0]
@@ -284,7 +260,28 @@ def solve(p: Values) -> Solved:
         raise SceneError("ends in mid contact.", key="max_time", value=f"{p['max_time']:g} s", remedy=remedy)
     geometry = result.model.geometry
     elements = len(geometry.rod.mesh.cells) + (len(geometry.barrier.cells) if geometry.barrier else 0)
-    return Solved(_checks(result, drop), result.steps, elements)
+    # compare with the reference; the allowed is the sum of what errors of the mesh make of it
+    impact, motion = result.case.scene.impact, result.motion
+    d_c = drop.rod.arms(impact.angle)[0]
+    e = float(rigid.restitution(impact.v_n, motion.V_n, motion.Omega, d_c, impact.omega))
+    mu = (motion.V_t - impact.v_t) / (motion.V_n - impact.v_n)
+    exact = drop.rebound(ReferenceChange())
+    around = [drop.rebound(change) for change in drop.errors(result.model.geometry.tip_size)]
+    values = _values(exact)
+    spread = [sum(abs(v - x) for v in each) for x, *each in zip(values, *map(_values, around), strict=True)]
+    computed = (e, mu, bending_energy(result) / result.E_0)
+    coupled = _coupled(drop.p, exact)
+    checks = (
+        *(
+            Check.shown(name, "1", value, wanted, COUPLED)
+            if name in coupled
+            else Check(name, "1", value, wanted, LEDGER + allowed, "absolute")
+            for name, value, wanted, allowed in zip(NAMES, computed, values, spread, strict=True)
+        ),
+        _contacts(result, exact, around),
+        Check("energy ledger / E_0", "1", result.worst / result.E_0, 0.0, LEDGER, "at most"),
+    )
+    return Solved(checks, result.steps, elements)
 
 
 PARAMETERS = (

@@ -94,19 +94,6 @@ def _round_end(p: Values, E_star: float, touch: float) -> AxialImpact:
     return rod_impact(p["E"], p["rho"], p["length"], R, law, p["speed"])
 
 
-def _small(p: Values, touch: float) -> None:
-    """Refuse a contact radius, m, that the law of the round end does not cover."""
-    share = touch / min(p["diameter"] / 2, p["tip_radius"])
-    if not CONTACT[0] <= share <= CONTACT[1]:
-        raise SceneError(
-            f"the contact radius would be {share:.2g} of the rod's or tip's, the reference covers "
-            f"{CONTACT[0]:g} to {CONTACT[1]:g}.",
-            key="speed",
-            value=p["speed"],
-            remedy=f"Take a {'lower' if share > CONTACT[1] else 'higher'} speed.",
-        )
-
-
 def _force_error(p: Values, touch: float, edge: float, exact: AxialImpact) -> float:
     """Return the relative error of the largest force that cells and the end law make.
 
@@ -131,7 +118,16 @@ def solve(p: Values) -> Solved:
     E_star = contact_modulus(p["E"], p["nu"], p["barrier_E"] if p["block"] else inf, p["nu"])
     plain = sears(p["E"], p["rho"], p["length"], p["diameter"] / 2, E_star, p["tip_radius"], p["speed"])
     touch = (3 * plain.force * p["tip_radius"] / (4 * E_star)) ** (1 / 3)
-    _small(p, touch)
+    # refuse a contact radius, m, that the law of the round end does not cover
+    share = touch / min(p["diameter"] / 2, p["tip_radius"])
+    if not CONTACT[0] <= share <= CONTACT[1]:
+        raise SceneError(
+            f"the contact radius would be {share:.2g} of the rod's or tip's, the reference covers "
+            f"{CONTACT[0]:g} to {CONTACT[1]:g}.",
+            key="speed",
+            value=p["speed"],
+            remedy=f"Take a {'lower' if share > CONTACT[1] else 'higher'} speed.",
+        )
     exact = _round_end(p, E_star, touch)
     model, edge = rod_model(p, touch)
     found = run_strike(model, AFTER * plain.duration, plain.duration)

@@ -91,16 +91,6 @@ def judged_slope(p: Values, slope: float) -> Check:
     return Check.shown(NAME, "1", slope, SLOPE, note)
 
 
-def _allow(p: Values) -> None:
-    """Refuse speeds whose contact is elastic, no spot on the sphere, or in no order."""
-    mass, E_star = ball_mass(p), contact_modulus(p["E"], p["nu"])
-    first = yield_speed(FIRST * p["yield_stress"], E_star, p["radius"], mass)
-    unit = plastic_radius(p["yield_stress"], p["radius"], mass, 1.0) / p["radius"]
-    most = (LARGE / unit) ** 2
-    within(p, "slowest", first, most, "m/s", "slower nothing yields, faster the sphere is crushed.")
-    within(p, "fastest", 1.1 * p["slowest"], most, "m/s", "above the slowest, and the sphere not crushed.")
-
-
 def solve(p: Values) -> Solved:
     """Compare the slope of ln e over ln v and its convergence; show e beside two published laws.
 
@@ -109,7 +99,13 @@ def solve(p: Values) -> Solved:
     SceneError
         If a speed is too low or too high for a plastic contact.
     """
-    _allow(p)
+    # refuse speeds whose contact is elastic, no spot on the sphere, or in no order
+    mass, E_star = ball_mass(p), contact_modulus(p["E"], p["nu"])
+    first = yield_speed(FIRST * p["yield_stress"], E_star, p["radius"], mass)
+    unit = plastic_radius(p["yield_stress"], p["radius"], mass, 1.0) / p["radius"]
+    most = (LARGE / unit) ** 2
+    within(p, "slowest", first, most, "m/s", "slower nothing yields, faster the sphere is crushed.")
+    within(p, "fastest", 1.1 * p["slowest"], most, "m/s", "above the slowest, and the sphere not crushed.")
     low, high = log(p["slowest"]), log(p["fastest"])
     speeds = [exp(low + (high - low) * i / (SPEEDS - 1)) for i in range(SPEEDS)]
     runs = [_restitution(p, v, p["cells"]) for v in speeds]

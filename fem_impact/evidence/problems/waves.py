@@ -14,7 +14,7 @@ from fem_impact.arrays import Array
 from fem_impact.evidence.problems import setups
 from fem_impact.evidence.problems.discretisation import BarMesh
 from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values
-from fem_impact.evidence.references.free_modes import Frequencies, bending_modes, cylinder_frequencies
+from fem_impact.evidence.references.free_modes import bending_modes, cylinder_frequencies
 from fem_impact.evidence.references.rod_end import bar_speed
 from fem_impact.evidence.references.waves import flexural_speed, longitudinal_speed
 from fem_impact.fem.eigen import rod_modes
@@ -131,19 +131,6 @@ class Probe:
         return float((len(k) - 1) / (2 * (crossing[-1] - crossing[0])))
 
 
-def _eigen_checks(found: dict[str, Array], exact: Frequencies, p: Values, mesh: BarMesh) -> list[Check]:
-    stretching = [pi * i / p["length"] for i in (1, 2)]
-    wanted = {
-        "bending": (exact.bending, [mesh.bending_error(k / p["length"]) for k in BENDING]),
-        "longitudinal": (exact.longitudinal, [mesh.stretching_error(wave) for wave in stretching]),
-    }
-    return [
-        Check(f"{kind} {i + 1}", "Hz", float(found[kind][i]), float(values[i]), min(allowed, MOST))
-        for kind, (values, errors) in wanted.items()
-        for i, allowed in enumerate(errors)
-    ]
-
-
 def _ringing(check: Check, p: Values, dt: float, periods: float) -> float:
     """Return what a mode, found within the tolerance of ``check``, may be off by when it rings.
 
@@ -170,7 +157,17 @@ def solve_modes(p: Values) -> Solved:
     mesh = BarMesh(p["nu"], p["across"], p["diameter"] / 2, slices.slice_length)
     # a scene's cells are as high as they are wide: in a stubby bar more of them lie across
     model = free_bar(p, 2 * ceil(0.5 * p["diameter"] / slab - 1e-9))
-    checks = _eigen_checks(frequencies(model), exact, p, mesh)
+    found = frequencies(model)
+    stretching = [pi * i / p["length"] for i in (1, 2)]
+    wanted = {
+        "bending": (exact.bending, [mesh.bending_error(k / p["length"]) for k in BENDING]),
+        "longitudinal": (exact.longitudinal, [mesh.stretching_error(wave) for wave in stretching]),
+    }
+    checks = [
+        Check(f"{kind} {i + 1}", "Hz", float(found[kind][i]), float(values[i]), min(allowed, MOST))
+        for kind, (values, errors) in wanted.items()
+        for i, allowed in enumerate(errors)
+    ]
     bend, stretch, state = _ring(p, model)
     torsion = min(MOST, mesh.twisting_error(p["length"]))
     checks.append(Check("torsion 1", "Hz", _torsion(p, slices), float(exact.torsion[0]), torsion))

@@ -253,10 +253,6 @@ def oblique_drop(
             motion.push(dt * F, dt * T)
             motion.book(step * dt, dt * F)
         motion.fly(dt)
-    return _rebound(motion, v_n, v_t)
-
-
-def _rebound(motion: _Motion, v_n: float, v_t: float) -> ObliqueRebound:
     rod = motion.rod
     energy = 0.5 * (motion.rate**2 + rod.omega**2 * motion.q**2)
     total = sum(touch[2] for touch in motion.touches)

@@ -113,12 +113,9 @@ class ContactBook:
         self.impulse += (step.impulse_t, step.impulse_n, step.moment)
         self.largest = max(self.largest, step.impulse_n)
         if step.impulse_n > FAINT * self.largest:
-            self._prolong(time)
-
-    def _prolong(self, time: float) -> None:
-        if not self.intervals or time - self.intervals[-1].end > MERGE_GAP:
-            self.intervals.append(Interval(time, time))
-        now = self.intervals[-1]
-        now.end = time
-        now.impulse_n += 2 * self.step.impulse_n
-        now.impulse_t += 2 * self.step.impulse_t
+            if not self.intervals or time - self.intervals[-1].end > MERGE_GAP:
+                self.intervals.append(Interval(time, time))
+            now = self.intervals[-1]
+            now.end = time
+            now.impulse_n += 2 * self.step.impulse_n
+            now.impulse_t += 2 * self.step.impulse_t
