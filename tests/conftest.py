@@ -31,6 +31,12 @@ def result(tmp_path_factory):
 
 
 @pytest.fixture
+def unrendered(monkeypatch):
+    """Build figures but write no picture: how they look is the business of tests/figures."""
+    monkeypatch.setattr("fem_impact.figures.style.save", lambda drawn, path: path.write_bytes(b"<svg/>"))
+
+
+@pytest.fixture
 def record():
     """Values of a whole, valid outcome, free to be changed."""
     return result_maker.values()

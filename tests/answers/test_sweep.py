@@ -20,6 +20,8 @@ from fem_impact.jobs import run as jobs_run
 from fem_impact.scene.shipped import load, replace, replace_all
 from fem_impact.tables.table import read_csv
 
+pytestmark = pytest.mark.usefixtures("unrendered")
+
 
 @pytest.mark.parametrize(
     ("text", "values"),
@@ -594,7 +596,7 @@ def test_the_summary_names_the_column_of_e_and_explains_it(tmp_path):
 
 def test_finite_elements_of_a_sweep_run_on_levels_and_have_bands(monkeypatch, tmp_path):
     """A wanted error holds for each case, and the half-width stands beside each number."""
-    scene = replace_all(load("quick"), {"save.frames": 0, "accuracy.levels": 2})
+    scene = replace_all(load("quick"), {"save.frames": 0, "accuracy.levels": 2, "projectile.length": "40 mm"})
     found = sweep(scene, {"surface.friction": [0.2, 0.57]}, "solid", out=tmp_path)
     table = found.to_dataframe(["e_edge", "mu", "contacts"])
     of_mu = ["mu", "mu_low", "mu_high"]

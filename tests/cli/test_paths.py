@@ -15,6 +15,8 @@ from fem_impact.options import RunOptions
 from fem_impact.scene.shipped import load
 from fem_impact.scene.write import to_toml
 
+pytestmark = pytest.mark.usefixtures("unrendered")
+
 
 def refused(cli, stand, *words):
     code, out, err = cli(*words)

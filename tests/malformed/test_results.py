@@ -20,7 +20,7 @@ from fem_impact.outcome.record import Outcome
 from fem_impact.scene.shipped import load
 from fem_impact.tables.table import Table
 
-COUNTS = [pytest.param(40, id="few"), pytest.param(1500, id="many", marks=pytest.mark.slow)]
+COUNTS = [pytest.param(20, id="few"), pytest.param(1500, id="many", marks=pytest.mark.slow)]
 SEED = 20
 HOSTILE = (
     *(None, True, -1, 0, 2**63, 1e308, -1e-300, "", "abc", "\x1b[31m\u202e", "../x", [], {}, [[]], [None]),

@@ -21,6 +21,8 @@ from fem_impact.pages.study_page import read_study
 from fem_impact.pages.write import write_report
 from fem_impact.tables.table import Table
 
+pytestmark = pytest.mark.usefixtures("unrendered")
+
 
 @pytest.fixture
 def results(tmp_path):

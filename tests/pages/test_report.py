@@ -22,6 +22,8 @@ from fem_impact.scene.shipped import load, replace
 from fem_impact.scene.write import digest, to_toml
 from fem_impact.tables.table import Marked, Table, number
 
+pytestmark = pytest.mark.usefixtures("unrendered")
+
 VOID = {"meta", "link", "img", "source", "br"}
 
 

@@ -11,6 +11,8 @@ from outcome_maker import altered
 import fem_impact.run.simulate
 from fem_impact.answers.refine import level as level_module
 
+pytestmark = pytest.mark.usefixtures("unrendered")
+
 
 @pytest.fixture
 def fake(monkeypatch):

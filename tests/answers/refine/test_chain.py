@@ -29,6 +29,7 @@ BASE = {
 }
 PIN = {"shape": "flat", "length": "40 mm", "diameter": "10 mm", "material": "rod-steel"}
 QUICK = replace_all(load("quick"), {"save.frames": 0})
+SHORT = replace_all(QUICK, {"projectile.length": "40 mm", "accuracy.levels": 2})
 
 
 def scene_of(name, projectile, impact, **more):
@@ -127,7 +128,8 @@ def test_fewer_cells_yield_than_about_an_estimated_contact_and_the_numbers_agree
 
 def test_two_levels_that_resolve_the_contact_give_bands():
     """An elastic flat pin that lands upright on a rigid plane gives back all but its waves."""
-    scene = scene_of("pin", PIN, {"angle": "0 deg", "speed": "1 m/s"}, effects=["vibration", "barrier-rigid"])
+    impact, elastic = {"angle": "0 deg", "speed": "1 m/s"}, ["vibration", "barrier-rigid"]
+    scene = scene_of("pin", PIN, impact, effects=elastic, accuracy={"levels": 2})
     outcome = LevelChain(Case(scene)).run()
     bands, limits = known(outcome.validity.mesh_band), known(outcome.validity.mesh_limit)
     assert 0 < bands["e_edge"] < 0.1
@@ -239,15 +241,15 @@ def test_a_level_that_leaves_its_zones_is_repeated_with_more_room(monkeypatch):
 
 
 def test_the_files_of_the_last_level_stand_above_those_of_the_others(tmp_path):
-    outcome = simulate(QUICK, options=RunOptions(tmp_path))
+    outcome = simulate(SHORT, options=RunOptions(tmp_path))
     assert Outcome.read(tmp_path / "outcome.json") == outcome
     assert Outcome.read(tmp_path / "level-1" / "outcome.json") != outcome
     record = ContactRecord.read(tmp_path / "contact.npz")
     assert len(record.sites) == 1 and record.resolved
 
 
-def test_levels_that_are_done_are_not_run_again(tmp_path, monkeypatch):
-    whole = simulate(QUICK, options=RunOptions(tmp_path / "whole"))
+def test_levels_that_are_done_are_not_run_again(quick, tmp_path, monkeypatch):
+    whole = quick[1]
     run, ran = level_module.simulate_recorded, []
 
     def counted(scene, fidelity, options, case):

@@ -17,6 +17,7 @@ from fem_impact.scene.read import read_toml
 from fem_impact.scene.shipped import load, replace_all
 
 QUICK = replace_all(load("quick"), {"save.frames": 0})
+SHORT = replace_all(QUICK, {"projectile.length": "40 mm", "accuracy.levels": 2})
 FREE = replace(QUICK, accuracy=replace(QUICK.accuracy, tip_size=None, barrier_size=None))
 
 
@@ -118,17 +119,17 @@ def test_a_pilot_that_fails_is_an_error(monkeypatch):
 
 
 def test_a_level_killed_in_the_middle_goes_on_from_its_checkpoint(tmp_path):
-    whole = simulate(QUICK)
+    whole = simulate(SHORT)
 
     def kill(progress):
         if "level 2" in progress.note and progress.step > 400:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        simulate(QUICK, options=RunOptions(tmp_path, kill, checkpoint_s=0.0))
+        simulate(SHORT, options=RunOptions(tmp_path, kill, checkpoint_s=0.0))
     steps = []
     again = RunOptions(tmp_path, lambda p: steps.append((p.note, p.step)), resume=True)
-    outcome = simulate(QUICK, options=again)
+    outcome = simulate(SHORT, options=again)
     of_second = [step for note, step in steps if "level 2" in note and step]
     assert not [note for note, _ in steps if "level 1" in note] and of_second[0] > 400
     assert outcome.restitution.edge.e == whole.restitution.edge.e

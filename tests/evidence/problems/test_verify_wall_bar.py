@@ -8,6 +8,7 @@ from fem_impact.evidence.problems.catalogue import verify
 OTHER = {"length": "0.12 m", "side": "15 mm", "E": "70 GPa", "nu": 0.4, "rho": 2700, "cells": 6, "speed": 7.0}
 
 
+@pytest.mark.slow
 def test_the_wall_stress_of_public_codes():
     found = verify("wall-bar", {"element": 0})
     assert found.passed

@@ -11,6 +11,8 @@ from fem_impact.answers.report import Request
 from fem_impact.evidence.studies.convergence import QUANTITIES, conclude, convergence_rows, plan
 from fem_impact.jobs.job import Failure
 
+pytestmark = pytest.mark.usefixtures("unrendered")
+
 NUMBERS = {key.name: 0.5 for key in QUANTITIES.values()}
 
 
@@ -61,7 +63,7 @@ def test_the_study_writes_table_data_and_figure(tmp_path):
     answer = next(line for line in found.text.splitlines() if line.startswith("- "))
     assert "lies at most 0.02 from its limit" in answer and answer.endswith("reach ± 0.025.")
     assert len((tmp_path / "convergence.csv").read_text().splitlines()) == 1 + len(QUANTITIES)
-    assert (tmp_path / "figures" / "convergence.svg").stat().st_size > 1000
+    assert (tmp_path / "figures" / "convergence.svg").exists()
     assert json.loads((tmp_path / "study.json").read_text())["sheets"][0]["rows"]
 
 

@@ -10,6 +10,8 @@ from fem_impact.figures import still, style
 from fem_impact.figures.live import live
 from fem_impact.scene.shipped import load
 
+pytestmark = pytest.mark.usefixtures("unrendered")
+
 NAMES = ("e", "mu", "E_vib")
 
 

@@ -42,6 +42,8 @@ from fem_impact.outcome.record import KEY_TABLE
 from fem_impact.progress import Notice, Progress
 from fem_impact.scene.types import MEASURED_SETS
 
+pytestmark = pytest.mark.usefixtures("unrendered")
+
 SCENE = DrawnScene("tube-0", "tube", {"barrier": {"material": "copper"}}, "", {})
 
 

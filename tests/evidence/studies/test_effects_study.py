@@ -21,6 +21,8 @@ from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import replace_all
 from fem_impact.scene.types import MEASURED_SETS
 
+pytestmark = pytest.mark.usefixtures("unrendered")
+
 RUN = outcome(e_edge=0.4, E_vib_over_E_0=2e-3, cpu_s=3.0, steps=100, effects=["vibration", "friction"])
 
 

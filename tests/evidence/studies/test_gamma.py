@@ -37,6 +37,8 @@ from fem_impact.scene.library import surfaces
 from fem_impact.scene.shipped import load
 from rigid import LIMIT, slenderness
 
+pytestmark = pytest.mark.usefixtures("unrendered")
+
 TOUCH = {"start_s": 0.0, "end_s": 1e-4, "impulse_n_Ns": 0.1, "impulse_t_Ns": 0.0}
 AGAIN = {**TOUCH, "start_s": 3e-4, "end_s": 4e-4}
 

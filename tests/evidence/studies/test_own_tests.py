@@ -23,6 +23,8 @@ from fem_impact.scene.shipped import load, replace
 from fem_impact.scene.write import to_toml
 from rigid.experiments import measured_set
 
+pytestmark = pytest.mark.usefixtures("unrendered")
+
 HEADER = "v_n_m_per_s,v_t_m_per_s,V_n_m_per_s,V_t_m_per_s,Omega_rad_per_s"
 
 

@@ -7,6 +7,8 @@ from fem_impact.answers.refine.chain import LevelChain
 from fem_impact.case.case import Case
 from fem_impact.scene.shipped import load, replace_all
 
+pytestmark = pytest.mark.usefixtures("unrendered")
+
 F = 0.2
 
 

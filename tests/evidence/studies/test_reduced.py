@@ -18,6 +18,8 @@ from fem_impact.evidence.studies.reduced import (
 )
 from fem_impact.jobs.job import Failure
 
+pytestmark = pytest.mark.usefixtures("unrendered")
+
 
 def fake(job):
     off = 0.05 if job.fidelity == "modal" else 0.0

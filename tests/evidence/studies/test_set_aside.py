@@ -8,6 +8,8 @@ from fem_impact.options import RunOptions
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load
 
+pytestmark = pytest.mark.usefixtures("unrendered")
+
 REPORT = StudyReport("gamma", "Title", ["A finding."])
 
 

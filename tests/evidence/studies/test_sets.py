@@ -17,6 +17,8 @@ from fem_impact.progress import NullMeter
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.tables.table import read_csv
 
+pytestmark = pytest.mark.usefixtures("unrendered")
+
 
 def computed(jobs, broken=(), unbanded=()):
     """What the jobs give."""

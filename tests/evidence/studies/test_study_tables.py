@@ -19,6 +19,8 @@ from fem_impact.physics.hardening import rate_gain
 from fem_impact.progress import NullMeter
 from fem_impact.tables.table import COMPARISON as COLUMNS
 
+pytestmark = pytest.mark.usefixtures("unrendered")
+
 
 def row(quantity, verdict, model=0.3, band=0.01):
     return dict.fromkeys(COLUMNS) | {

@@ -12,6 +12,8 @@ from fem_impact.evidence.studies.tip import SETS, Reading, conclude, fitted_arms
 from fem_impact.scene.types import MEASURED_SETS
 from rigid.experiments import measured_set
 
+pytestmark = pytest.mark.usefixtures("unrendered")
+
 
 def test_fitted_arms_are_found_again_in_rows_made_of_them():
     made = []
