@@ -44,6 +44,9 @@ def assert_same(now, stored):
             np.testing.assert_allclose(np.divide(shape, span), np.divide(was, span), atol=STALE)
 
 
+SLOW = ("contact_levels",)  # runs finite elements on three levels
+
+
 @pytest.fixture(autouse=True)
 def closed_figures(monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
@@ -52,7 +55,10 @@ def closed_figures(monkeypatch, tmp_path):
     plt.close("all")
 
 
-@pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.stem)
+@pytest.mark.parametrize(
+    "script",
+    [pytest.param(p, marks=pytest.mark.slow if p.stem in SLOW else (), id=p.stem) for p in SCRIPTS],
+)
 def test_a_picture_is_made_by_its_lines(script, tmp_path):
     runpy.run_path(str(script))
     assert [path.name for path in tmp_path.iterdir()] == [f"{script.stem}.svg"]

@@ -38,7 +38,9 @@ def scene(projectile, effects, **accuracy):
     )
 
 
-@pytest.mark.parametrize("ending", [".vtu", ".msh", ".inp"])
+@pytest.mark.parametrize(
+    "ending", [".inp", *(pytest.param(ending, marks=pytest.mark.slow) for ending in (".vtu", ".msh"))]
+)
 def test_the_programs_own_rod_from_a_file_gives_its_run_again(tmp_path, ending):
     effects = ["vibration", "friction", "barrier-rigid"]
     built = scene(BUILT, effects)

@@ -13,7 +13,7 @@ COARSE = {
     "aluminium-rod": {"accuracy.tip_size": "1.25 mm"},
     "tungsten-rod": {"accuracy.tip_size": "1.5 mm", "accuracy.across": 6},
 }
-SLOW = ("tungsten-rod", "plate-10mm")
+SLOW = ("tungsten-rod", "plate-10mm", "aluminium-rod")
 
 
 @pytest.mark.parametrize(

@@ -21,6 +21,7 @@ def test_the_measured_sets_run_for_2_5_ms_at_most(name):
     assert Case.of(load(name)).max_time == 2.5e-3
 
 
+@pytest.mark.slow
 def test_a_long_heavy_rod_is_followed_to_its_end():
     """It touches for several milliseconds: at 2.5 ms it was cut off."""
     planned = Case.of(replace_all(load("t3-machined"), TUNGSTEN), "modal")
