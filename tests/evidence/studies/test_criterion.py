@@ -47,6 +47,8 @@ from fem_impact.physics.contact_law import contact_law
 from fem_impact.physics.flow_law import flow_law
 from rigid import LIMIT
 
+pytestmark = pytest.mark.usefixtures("unrendered")
+
 TOUCH = {"start_s": 0.0, "end_s": 1e-4, "impulse_n_Ns": 1.0, "impulse_t_Ns": 0.0}
 
 
