@@ -187,8 +187,8 @@ MUTANTS = (
     Mutant(
         "viscous friction: nodes that should stick creep, rigid plane",
         "fem_impact/solid/contact/plane.py",
-        "share = min(1.0, f[i] * p",
-        "share = min(0.01, f[i] * p",
+        "share = min(1.0, coulomb * p",
+        "share = min(0.01, coulomb * p",
         f"{SPHERE}::test_a_sphere_that_sticks_gives_its_tangential_energy_back",
     ),
     Mutant(
@@ -236,8 +236,8 @@ MUTANTS = (
     Mutant(
         "friction 5 % too strong on a rigid plane",
         "fem_impact/solid/contact/plane.py",
-        "share = min(1.0, f[i] * p *",
-        "share = min(1.0, 1.05 * f[i] * p *",
+        "share = min(1.0, coulomb * p *",
+        "share = min(1.0, 1.05 * coulomb * p *",
         "tests/evidence/problems/test_verify_tilted_bar.py::test_hard_contact_is_the_limit_of_stiff_springs",
     ),
     Mutant(
