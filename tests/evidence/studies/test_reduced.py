@@ -1,6 +1,7 @@
 """The study of the reduced model: scenes on both models, near or not, and the stored copy of its table."""
 
 import pandas
+import pytest
 from study_fakes import outcome, published
 
 from fem_impact.answers.report import Request
