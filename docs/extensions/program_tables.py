@@ -18,7 +18,7 @@ from fem_impact.evidence.problems.catalogue import PROBLEMS, problem
 from fem_impact.outcome.keys import markdown_table
 from fem_impact.outcome.record import KEYS
 from fem_impact.pages.bibliography import references
-from fem_impact.scene import fields, library
+from fem_impact.scene import fields, library, material_fields
 from fem_impact.scene.family import FAMILIES
 from fem_impact.scene.parameter import Parameter
 from fem_impact.scene.units import DIMENSIONS
@@ -42,7 +42,7 @@ _PLACES |= {
     "skin": "`[surface]`, for the effect machined-skin",
     "motion": "`[impact]` on a barrier that moves",
 }
-_LAWS = {"rate": fields.RATES, "flow": fields.FLOWS}
+_LAWS = {"rate": material_fields.RATES, "flow": material_fields.FLOWS}
 _PLACES |= {
     f"{key} {law}": f'`{key}` of a material, with `law = "{law}"`'
     for key, laws in _LAWS.items()
@@ -72,7 +72,7 @@ def _default(field: Parameter, group: str) -> str:
 def scene_choices() -> str:
     """Keys that take one of a few words."""
     choices = {
-        "law of a material": fields.FlowLaw,
+        "law of a material": material_fields.FlowLaw,
         "barrier.boundary": fields.Boundary,
         "barrier.support": fields.Support,
         "accuracy.element": fields.Element,

@@ -114,7 +114,7 @@ def machine_memory() -> float:
     """Return the bytes of memory that a process may use here: the machine's, or its group's limit."""
     whole = float(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"))
     try:
-        return min(whole, float(Path("/sys/fs/cgroup/memory.max").read_text()))
+        return min(whole, float(Path("/sys/fs", "cgroup", "memory.max").read_text()))
     except (OSError, ValueError):  # no such file, or "max"
         return whole
 

@@ -70,7 +70,10 @@ def check(options: Options) -> int:
     """
     from fem_impact.answers.simulate import compiled
 
-    drawing = _drawing_path(options)
+    drawing = options.drawing
+    if drawing is not None and drawing.suffix not in DRAWINGS:
+        problem, remedy = "is no picture that can be drawn.", "Name a file such as projectile.svg or .png."
+        raise UsageError(problem, key="--drawing", value=str(drawing), remedy=remedy)
     case = compiled(changed_scene(options.scene, options.changes), "solid")
     tests = _tests_lines(case.scene)  # before the rest: a file of tests that cannot be read is refused
     say_kept(case.scene, options)
@@ -98,15 +101,6 @@ def _tests_lines(scene: Scene) -> list[str]:
         return []
     lines = wrapped(f"measured: {count(tests)} tests, {shown_path(str(scene.measured))}")
     return lines + [line for one in doubtful_tests(scene) for line in wrapped(f"warning: {one}")]
-
-
-def _drawing_path(options: Options) -> Path | None:
-    """Return where the drawing goes, None where none is wanted."""
-    path = options.drawing
-    if path is not None and path.suffix not in DRAWINGS:
-        remedy = "Name a file such as projectile.svg or projectile.png."
-        raise UsageError("is no picture that can be drawn.", key="--drawing", value=str(path), remedy=remedy)
-    return path
 
 
 def _statement(case: Case) -> dict[str, Any]:
@@ -265,7 +259,12 @@ def _short(case: Case, statement: dict[str, Any]) -> str:
     """Return projectile, barrier and contact, effects with their numbers, size and limitations."""
     scene = case.scene
     lines = [headed(scene.id, scene.title), "", "Projectile", *_drawing(case)]
-    lines += _wrapped([_material_line(scene), *statement["mesh"]])
+    rod = scene.projectile
+    parts = [f"{part.material.name} up to {1e3 * part.to:.4g} mm" for part in rod.segments]
+    size = f"{1e3 * rod.length:.4g} mm x {1e3 * rod.diameter:.4g} mm"
+    parts += [f"{one.material.name} ({one.name})" for one in rod.regions]
+    main = [] if rod.segments else [rod.material.name]
+    lines += _wrapped([f"{size} of {', '.join(main + parts)}", *statement["mesh"]])
     lines += _wrapped(_body_lines(statement["body"], _bends_as(case)))
     lines += ["", "Barrier and contact", *_wrapped(_contact_lines(case))]
     lines += ["", "Laws in force", *_wrapped(statement["laws"].values()), "", "Effects"]
@@ -278,15 +277,6 @@ def _short(case: Case, statement: dict[str, Any]) -> str:
     lines += _wrapped([f"off {', '.join(off)}: not called for, or left out by the scene"])
     lines += [*_size_lines(case), *_end_lines(case, statement), ""]
     return "\n".join([*lines, *wrapped(LONG)]) + "\n"
-
-
-def _material_line(scene: Scene) -> str:
-    rod = scene.projectile
-    parts = [f"{part.material.name} up to {1e3 * part.to:.4g} mm" for part in rod.segments]
-    size = f"{1e3 * rod.length:.4g} mm x {1e3 * rod.diameter:.4g} mm"
-    parts += [f"{one.material.name} ({one.name})" for one in rod.regions]
-    main = [] if rod.segments else [rod.material.name]
-    return f"{size} of {', '.join(main + parts)}"
 
 
 def _contact_lines(case: Case) -> Iterator[str]:
@@ -304,7 +294,11 @@ def _contact_lines(case: Case) -> Iterator[str]:
             "its thickness changes nothing: a plate on a base is computed as a half-space. "
             'One that is free underneath and bends: barrier.support = "infinite"'
         )
-    yield ", ".join(f"{key} {value}" for key, value in tables["impact"].items()) + _energy_text(case)
+    seen, body = case.scene.relative, case.bodies.body
+    speed2 = seen.v_n**2 + seen.v_t**2
+    energy = 0.5 * body.mass * (speed2 + body.k2 * seen.omega**2)
+    motion = ", ".join(f"{key} {value}" for key, value in tables["impact"].items())
+    yield f"{motion}: {speed2**0.5:.4g} m/s, E_0 = {energy:.4g} J"
     surface = scene.surface
     low, high = surface.friction_low, surface.friction_high
     sure = f"{low:g} to {high:g}" if low < high else "no interval stated: it counts as exact"
@@ -315,14 +309,6 @@ def _contact_lines(case: Case) -> Iterator[str]:
         f"{1e3 * size.depth:.2g} mm deep, for {1e6 * size.duration:.3g} us"
     )
     yield f"{screening(case.bodies).sentence}. The verdict: `fem-impact assess`"
-
-
-def _energy_text(case: Case) -> str:
-    """Return speed and energy of the projectile as the barrier sees it."""
-    seen, body = case.scene.relative, case.bodies.body
-    speed2 = seen.v_n**2 + seen.v_t**2
-    energy = 0.5 * body.mass * (speed2 + body.k2 * seen.omega**2)
-    return f": {speed2**0.5:.4g} m/s, E_0 = {energy:.4g} J"
 
 
 def _size_lines(case: Case) -> list[str]:

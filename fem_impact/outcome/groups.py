@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from fem_impact.outcome.keys import Num, Unknown, group, key, or_none, part
+from fem_impact.outcome.keys import Num, Unknown, group, key, or_none, part, share
 from fem_impact.outcome.limitation import Limitation
 
 ARMS = ("paper", "edge", "impulse")
 """The three sets of contact arms that every coefficient is given with."""
-
-SHARE = ", as a fraction of E_0."
 
 
 @group
@@ -152,8 +150,8 @@ class ArmCoefficients:
     d_d: Num = key("d_d_{}_m", "m", "Arm along n from contact point to mass centre: {}.")
     e: Num = key("e_{}", "-", "Coefficient of restitution (Eq 16) with {}.", True)
     e_m: Num = key("e_m_{}", "-", "Moment coefficient with {}.")
-    E_ln: Num = key("E_ln_{}_over_E_0", "-", "Energy lost by normal forces (Eq 20) with {}" + SHARE, True)
-    E_lt: Num = key("E_lt_{}_over_E_0", "-", "Energy lost by tangential forces (Eq 21) with {}" + SHARE, True)
+    E_ln: Num = share("E_ln_{}_over_E_0", "Energy lost by normal forces (Eq 20) with {}")
+    E_lt: Num = share("E_lt_{}_over_E_0", "Energy lost by tangential forces (Eq 21) with {}")
 
 
 @group
@@ -188,96 +186,60 @@ class Energy:
         "J",
         "Kinetic energy of the whole rod at first contact. It is that seen from a moving barrier.",
     )
-    rigid: Num = key(
+    rigid: Num = share(
         "E_r_over_E_0",
-        "-",
         "Kinetic energy of the rigid motion after the last separation (Eq 26), or at the stop of a run that "
-        "did not finish" + SHARE,
-        True,
+        "did not finish",
     )
-    vibration: Num = key(
+    vibration: Num = share(
         "E_vib_over_E_0",
-        "-",
         "Vibration energy after the last separation, or at the stop of a run that did not finish, by modal "
-        "projection" + SHARE,
-        True,
+        "projection",
     )
-    vibration_check: Num = key(
-        "E_vib_check_over_E_0",
-        "-",
-        "Vibration energy without modes, of all shapes that the mesh has" + SHARE,
-        True,
+    vibration_check: Num = share(
+        "E_vib_check_over_E_0", "Vibration energy without modes, of all shapes that the mesh has"
     )
-    vibration_floor: Num = key(
-        "E_vib_floor_over_E_0", "-", "Numerical floor under which a vibration energy means nothing" + SHARE
+    vibration_floor: Num = share(
+        "E_vib_floor_over_E_0", "Numerical floor under which a vibration energy means nothing", banded=False
     )
     below_floor: bool | Unknown = key("E_vib_below_floor", "", "True when E_vib is below its floor.")
-    friction: Num = key(
-        "W_friction_over_E_0", "-", "Work turned to heat by friction at the contact" + SHARE, True
-    )
-    skin: Num = key(
+    friction: Num = share("W_friction_over_E_0", "Work turned to heat by friction at the contact")
+    skin: Num = share(
         "W_skin_over_E_0",
-        "-",
-        "Friction work, and plastic work of rod and barrier down to 0.1 mm below their surfaces" + SHARE,
-        True,
+        "Friction work, and plastic work of rod and barrier down to 0.1 mm below their surfaces",
     )
-    skin_rod: Num = key(
-        "W_skin_rod_over_E_0", "-", "Plastic work of the rod down to 0.1 mm below its surface" + SHARE, True
+    skin_rod: Num = share("W_skin_rod_over_E_0", "Plastic work of the rod down to 0.1 mm below its surface")
+    skin_barrier: Num = share(
+        "W_skin_barrier_over_E_0", "Plastic work of the barrier down to 0.1 mm below its surface"
     )
-    skin_barrier: Num = key(
-        "W_skin_barrier_over_E_0",
-        "-",
-        "Plastic work of the barrier down to 0.1 mm below its surface" + SHARE,
-        True,
+    plastic_rod: Num = share("E_plastic_rod_over_E_0", "Plastic work in the rod")
+    plastic_barrier: Num = share("E_plastic_barrier_over_E_0", "Plastic work in the barrier")
+    locked_rod: Num = share(
+        "E_locked_rod_over_E_0", "Elastic energy held by residual stress in the rod, no vibration"
     )
-    plastic_rod: Num = key("E_plastic_rod_over_E_0", "-", "Plastic work in the rod" + SHARE, True)
-    plastic_barrier: Num = key("E_plastic_barrier_over_E_0", "-", "Plastic work in the barrier" + SHARE, True)
-    locked_rod: Num = key(
-        "E_locked_rod_over_E_0",
-        "-",
-        "Elastic energy held by residual stress in the rod, no vibration" + SHARE,
-        True,
+    locked_barrier: Num = share(
+        "E_locked_barrier_over_E_0", "Elastic energy held by residual stress in the barrier, no vibration"
     )
-    locked_barrier: Num = key(
-        "E_locked_barrier_over_E_0",
-        "-",
-        "Elastic energy held by residual stress in the barrier, no vibration" + SHARE,
-        True,
+    radiated: Num = share("W_radiated_over_E_0", "Energy radiated through the barrier's outer boundary")
+    plate: Num = share("W_plate_over_E_0", "Energy that bending waves carry away in a plate")
+    barrier: Num = share(
+        "E_barrier_over_E_0", "Kinetic energy of a free barrier as a whole, as seen from where it was before"
     )
-    radiated: Num = key(
-        "W_radiated_over_E_0", "-", "Energy radiated through the barrier's outer boundary" + SHARE, True
+    closing: Num = share(
+        "W_closing_over_E_0", "Numerical loss when contact starts at a node (vanishes with the mesh)"
     )
-    plate: Num = key("W_plate_over_E_0", "-", "Energy that bending waves carry away in a plate" + SHARE, True)
-    barrier: Num = key(
-        "E_barrier_over_E_0",
-        "-",
-        "Kinetic energy of a free barrier as a whole, as seen from where it was before" + SHARE,
-        True,
+    damping: Num = share("W_damping_over_E_0", "Work of material damping")
+    contact: Num = share(
+        "E_contact_over_E_0", "Elastic energy that a contact still held when the run was cut off"
     )
-    closing: Num = key(
-        "W_closing_over_E_0",
-        "-",
-        "Numerical loss when contact starts at a node (vanishes with the mesh)" + SHARE,
-        True,
+    gravity: Num = share(
+        "W_gravity_over_E_0", "What gravity added to the shares, the speed of the fall itself taken out"
     )
-    damping: Num = key("W_damping_over_E_0", "-", "Work of material damping" + SHARE, True)
-    contact: Num = key(
-        "E_contact_over_E_0",
-        "-",
-        "Elastic energy that a contact still held when the run was cut off" + SHARE,
-        True,
-    )
-    gravity: Num = key(
-        "W_gravity_over_E_0",
-        "-",
-        "What gravity added to the shares, the speed of the fall itself taken out" + SHARE,
-        True,
-    )
-    residual: float = key("residual_over_E_0", "-", "What the energy balance of all steps misses" + SHARE)
-    added_mass: Num = key(
+    residual: float = share("residual_over_E_0", "What the energy balance of all steps misses", banded=False)
+    added_mass: Num = share(
         "E_added_mass_over_E_0",
-        "-",
-        "Largest kinetic energy of the mass added by mass scaling, part of the kinetic energies" + SHARE,
+        "Largest kinetic energy of the mass added by mass scaling, part of the kinetic energies",
+        banded=False,
     )
 
     @property
@@ -376,10 +338,10 @@ class Heat:
         "K",
         "Temperature that no spot of the contact exceeds, under assumptions; null if a body melts below it.",
     )
-    less_vibration: Num = key(
+    less_vibration: Num = share(
         "E_lt_less_vibration_over_E_0",
-        "-",
-        "E_lt with the edge's arms less E_vib; not the heat of friction, as plastic work is in it" + SHARE,
+        "E_lt with the edge's arms less E_vib; not the heat of friction, as plastic work is in it",
+        banded=False,
     )
 
 

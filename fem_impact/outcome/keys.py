@@ -124,12 +124,17 @@ def key(name: str, unit: str, meaning: str, banded: bool = False) -> Any:
     return field(metadata={"key": (name, unit, meaning, banded)})
 
 
+def share(name: str, meaning: str, banded: bool = True) -> Any:
+    """Declare a field that is an energy over that at first contact."""
+    return key(name, "-", f"{meaning}, as a fraction of E_0.", banded)
+
+
 def part(name: str, meaning: str) -> Any:
     """Declare a field that holds a group, with the texts for ``{}`` in the names and meanings of its keys."""
     return field(metadata={"part": (name, meaning)})
 
 
-@dataclass_transform(frozen_default=True, kw_only_default=True, field_specifiers=(key, part))
+@dataclass_transform(frozen_default=True, kw_only_default=True, field_specifiers=(key, share, part))
 def group(cls: type[T]) -> type[T]:
     """Make a frozen dataclass whose docstring names unit and meaning of every field."""
     frozen = dataclass(frozen=True, slots=True, kw_only=True, repr=False)(cls)

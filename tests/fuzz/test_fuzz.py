@@ -29,7 +29,7 @@ def parts(first, end, size):
     return [pytest.param(one, marks=pytest.mark.slow, id=f"part{i}") for i, one in enumerate(ranges)]
 
 
-def held(cases, new):
+def check_rules(cases, new):
     """Keep cases for the report, and refuse those that break a rule."""
     cases.extend(new)
     broken = [f"{case.scene.id}: {fault}" for case in new for fault in case.faults]
@@ -38,21 +38,21 @@ def held(cases, new):
 
 @pytest.mark.parametrize("numbers", [range(150), *parts(150, 1200, 350)])
 def test_rigid(numbers, cases):
-    held(cases, [run(random_scene(SEED, number), "rigid") for number in numbers])
+    check_rules(cases, [run(random_scene(SEED, number), "rigid") for number in numbers])
 
 
 def test_modal_of_stout_rods(cases):
     """Their modes take a second."""
     random = np.random.default_rng(SEED)
     rods = [rod for rod in (random_rod(random) for _ in range(60)) if rod.length < 2 * rod.diameter][:3]
-    held(cases, [run(random_scene(SEED, number, one_of(rods)), "modal") for number in range(40)])
+    check_rules(cases, [run(random_scene(SEED, number, one_of(rods)), "modal") for number in range(40)])
 
 
 @pytest.mark.parametrize("numbers", parts(40, 600, 56))
 def test_modal(numbers, cases):
     random = np.random.default_rng([SEED, numbers.start])
     choice = one_of([random_rod(random) for _ in range(RODS)])
-    held(cases, [run(random_scene(SEED, number, choice), "modal") for number in numbers])
+    check_rules(cases, [run(random_scene(SEED, number, choice), "modal") for number in numbers])
 
 
 def test_solid_of_cheap_scenes(cases):
@@ -63,13 +63,13 @@ def test_solid_of_cheap_scenes(cases):
         if scene.projectile.length < 5 * scene.projectile.diameter and len(cheap) < 2:
             case = run_solid(scene, 1.5, cells=3.0)
             cheap += [case] if case.end not in (DEAR, REFUSED) else []
-    held(cases, cheap)
+    check_rules(cases, cheap)
     assert cheap
 
 
 @pytest.mark.parametrize("numbers", parts(0, 200, 20))
 def test_solid(numbers, cases):
-    held(cases, [run_solid(random_scene(SEED, number), BUDGET) for number in numbers])
+    check_rules(cases, [run_solid(random_scene(SEED, number), BUDGET) for number in numbers])
 
 
 def own(numbers):
@@ -83,17 +83,17 @@ def own(numbers):
 
 @pytest.mark.parametrize("numbers", [range(20), *parts(20, 320, 100)])
 def test_rigid_of_own_projectiles(numbers, cases):
-    held(cases, [run(scene, "rigid") for scene in own(numbers)])
+    check_rules(cases, [run(scene, "rigid") for scene in own(numbers)])
 
 
 @pytest.mark.parametrize("numbers", parts(0, 100, 20))
 def test_modal_of_own_projectiles(numbers, cases):
-    held(cases, [run(scene, "modal") for scene in own(numbers)])
+    check_rules(cases, [run(scene, "modal") for scene in own(numbers)])
 
 
 @pytest.mark.parametrize("numbers", parts(0, 200, 20))
 def test_solid_of_own_projectiles(numbers, cases):
-    held(cases, [run_solid(scene, BUDGET) for scene in own(numbers)])
+    check_rules(cases, [run_solid(scene, BUDGET) for scene in own(numbers)])
 
 
 @pytest.mark.slow

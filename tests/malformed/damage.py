@@ -116,7 +116,7 @@ def call(*words):
     return code, out.getvalue(), err.getvalue()
 
 
-def answered(what, allowed, *words):
+def check_answer(what, allowed, *words):
     """Check the answer to a spoiled input: done, or one clear refusal; return the exit code."""
     TRIED[what] += 1
     code, out, err = call(*words)

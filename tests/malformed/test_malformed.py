@@ -17,7 +17,7 @@ import damage
 import numpy as np
 import pytest
 import result_maker
-from damage import TRIED, VALUES, answered, spoiled_bytes, spoiled_tree, toml
+from damage import TRIED, VALUES, check_answer, spoiled_bytes, spoiled_tree, toml
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -76,7 +76,7 @@ def test_spoiled_scenes(how):
     @given(SPOILED)
     def tried(data):
         Path("mine.toml").write_bytes(data)
-        answered("scene files", {3}, "check", "mine.toml", "--json")
+        check_answer("scene files", {3}, "check", "mine.toml", "--json")
         assert files() == {"inside/mine.toml"}
 
     tried()
@@ -91,7 +91,7 @@ def test_wrong_changes_on_the_command_line(how):
     @given(st.sampled_from([*KEYS, "id", "effects", "measured", "nothing", "a.b.c", ""]), VALUES)
     def tried(key, value):
         words = f"{key}={value if isinstance(value, str) else damage.literal(value)}".replace("\0", "")
-        answered("--set changes", {2, 3}, "check", "t5b", "--set", words, "--json")
+        check_answer("--set changes", {2, 3}, "check", "t5b", "--set", words, "--json")
         assert files() == set()
 
     tried()
@@ -124,7 +124,7 @@ def test_spoiled_tables(how):
     @given(spoiled_bytes(CAMERA))
     def tried(data):
         Path("mine.csv").write_bytes(data)
-        answered("camera tables", {3, 5}, "coefficients", "mine.csv", *ROD, "--json")
+        check_answer("camera tables", {3, 5}, "coefficients", "mine.csv", *ROD, "--json")
         assert files() == {"inside/mine.csv"}
         try:
             table = read_csv("mine.csv")
@@ -200,9 +200,9 @@ def test_no_file_is_ever_unpickled():
             checkpoint().restore()
     for name in ("mine.toml", "mine.csv", "outcome.json"):
         Path(name).write_bytes(pickle.dumps(Bomb()))
-    assert answered("pickles", {3}, "check", "mine.toml") == 3
-    assert answered("pickles", {3, 5}, "coefficients", "mine.csv", *ROD) in (3, 5)
-    assert answered("pickles", {5}, "report", ".") == 5
+    assert check_answer("pickles", {3}, "check", "mine.toml") == 3
+    assert check_answer("pickles", {3, 5}, "coefficients", "mine.csv", *ROD) in (3, 5)
+    assert check_answer("pickles", {5}, "report", ".") == 5
     assert not Path("hit").exists()
 
 
@@ -300,7 +300,7 @@ def test_a_report_of_spoiled_files_is_refused_and_not_half_written(name):
     whole = (Path(here) / name).read_bytes()
     for data in (b"", b"\xff\xfe", whole[: len(whole) // 2].rsplit(b",", 3)[0] + b"\n", b"a,b\n1\n", b"{}"):
         (Path(here) / name).write_bytes(data)
-        code = answered("reports", {5}, "report", "run")
+        code = check_answer("reports", {5}, "report", "run")
         assert code == 5 or name != "outcome.json"
         assert code == 0 or not (Path(here) / "report.html").exists()
         (Path(here) / "report.html").unlink(missing_ok=True)
@@ -313,7 +313,7 @@ def test_an_id_that_would_leave_its_directory_is_refused(id):
     with pytest.raises(SceneError, match="id"):
         read_dict({**SCENE, "id": id})
     Path("mine.toml").write_text(toml({**SCENE, "id": id}))
-    assert answered("ids", {3}, "run", "mine.toml", "--quiet") == 3
+    assert check_answer("ids", {3}, "run", "mine.toml", "--quiet") == 3
     assert files() == {"inside/mine.toml"}
 
 

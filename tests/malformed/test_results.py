@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import result_maker
-from damage import TRIED, answered, call
+from damage import TRIED, call, check_answer
 
 import fem_impact.films.film as films
 from fem_impact.answers.report import Request, Sheet, StudyReport, publish
@@ -118,7 +118,7 @@ def test_forged_outcomes(place, count):
     for _ in range(count):
         values = spoil_tree(chance, json.loads(json.dumps(whole)))
         (here / "outcome.json").write_text(json.dumps(signed(values)))
-        answered("forged outcomes", {5}, "report", "run")
+        check_answer("forged outcomes", {5}, "report", "run")
 
 
 @pytest.mark.parametrize("count", [8, pytest.param(500, marks=pytest.mark.slow)])
@@ -129,7 +129,7 @@ def test_forged_studies(place, count):
     for _ in range(count):
         document = spoil_tree(chance, json.loads(json.dumps(whole)))
         (place / "study.json").write_text(json.dumps(signed(document)))
-        answered("forged studies", {5}, "report", "study")
+        check_answer("forged studies", {5}, "report", "study")
 
 
 DRAWN = ("outcome.json", "history.csv", "fields.vtkhdf", "waves.h5")

@@ -54,7 +54,7 @@ def mirrored(stated):
     )
 
 
-def require_mirror(one, other, rel, share=1e-12):
+def check_mirrored(one, other, rel, share=1e-12):
     """Hold two outcomes to each other as mirror images: all numbers but those along t are equal.
 
     ``share`` is by how much shares of the energy may differ.
@@ -83,7 +83,7 @@ SCENES = ("t5b", "t3-machined-tip-a", "ogive", "tube", "spinning-rod", "free-bar
 @pytest.mark.parametrize("name", SCENES)
 def test_the_mirror_image_of_a_scene_has_the_mirror_image_as_its_outcome(name, fidelity):
     stated = replace(load(name), measured=None)
-    require_mirror(simulate(stated, fidelity), simulate(mirrored(stated), fidelity), rel=1e-12)
+    check_mirrored(simulate(stated, fidelity), simulate(mirrored(stated), fidelity), rel=1e-12)
 
 
 def test_a_barrier_that_turns_is_mirrored_with_its_offset():
@@ -91,7 +91,7 @@ def test_a_barrier_that_turns_is_mirrored_with_its_offset():
     stated = scene({**ROD, "tip": "B", "tip_radius": "3 mm"}, 40, -0.5, 8.0, ["auto"])
     stated = replace(stated, barrier=read_dict(_barrier(turning)).barrier)
     one, other = (simulate(either, "modal") for either in (stated, mirrored(stated)))
-    require_mirror(one, other, rel=1e-12)
+    check_mirrored(one, other, rel=1e-12)
     assert other.barrier.Omega_b == pytest.approx(-one.barrier.Omega_b, rel=1e-12)
     assert abs(one.barrier.Omega_b) > 0.1
 
@@ -186,7 +186,7 @@ def test_finite_elements_mirror_an_impact_to_round_off():
     rod = {**ROD, "tip": "B", "tip_radius": "3 mm"}
     stated = scene(rod, 45, -0.4, 20.0, ["friction", *ELASTIC], accuracy=COARSE)
     one, other = simulate(stated, "solid"), simulate(mirrored(stated), "solid")
-    require_mirror(one, other, rel=1e-7, share=1e-9)
+    check_mirrored(one, other, rel=1e-7, share=1e-9)
 
 
 def test_a_mesh_and_its_mirror_image_strike_as_mirror_images(tmp_path):
@@ -202,9 +202,9 @@ def test_a_mesh_and_its_mirror_image_strike_as_mirror_images(tmp_path):
         scene(body, side * 35, side * -0.4, side * 9, effects, accuracy=coarse, restitution=0.8)
         for body, side in zip(bodies, (1, -1), strict=True)
     ]
-    require_mirror(*(simulate(one, "rigid") for one in stated), rel=1e-12)
+    check_mirrored(*(simulate(one, "rigid") for one in stated), rel=1e-12)
     # the highest modes that are kept are known to about 1e-5 of their energy
-    require_mirror(*(simulate(one, "solid") for one in stated), rel=1e-7, share=2e-6)
+    check_mirrored(*(simulate(one, "solid") for one in stated), rel=1e-7, share=2e-6)
 
 
 @pytest.mark.parametrize("effects", [ELASTIC, ["auto"]])

@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 from math import cos, radians, sin
 
 from fem_impact.evidence.references.free_modes import bending_period
-from fem_impact.scene.fields import FlowLaw
 from fem_impact.scene.impact import Impact
 from fem_impact.scene.library import surfaces
+from fem_impact.scene.material_fields import FlowLaw
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.surface import Surface
 from fem_impact.scene.types import Save, Scene
