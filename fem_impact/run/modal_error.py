@@ -28,9 +28,11 @@ HELD = 0.9
 """Share of differences from finite elements that a half-width holds."""
 NEAR = 1.5  # standard deviations of the stored numbers at which a scene counts exp(-1/2)
 COMMON = 1.0  # scenes' weight of the mean over all of them
+VIBRATION = "E_vib_over_E_0"
+LEAST_VIBRATION = 0.005  # of E_0, below which errors of the vibration energy no longer fall with it
 TOLD = (
     *("e_edge", "mu", "V_n_m_per_s", "V_t_m_per_s", "Omega_rad_per_s"),
-    *("E_r_over_E_0", "E_vib_over_E_0", "W_friction_over_E_0"),
+    *("E_r_over_E_0", VIBRATION, "W_friction_over_E_0"),
 )
 """Keys of the numbers whose error is told."""
 
@@ -124,11 +126,18 @@ def _expected(places: Array, errors: Array, spread: Array, at: Array | None = No
     return np.asarray(weights @ errors / weights.sum(axis=1))
 
 
-def scale_of(key: str, outcome: Outcome) -> float:
-    """Return the scale of errors of a number: 1, speed, m/s, or that over the radius of gyration, rad/s."""
+def unit_of(key: str, outcome: Outcome) -> float:
+    """Return 1, the speed, m/s, or that over the radius of gyration, rad/s, as the unit of a key is."""
     motion, unit = outcome.motion, KEY_TABLE[key].unit
     speed = hypot(motion.v_n, motion.v_t)
     return {"m/s": speed, "rad/s": speed / sqrt(motion.k_squared)}.get(unit, 1.0)
+
+
+def scale_of(key: str, outcome: Outcome) -> float:
+    """Return the scale of errors of a number: `unit_of`, and of the vibration energy that energy itself."""
+    if key != VIBRATION:
+        return unit_of(key, outcome)
+    return max(or_none(outcome.energy.vibration) or 0.0, LEAST_VIBRATION)
 
 
 def half_widths(place: Place, outcome: Outcome) -> dict[str, float]:

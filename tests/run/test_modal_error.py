@@ -1,5 +1,6 @@
 """The told error of the reduced model: conformal half-widths from stored scenes, and where a scene stands."""
 
+import dataclasses
 from math import log10
 
 import numpy as np
@@ -60,6 +61,11 @@ def test_a_scene_stands_where_its_numbers_say():
     assert place_of(Case.of(tube, "modal"), simulate(tube, "modal")).wall < place.wall - 0.2
 
 
+def replaced(outcome, vibration):
+    """The outcome with another energy of vibration."""
+    return dataclasses.replace(outcome, energy=dataclasses.replace(outcome.energy, vibration=vibration))
+
+
 def test_an_outcome_tells_half_widths_in_its_units_and_what_it_is_unlike(monkeypatch):
     outcome = simulate(load("t5b"), "modal")
     halves = outcome.half_widths
@@ -67,6 +73,11 @@ def test_an_outcome_tells_half_widths_in_its_units_and_what_it_is_unlike(monkeyp
     assert halves["e_paper"] == halves["e_edge"] and outcome.estimate("e_edge")[1] == halves["e_edge"]
     fast = simulate(replace(load("t5b"), "impact.v_n", "-1.48 m/s"), "modal")
     assert scale_of("V_n_m_per_s", fast) != scale_of("V_n_m_per_s", outcome)
+    vibration = halves["E_vib_over_E_0"] / scale_of("E_vib_over_E_0", outcome)
+    much = replaced(outcome, 0.1)
+    assert half_widths(place_of(Case.of(load("t5b"), "modal"), much), much)[
+        "E_vib_over_E_0"
+    ] == pytest.approx(0.1 * vibration)
     far = Place(*(np.array(stored().places.max(axis=0)) + 1.0))
     assert "None of them is like this one in" in modal_error.sentence(far, outcome)
     assert half_widths(far, outcome)["mu"] > halves["mu"]

@@ -159,8 +159,8 @@ def _sentences(found: Sequence[JointError]) -> list[str]:
     parts = ", ".join(f"{name} in {most.count(name)}" for name in SHOWN if name in most)
     return [
         f"Taken together, e, mu and Omega of {len(rejected)} of {len(found)} sets do not agree with the "
-        f"tests at {LEVEL:.0%} ({', '.join(rejected) or 'none'}): no values of the stated inputs, however "
-        "they are combined, are likely to bring all three numbers of such a set to the measured ones. "
+        f"tests at {100 * LEVEL:.0f} % ({', '.join(rejected) or 'none'}): no values of the stated inputs, "
+        "however combined, are likely to bring all three numbers of such a set to the measured ones. "
         f"{len(quiet)} of them show no error in any number alone.",
         f"Direction: {ways}. The largest part of the distance is that of {parts or 'none'} of the rejected.",
     ]
@@ -178,7 +178,7 @@ def _picture(found: Sequence[JointError]) -> Picture:
     together = Series("D2", [one.distance for one in found], at, "points", 3)
     panels = (
         Panel("One by one", "E / u_val", "", alone, (Mark(-COVERAGE), Mark(COVERAGE)), rows=sets),
-        Panel("Together", "D2", "", (together,), (Mark(limit, f"{LEVEL:.0%}"),), rows=sets),
+        Panel("Together", "D2", "", (together,), (Mark(limit, f"{100 * LEVEL:.0f} %"),), rows=sets),
     )
     caption = (
         "Errors over their uncertainty, one by one (beyond 2: an error) and together (right of the line)."

@@ -11,7 +11,7 @@ from fem_impact.evidence.studies.coverage.run import DEFAULT, FINER, FINEST, MOD
 from fem_impact.evidence.studies.coverage.scenes import DrawnScene
 from fem_impact.outcome.keys import Unknown, or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
-from fem_impact.run.modal_error import scale_of
+from fem_impact.run.modal_error import scale_of, unit_of
 
 if TYPE_CHECKING:
     import pandas
@@ -33,7 +33,7 @@ beside finite elements."""
 ZERO = 1e-9
 """In the unit of the quantity: what is smaller on both sides is zero by physics and tells nothing."""
 KNOWN = 0.1
-"""Widest half-width of finite elements, over `scale_of`, that tells an error of the reduced model."""
+"""Widest half-width of finite elements, over `unit_of`, that tells an error of the reduced model."""
 FACTOR = 2.0  # within which a forecast of time counts as met
 AIM = 0.95
 LOWEST, HIGHEST = "low", "high"
@@ -131,10 +131,10 @@ def reduced_error(modal: Outcome, solid: Outcome, key: str) -> float | None:
 
     None where one does not know it, or finite elements know it only within `KNOWN`.
     """
-    (value, _), (truth, half), scale = modal.estimate(key), solid.estimate(key), scale_of(key, modal)
-    if isinstance(value, Unknown) or isinstance(truth, Unknown) or half is None or half > KNOWN * scale:
+    (value, _), (truth, half), most = modal.estimate(key), solid.estimate(key), KNOWN * unit_of(key, modal)
+    if isinstance(value, Unknown) or isinstance(truth, Unknown) or half is None or half > most:
         return None
-    return float(value - truth) / scale
+    return float(value - truth) / scale_of(key, modal)
 
 
 def coverage(errors: pandas.DataFrame, by: list[str]) -> pandas.DataFrame:
