@@ -19,7 +19,7 @@ from meshes.oblique import Tip, is_oblique, stood_up
 from meshes.order import in_order
 from meshes.quality import edge_lengths, scaled_jacobians
 from meshes.reading.read import stored_mesh
-from meshes.reading.stored import NODES, StoredMesh
+from meshes.reading.stored import NODES, StoredMesh, counted
 from meshes.symmetry import NEAR, Part, half_of, place_text, size_text
 from meshes.topology import FACES
 
@@ -109,7 +109,7 @@ def read_own(path: str | Path, unit: float = 1.0, stated: Stated | None = None) 
     if stored.masses and not stated.sets:
         raise MeshError(
             f"holds {' and '.join(stored.masses)}: mass without volume, which the body would lack. Leave it "
-            "out, or state by mesh_sets the sets whose cells are the body."
+            f"out.{_set_hint(stored)}"
         )
     points, blocks = stored.points * unit, _blocks(stored, chosen)
     stood = tuple[str, ...]()
@@ -129,6 +129,7 @@ def read_own(path: str | Path, unit: float = 1.0, stated: Stated | None = None) 
     left_out = (*stored.surfaces.counts(~files.bounding), *stored.ignored)
     told = (
         *((f"left out: {', '.join(left_out)}",) if left_out else ()),
+        *((f"left out: {counted(int((~chosen).sum()), 'cell')} of other sets",) if not chosen.all() else ()),
         *((f"sets of faces: {', '.join(sorted(faces))}",) if faces else ()),
         *(*stood, *cut, *made.told),
         *(body.told[1:] if cut else body.told),  # what was cut here is no half in the file

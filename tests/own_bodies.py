@@ -24,6 +24,17 @@ def taper(width=12e-3, length=60e-3, end=0.5, cells=(4, 2, 10), whole=False):
     return points, hexes
 
 
+def chamfered(steps):
+    """A bar of 12 x 12 x 60 mm with chamfers of 2 mm at 45 degrees, so many cells along each."""
+    points, cells = taper(end=1.0, cells=(2 * steps + 2, 2, 8))
+    width = np.concatenate([np.linspace(-6e-3, -4e-3, steps + 1), [0.0], np.linspace(4e-3, 6e-3, steps + 1)])
+    old = np.linspace(-6e-3, 6e-3, len(width))
+    points[:, 0] = np.interp(points[:, 0], old, width)
+    up = np.maximum(np.abs(points[:, 0]) - 4e-3, 0.0)
+    points[:, 2] += up * (1.0 - points[:, 2] / 60e-3)
+    return points, cells
+
+
 def write(path, points, cells, kind="hexahedron", **others):
     """Write a mesh file by meshio."""
     blocks = [(kind, cells), *others.items()]

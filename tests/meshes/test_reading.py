@@ -16,9 +16,9 @@ TETRAHEDRA = [[0, 1, 2, 6], [0, 2, 3, 6], [0, 3, 7, 6], [0, 7, 4, 6], [0, 4, 5, 
 WEDGES = [[0, 1, 2, 4, 5, 6], [0, 2, 3, 4, 6, 7]]
 
 
-def cells_of(kind):
+def cells_of(kind, cells=(3, 2, 5), **sizes):
     """Return a tapered bar, in mm, of cells of a kind."""
-    points, cells = taper(cells=(3, 2, 5))
+    points, cells = taper(cells=cells, **sizes)
     split = {"tetra": TETRAHEDRA, "wedge": WEDGES}.get(kind)
     return 1e3 * points, cells[:, split].reshape(-1, len(split[0])) if split else cells
 
@@ -35,11 +35,17 @@ def summary(half):
 @pytest.mark.parametrize("ending", decks.ENDINGS)
 @pytest.mark.parametrize("kind", ["hexahedron", "tetra", "wedge"])
 def test_every_format_gives_mass_inertia_and_lowest_point(tmp_path, ending, kind):
-    points, cells = cells_of(kind)
+    """Of a body drawn at random, and moved away from the origin along x and z."""
+    rng = np.random.default_rng([*map(ord, ending), *map(ord, kind)])
+    width, end, number = rng.uniform(4e-3, 20e-3), rng.uniform(0.3, 1.0), rng.integers(1, 5, 3)
+    sizes = {"width": width, "end": end, "length": width * rng.uniform(1.5, 9.0)}
+    points, cells = cells_of(kind, (1 + number[0], number[1], 2 + number[2]), **sizes)
+    points += rng.uniform(-30.0, 30.0, 3).round(3) * [1.0, 0.0, 1.0]
     body = read_own(decks.write(tmp_path / f"bar{ending}", points, cells), 1e-3)
     made = as_hexahedra(points / 1e3, ((kind, cells),))
-    assert summary(body.half) == pytest.approx(summary(own_body(made.points, made.cells).half), abs=1e-6)
-    assert len(body.half.cells) == {"hexahedron": 30, "tetra": 720, "wedge": 360}[kind]
+    wanted = summary(own_body(made.points, made.cells).half)
+    assert summary(body.half) == pytest.approx(wanted, rel=1e-6, abs=1e-6)
+    assert len(body.half.cells) == len(cells) * {"hexahedron": 1, "tetra": 4, "wedge": 6}[kind]
     same = own_body(made.points, made.cells).half
     assert (body.half.cells == same.cells).all()
     assert body.half.points == pytest.approx(same.points, abs=1e-9)

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import pytest
-from own_bodies import box, write
+from own_bodies import box, chamfered, write
 
 from fem_impact.answers.simulate import simulate as by_levels
 from fem_impact.run.simulate import simulate
@@ -79,3 +79,24 @@ def test_bands_of_a_flat_pin_hold_what_single_finer_meshes_gave():
     for key, finer in (("e_edge", 0.322), ("mu", 0.0273)):
         value, band = run.estimate(key)
         assert abs(value - finer) < band
+
+
+@pytest.mark.slow  # 170 s of processor time
+def test_a_chamfer_of_few_and_of_many_cells_gives_one_outcome(tmp_path):
+    """On its sharp edge e falls from .96 to .3 as the cells go from .8 to .1 mm: coarse levels have no band.
+
+    A level at .1 mm has one that is of use. Finer cells of the body's own make thinner ones there, so that
+    this level would take ten times as long: the finer body stops at .2 mm.
+    """
+    found = []
+    for steps, size in ((1, "0.1 mm"), (4, "0.2 mm")):
+        path = write(tmp_path / f"chamfer-{steps}.vtk", *chamfered(steps))
+        body = {"mesh": str(path), "material": "rod-steel"}
+        stated = scene(body, 0.57, {"angle": "30 deg", "speed": "1 m/s"}, size)
+        run = by_levels(replace(stated, accuracy=replace(stated.accuracy, levels=3)))
+        found.append([run.estimate(key) for key in ("e_edge", "mu")])
+    (e, mu), (e_fine, mu_fine) = found
+    assert abs(e[0] - e_fine[0]) <= e[1] + e_fine[1]
+    assert abs(mu[0] - mu_fine[0]) <= mu[1] + mu_fine[1]
+    assert e[1] < 0.2
+    assert abs(e[0] - e_fine[0]) < 0.25

@@ -5,7 +5,7 @@ from math import pi, sqrt
 
 import numpy as np
 import pytest
-from own_bodies import box, taper, write
+from own_bodies import box, chamfered, taper, write
 
 from fem_impact.case.case import Case
 from fem_impact.errors import SceneError
@@ -157,17 +157,6 @@ def test_the_same_mesh_is_read_once_and_found_by_its_content(scene, tmp_path):
     mesh = OwnMesh.of(str(tmp_path / "bar.vtu"), "mm")
     assert mesh == scene.projectile.own_mesh
     assert mesh.half() is scene.projectile.own_mesh.half()
-
-
-def chamfered(steps):
-    """A bar of 12 x 12 x 60 mm with chamfers of 2 mm at 45 degrees, so many cells along each."""
-    points, cells = taper(end=1.0, cells=(2 * steps + 2, 2, 8))
-    width = np.concatenate([np.linspace(-6e-3, -4e-3, steps + 1), [0.0], np.linspace(4e-3, 6e-3, steps + 1)])
-    old = np.linspace(-6e-3, 6e-3, len(width))
-    points[:, 0] = np.interp(points[:, 0], old, width)
-    up = np.maximum(np.abs(points[:, 0]) - 4e-3, 0.0)
-    points[:, 2] += up * (1.0 - points[:, 2] / 60e-3)
-    return points, cells
 
 
 def test_a_chamfer_is_accepted_however_fine_its_cells(tmp_path):
