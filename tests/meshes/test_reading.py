@@ -382,6 +382,18 @@ def test_damaged_files_are_refused_and_never_raise_anything_else(tmp_path, endin
     assert capfd.readouterr() == ("", "")
 
 
+def test_binary_files_of_gmsh_that_are_not_read_are_told_as_such(tmp_path):
+    path = tmp_path / "bar.msh"
+    for begin, reason in (
+        (b"4 1 8\n\x01\0\0\0\n", "is a binary file of Gmsh 4, which is not read. Save it as version 4.1"),
+        (b"4.1 1 8\n\0\0\0\x01\n", "in the other order of bytes. Save it as text"),
+        (b"4.1 1 8\n\x01\0\0\0\n$EndMeshFormat\n$Nodes\n\xff\xff", "states other counts than it holds"),
+    ):
+        path.write_bytes(b"$MeshFormat\n" + begin)
+        with pytest.raises(MeshError, match=reason):
+            read_own(path)
+
+
 def test_what_would_not_end_is_refused(tmp_path):
     """A range of numbers without end, a file that includes itself, more than once."""
     points, cells = cells_of("hexahedron")
