@@ -1,4 +1,4 @@
-"""Formats that meshio reads right: Gmsh, VTK, MED, Medit, XDMF and others."""
+"""Formats that meshio reads right: VTK, MED, Medit, XDMF and others."""
 
 from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import replace
@@ -80,8 +80,8 @@ def _stored(mesh: Any) -> StoredMesh:
     counts = {kind: sum(count for one, count in ignored if one == kind) for kind, _ in ignored}
     told = tuple(counted(count, f"cell of type {kind}") for kind, count in counts.items())
     points = np.asarray(mesh.points, np.float64)
-    surfaces = replace(found.surfaces(), sets=_sets(mesh, faces_at, 2), nodes=_node_sets(mesh))
-    return StoredMesh(points, tuple(blocks), _sets(mesh, at, 3), told, surfaces=surfaces)
+    surfaces = replace(found.surfaces(), sets=_sets(mesh, faces_at), nodes=_node_sets(mesh))
+    return StoredMesh(points, tuple(blocks), _sets(mesh, at), told, surfaces=surfaces)
 
 
 def _node_sets(mesh: Any) -> dict[str, IntArray]:
@@ -94,27 +94,23 @@ def _node_sets(mesh: Any) -> dict[str, IntArray]:
     return sets
 
 
-def _sets(mesh: Any, at: list[IntArray], dimension: int) -> dict[str, IntArray]:
+def _sets(mesh: Any, at: list[IntArray]) -> dict[str, IntArray]:
     """Return named sets, and regions by the whole numbers that cells are marked with.
 
-    Where the cells of each block stand ``at`` among those of the dimension, or nowhere.
+    The numbers ``at`` which the cells of each block count are none for those of another dimension.
     """
     sets: dict[str, list[IntArray]] = {}
     for name, members in mesh.cell_sets.items():
-        if name.startswith("gmsh:"):
-            continue
         for places, chosen in zip(at, members, strict=False):
             if chosen is not None and len(places):
                 sets.setdefault(name, []).append(places[np.asarray(chosen, np.int64)])
-    names = {int(number): name for name, (number, dim) in mesh.field_data.items() if int(dim) == dimension}
     for key, values in mesh.cell_data.items():
         for places, marks in zip(at, values, strict=False):
             marks = np.asarray(marks)
             if not len(places) or marks.ndim != 1 or marks.dtype.kind not in "iu":
                 continue
             for mark in np.unique(marks)[: VALUES + 1]:
-                name = names.get(int(mark)) if key == "gmsh:physical" else None
-                for one in {name or f"{key.rpartition(':')[2]} {mark}", *mesh_tags(mesh, key, int(mark))}:
+                for one in {f"{key.rpartition(':')[2]} {mark}", *mesh_tags(mesh, key, int(mark))}:
                     sets.setdefault(one, []).append(places[marks == mark])
     return {name: np.unique(np.concatenate(parts)) for name, parts in sets.items()}
 
