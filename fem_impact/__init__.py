@@ -25,10 +25,14 @@ if TYPE_CHECKING:
     from fem_impact.answers.sweep_results import Results
     from fem_impact.answers.verdict.assess import Verdict, assess
     from fem_impact.case.case import Case
+    from fem_impact.fem.exchange import to_meshio, to_pyvista, to_skfem
     from fem_impact.files.fields import read_fields
+    from fem_impact.films.film import render
+    from fem_impact.modal.rod import modes
     from fem_impact.options import RunOptions
     from fem_impact.outcome.keys import Unknown, known
     from fem_impact.outcome.record import Outcome
+    from fem_impact.pages.write import write_report
     from fem_impact.scene import units
     from fem_impact.scene.shipped import load, replace, replace_all
     from fem_impact.scene.types import Scene
@@ -47,14 +51,20 @@ __all__ = [
     "format_quantity",
     "known",
     "load",
+    "modes",
     "parse_quantity",
     "read_fields",
     "read_history",
+    "render",
     "replace",
     "replace_all",
     "simulate",
     "sweep",
+    "to_meshio",
+    "to_pyvista",
+    "to_skfem",
     "units",
+    "write_report",
 ]
 
 _PLACES = {
@@ -69,14 +79,20 @@ _PLACES = {
     "format_quantity": "scene.units:format_quantity",
     "known": "outcome.keys:known",
     "load": "scene.shipped:load",
+    "modes": "modal.rod:modes",
     "parse_quantity": "scene.units:parse_quantity",
     "read_fields": "files.fields:read_fields",
     "read_history": "tables.history:read_history",
+    "render": "films.film:render",
     "replace": "scene.shipped:replace",
     "replace_all": "scene.shipped:replace_all",
     "simulate": "answers.simulate:simulate",
     "sweep": "answers.sweep:sweep",
+    "to_meshio": "fem.exchange:to_meshio",
+    "to_pyvista": "fem.exchange:to_pyvista",
+    "to_skfem": "fem.exchange:to_skfem",
     "units": "scene.units:",  # the module itself
+    "write_report": "pages.write:write_report",
 }
 
 

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from math import sqrt
+from math import pi, sqrt
+from typing import NamedTuple
 
 import numpy as np
 
 from fem_impact.arrays import Array
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.case import Case
+from fem_impact.errors import SceneError
 from fem_impact.fem.body import MeshedBodies
 from fem_impact.modal.motion import Sites
 from fem_impact.modal.sites import nearest_skin, rotated, settle, sites_of, skin
@@ -55,6 +57,41 @@ class ModalRod:
     def flexibility(self) -> float:
         """Of the modes under a force along n at what touches first, m/N."""
         return float((self.sites.along_n[self.first] ** 2 / self.omega**2).sum())
+
+
+class FreeModes(NamedTuple):
+    """Free elastic modes of a projectile, symmetric about its plane of motion, of the half y >= 0.
+
+    Attributes
+    ----------
+    points : (n, 3), m, nodes in the rod frame: x and y across, z along the axis from the tip
+    shape : (n, 2, k), kg^-1/2, displacements along x and z, normed to the mass of the whole rod
+    omega : (k,) rad/s, ascending
+    """
+
+    points: Array
+    shape: Array
+    omega: Array
+
+    @property
+    def frequency(self) -> Array:
+        """Frequencies (k,), Hz."""
+        return np.asarray(self.omega / (2 * pi))
+
+
+def modes(scene: Scene) -> FreeModes:
+    """Return the free modes of a scene's projectile by finite elements; those found once are kept.
+
+    Raises
+    ------
+    SceneError
+        The projectile cannot be meshed, or is a mesh of the user's own.
+    """
+    if scene.projectile.own_mesh is not None:
+        path = scene.projectile.own_mesh.path
+        problem = "is a mesh of your own, whose modes are found within a run alone."
+        raise SceneError(problem, key="projectile.mesh", value=path, remedy="Give a body of revolution.")
+    return FreeModes(*_modes(_elastic(scene.projectile), scene.across))
 
 
 def modal_rod(bodies: Bodies, vibrating: bool = True) -> ModalRod:

@@ -16,7 +16,7 @@ from page_blocks import PAGES, ROOT
 
 SCRIPTS = sorted((ROOT / "docs" / "gallery").glob("*.py"))
 STORED = ROOT / "docs" / "pictures" / "gallery"
-STALE = 0.01
+STALE = 0.003
 """Largest difference of a number over the range of its panel: about a line's width."""
 
 
