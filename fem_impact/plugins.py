@@ -6,7 +6,7 @@ A package names them in its ``pyproject.toml``, such as::
     "al-6082-t6" = "my_package:AL_6082"
 
 ======================== ======================================================================
-group                what the name stands for
+group                    what the name stands for
 ======================== ======================================================================
 fem_impact.materials     a table of values with their units and a table ``sources``, as in materials.toml
 fem_impact.shapes        a function that makes a `rigid.Nose` from the radii of rod and tip, m

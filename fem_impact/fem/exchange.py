@@ -27,7 +27,7 @@ def to_skfem(mesh: HexMesh | FieldFile) -> MeshHex:
     >>> from meshes import block
     >>> mesh = to_skfem(block((0.0, 0.0, -3.0), (2.0, 1.0, 0.0), 0.5))
     >>> from skfem import Basis, ElementHex1
-    >>> round(Basis(mesh, ElementHex1()).dx.sum(), 12)
+    >>> round(float(Basis(mesh, ElementHex1()).dx.sum()), 12)
     6.0
     """
     return hex_mesh(np.asarray(mesh.points, np.float64), np.asarray(mesh.cells, np.int64))
