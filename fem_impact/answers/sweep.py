@@ -33,7 +33,6 @@ from fem_impact.progress import Notice, NullMeter
 from fem_impact.scene.shipped import named
 from fem_impact.scene.types import Scene
 from fem_impact.scene.write import digest
-from fem_impact.tables.table import Cell, Table
 
 if TYPE_CHECKING:
     from fem_impact.progress import ProgressMeter
@@ -187,27 +186,10 @@ def publish_sweep(
 
 def _sheet(results: Results, columns: Sequence[str]) -> Sheet:
     """Return the table of all columns; the summary shows the chosen ones, or those known of `SHORT`."""
-    whole = results.table()
-    names = columns or [name for name in SHORT if any(whole.texts(name))]
-    stated = results.table(())
-    kept = [at for at, name in enumerate(stated.names) if name != "reason" or any(whole.texts("reason"))]
-    rows = [
-        [*(cells[at] for at in kept), *(_cell(row, name) for name in names)]
-        for row, cells in list(zip(results, stated.rows, strict=True))[:MOST_ROWS]
-    ]
-    brief = Table.of((*(stated.names[at] for at in kept), *names), rows)
+    whole, brief = results.table(), results.brief(columns)
+    brief = replace(brief, rows=brief.rows[:MOST_ROWS])
     caption = "All cases" if len(whole) <= MOST_ROWS else f"The first {MOST_ROWS} of {len(whole)} cases"
     return Sheet("sweep", caption, whole, brief=brief)
-
-
-def _cell(row: SweepRow, name: str) -> Cell:
-    """Return a value of a row for a reader: a number with its half-width."""
-    if row.outcome is None or name in row.outcome.reasons:
-        return None
-    value = KEY_TABLE[name].of(row.outcome)
-    if isinstance(value, tuple):
-        return len(value)
-    return row.outcome.told(name) if isinstance(value, float) else value
 
 
 def _not_known(results: Results, columns: Sequence[str]) -> list[str]:
@@ -253,7 +235,7 @@ def _findings(results: Results, drawn: Sequence[str]) -> list[str]:
         values, label = results.numbers(name), SHOWN.get(name, name)
         if np.isfinite(values).any():
             ends = (int(np.nanargmin(values)), int(np.nanargmax(values)))
-            low, high = (f"{_cell(results.rows[at], name)} ({_stated(results.rows[at])})" for at in ends)
+            low, high = (f"{results.rows[at].told(name)} ({_stated(results.rows[at])})" for at in ends)
             titled = f"{label[0].upper()}{label[1:]} (`{name}`)" if name in SHOWN else f"`{name}`"
             sentences.append(f"{titled}: from {low} to {high}.")
     return sentences

@@ -11,7 +11,7 @@ from fem_impact.answers.vary import Variation, in_unit, measure
 from fem_impact.errors import UsageError, did_you_mean
 from fem_impact.jobs.job import Failure
 from fem_impact.outcome.keys import known, or_none
-from fem_impact.outcome.record import KEYS, Outcome
+from fem_impact.outcome.record import KEY_TABLE, KEYS, Outcome
 from fem_impact.tables.table import Cell, Table
 
 if TYPE_CHECKING:
@@ -72,6 +72,15 @@ class SweepRow:
     outcome: Outcome | None
     reason: str
 
+    def told(self, name: str) -> Cell:
+        """Return a column of the outcome for a reader: a number with its half-width; None: not known."""
+        if self.outcome is None or name in self.outcome.reasons:
+            return None
+        value = KEY_TABLE[name].of(self.outcome)
+        if isinstance(value, tuple):
+            return len(value)
+        return self.outcome.told(name) if isinstance(value, float) else value
+
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Results(Sequence[SweepRow]):
@@ -109,7 +118,7 @@ class Results(Sequence[SweepRow]):
         return f"Results({len(self.rows)} cases of {', '.join(self.vary)}; {failed} failed)"
 
     def _repr_html_(self) -> str:
-        table = self.table(SHORT)  # names stay as `numbers` and `to_dataframe` take them
+        table = self.brief()  # names stay as `numbers` and `to_dataframe` take them
         named = tuple(replace(column, label=f"`{column.name}`") for column in table.columns)
         return replace(table, columns=named).html(repr(self))
 
@@ -180,6 +189,24 @@ class Results(Sequence[SweepRow]):
             for row in self.rows
         ]
         return Table.of(("case", *heads, *STATE, *listed), rows)
+
+    def brief(self, columns: Sequence[str] = ()) -> Table:
+        """Return the table for a reader: values, and chosen columns or those known of `SHORT`, with errors.
+
+        Raises
+        ------
+        UsageError
+            A name is no column of an outcome.
+        """
+        require_columns(columns)
+        stated, whole = self.table(()), self.table(SHORT)
+        names = columns or [name for name in SHORT if any(whole.texts(name))]
+        kept = [at for at, name in enumerate(stated.names) if name != "reason" or any(stated.texts(name))]
+        rows = [
+            [*(cells[at] for at in kept), *(row.told(name) for name in names)]
+            for row, cells in zip(self, stated.rows, strict=True)
+        ]
+        return Table.of((*(stated.names[at] for at in kept), *names), rows)
 
     def to_dataframe(self, columns: Sequence[str] = COLUMNS) -> pandas.DataFrame:
         """Return the table as a data frame of pandas, of every column of an outcome or of chosen ones.

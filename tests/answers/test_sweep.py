@@ -242,6 +242,7 @@ def test_the_table_holds_every_scalar_of_an_outcome_once(swept):
         "stopped_because",
         "mesh_limit",
         "mesh_band",
+        "model_band",
         "effect_choices",
     }
     assert scalars - told_by_state - {"effects"} <= set(table.names)
@@ -348,7 +349,7 @@ def test_a_case_that_cannot_run_is_a_row_with_its_reason(swept):
     failed = [row for row in results if row.outcome is None]
     assert len(failed) == 2 and len(results) == 6
     assert all("the nose is 3 mm long, the body only 1 mm" in row.reason for row in failed)
-    assert "2 failed" in repr(results) and "<code>E_vib_over_E_0</code>" in results._repr_html_()
+    assert "2 failed" in repr(results) and "<code>e_edge</code>" in results._repr_html_()
 
 
 CLOSED = [["40 mm", "6 mm"], ["150 mm", "6 mm"]]
