@@ -152,8 +152,7 @@ class Projectile:
 
     def reaches(self, alpha: float, height: float) -> tuple[float, float]:
         """How far, m, it goes down and up the slope at a `height` > 0, m, over the lowest point."""
-        side = np.vstack([self.meridian(), [self.diameter / 2, self.length]])
-        return mirrored_chord(both_sides(side), alpha, height)
+        return mirrored_chord(_outline(self), alpha, height)
 
     def rounds(self) -> list[Round]:
         """Arcs and corners of the convex outline in the plane of motion, in order around it."""
@@ -186,6 +185,12 @@ class Projectile:
     def corner_arms(self, alpha: ArrayLike) -> Arms:
         """Arms d_c, d_d, m, of the sharp corner of a plain cylinder of this size (Eq 6-7)."""
         return corner_arms(self.length, self.diameter, alpha)
+
+
+@lru_cache(maxsize=128)
+def _outline(rod: Projectile) -> Floats:
+    """Return the vertices (k, 2), (x, z), m, of both sides of the meridian, without the tail."""
+    return both_sides(np.vstack([rod.meridian(), [rod.diameter / 2, rod.length]]))
 
 
 @lru_cache(maxsize=128)

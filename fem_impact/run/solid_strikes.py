@@ -15,7 +15,7 @@ import numpy as np
 from fem_impact.arrays import Array
 from fem_impact.case.bodies import Bodies, LaterStrike
 from fem_impact.case.case import Case
-from fem_impact.case.record import BodyRecord, ContactRecord, expected_record, joined
+from fem_impact.case.record import expected_record, joined
 from fem_impact.errors import SceneError
 from fem_impact.fem.flight import FreeVibration
 from fem_impact.modal.rod import ModalRod
@@ -43,7 +43,7 @@ NARROW = "Of strike {} {}."
 """What is told of a strike whose contact is narrow: its number, and how narrow."""
 NEAR, ALIKE = 0.1, 0.9
 """Logarithm of the ratio of frequencies, and cosine between movements, within which two modes are one."""
-WITHIN = 1.5  # cells beyond skin that may touch, within which a strike counts as on it
+WITHIN = 1.0  # cells beyond what may touch, within which a strike counts as on it
 
 
 def with_sites(case: Case, count: int) -> Case:
@@ -198,17 +198,13 @@ class SolidCourse:
         found = next_touch(self.body.shape, self.state, self.body.pull.g_n)
         return None if found is None else self.state.flown(found[0], self.body.pull.g_n, self.body.pull.g_t)
 
-    @property
-    def _record(self) -> ContactRecord:
-        assert self.case.record is not None, "a rod that strikes more than once has its zones from a record"
-        return self.case.record
-
     def _beside(self, later: LaterStrike) -> float:
-        """Return how far, m, a place lies beside the skin that may touch; 0 or less on it."""
-        known: BodyRecord = self._record.rod
-        x, z = later.lowest
-        away = float(np.hypot(known.touched[:, 0] - x, known.touched[:, 2] - z).min())
-        return away - WITHIN * known.edge
+        """Return how far, m, a place lies beside what may touch of the rod's mesh; 0 or less on it."""
+        g = self.last.model.geometry
+        mesh, (x, z) = g.rod.mesh, later.lowest
+        touching = mesh.free_skin if g.barrier is None else np.unique(mesh.cells[g.touching])
+        away = np.hypot(mesh.points[touching, 0] - x, mesh.points[touching, 2] - z)
+        return float(away.min()) - WITHIN * g.tip_size
 
     def _strike(self, before: State, later: LaterStrike, options: RunOptions) -> bool:
         """Strike at a later state in flight; return whether the bodies part again."""
@@ -219,7 +215,8 @@ class SolidCourse:
         accuracy = replace(self.case.scene.accuracy, tip_size=zones.tip_size, barrier_size=zones.barrier_size)
         scene = replace(self.case.scene, accuracy=accuracy, effects=self.case.active)
         here = expected_record(_bodies(self.case, later), zones.tip_size, zones.barrier_size)
-        case = Case(scene, "solid", replace(here, rod=self._record.rod), later)
+        assert self.case.record is not None, "a rod that strikes again has its zones from a record"
+        case = Case(scene, "solid", replace(here, rod=self.case.record.rod), later)
         model = build(case, mesh=self.last.model.geometry.rod)
         view = later_view(model, self.last, before.alpha - self.begun)
         motion = view.rigid(model.initial_state())

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from fem_impact.answers.simulate import simulate as simulate_levels
 from fem_impact.case.case import Case
 from fem_impact.errors import SceneError
 from fem_impact.modal.rod import modal_rod
@@ -116,8 +117,18 @@ def test_a_yielding_rod_strikes_in_the_order_of_the_reduced_model():
     assert all(one.plastic > 0.0 for one in solid.each)
 
 
-@pytest.mark.parametrize("effects", [["auto", "-vibration"]])
-def test_what_is_not_handed_on_is_refused(effects):
-    scene = replace_all(load("quick"), FALL | {"effects": effects})
+@pytest.mark.slow
+def test_levels_of_meshes_run_the_sequence_and_tell_how_far_they_differ():
+    """The tail of the pilot's mesh is too coarse to touch: there finite elements stop, and say so."""
+    usual = {key: value for key, value in FALL.items() if not key.startswith("accuracy")}
+    outcome = simulate_levels(replace_all(load("quick"), usual | {"impact.v_n": "-1.5 m/s"}))
+    assert [one.fidelity for one in outcome.strikes.each] == ["solid", "solid", "modal"]
+    told = " ".join(texts(outcome.validity.limitations, "resolution"))
+    assert "From the last level of meshes but one to the last: strike 1" in told
+    assert "strike 2" in told
+
+
+def test_what_is_not_handed_on_is_refused():
+    scene = replace_all(load("quick"), FALL | {"effects": ["auto", "-vibration"]})
     with pytest.raises(SceneError, match=r"strikes.fidelity.*solid for the first 1, then rigid"):
         simulate(scene, "solid")
