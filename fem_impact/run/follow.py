@@ -47,15 +47,16 @@ def _strikes_of(
 ) -> tuple[Strikes, tuple[Limitation, ...]]:
     """Return the strikes of a case, whose first impact has an ``outcome``, and what limits trust in them."""
     after = [outcome.motion.V_n, outcome.motion.V_t, outcome.motion.Omega]
-    lost = next((v for v in after if isinstance(v, Unknown)), None)
-    if end is not None and lost is not None:
-        none = unknown(Strikes, f"the motion after the first impact is not known: {lost.reason}")
-        return replace(none, until=case.scene.impact.until), ()
+    lost = next((v.reason for v in after if isinstance(v, Unknown)), "")
     course = _Course.of(case, end, options)
-    course.follow()
-    body = course.body
-    strikes = body.strikes(course.state, course.finish, *course.held)
-    return strikes, limitations("model", *course.told, *RULES, *body.doubts())
+    if end is None or not lost:
+        course.follow()
+    if not course.body.each:
+        why = lost or outcome.validity.stopped_because
+        none = unknown(Strikes, f"the motion after the first impact is not known: {why}")
+        return replace(none, until=case.scene.impact.until), ()
+    strikes = course.body.strikes(course.state, course.finish, *course.held)
+    return strikes, limitations("model", *course.told, *RULES, *course.body.doubts())
 
 
 @dataclass(eq=False)
@@ -92,16 +93,15 @@ class _Course:
     @property
     def held(self) -> tuple[float, float]:
         """Energy, J, that vibration holds, and that it has lost since the last strike."""
-        return (
-            (self.modal.vibration, self.modal.damped) if self.modal else (self.body.each[-1].vibration, 0.0)
-        )
+        vibrating = self.modal or self.solid
+        return (vibrating.vibration, vibrating.damped) if vibrating else (0.0, 0.0)
 
     def follow(self) -> None:
         """Follow the body through all stages."""
         models = {"rigid": self._by_rigid, "modal": self._by_modes, "solid": self._by_elements}
         for model, count in self.case.scene.strikes.stages(self.case.fidelity):
             done, self.body.upto = len(self.body.each), None
-            if self.finish is not Finish.COUNTED or self.body.missing == 0:
+            if self.finish is not Finish.COUNTED or self.body.missing == 0 or (self.modal and not done):
                 break
             if done:
                 self._tell_change(model, done)
@@ -120,12 +120,15 @@ class _Course:
 
         if not self.body.each:
             self.modal = ModalCourse.at_first(self.case, self.body)
+            if not self.modal.finished:  # nothing is known of what follows
+                self.body.each.clear()
+                return
         else:
             self.modal = ModalCourse.going_on(self.case, self.body, self.state)
             if self.solid:
                 self.modal.q, self.modal.rate = self.solid.in_modes_of(self.modal.rod)
-                self.modal.damped = self.solid.damped + self.solid.held - self.modal.vibration
-                self.told.append(PASSED.format(self.modal.vibration / (self.solid.held or 1.0)))
+                self.modal.damped = self.solid.damped + self.solid.vibration - self.modal.vibration
+                self.told.append(PASSED.format(self.modal.vibration / (self.solid.vibration or 1.0)))
         self.finish = self.modal.to_the_end()
         self.state = self.modal.state
 

@@ -92,7 +92,7 @@ class SolidCourse:
     last : the run of the last strike
     begun : inclination, rad, at which that run began
     state : the rigid motion now
-    vibration : that of the rod now
+    flight : its vibration now
     loss : loss factor of the modes in flight
     damped : energy, J, that the modes have lost since the last strike
     told : what limits trust in them
@@ -103,7 +103,7 @@ class SolidCourse:
     last: SolidResult
     begun: float
     state: State
-    vibration: FreeVibration
+    flight: FreeVibration
     loss: float
     damped: float = 0.0
     told: list[str] = field(default_factory=list)
@@ -123,19 +123,15 @@ class SolidCourse:
         return course
 
     @property
-    def held(self) -> float:
+    def vibration(self) -> float:
         """Energy of the vibration, J."""
-        return self.vibration.energy
+        return self.flight.energy
 
     @property
     def limits(self) -> list[str]:
         """What limits trust in them."""
-        count = len(self.vibration.a)
-        return (
-            [TOLD.format(len(self.body.each), count, self.loss), *self.told]
-            if self.body.upto != 1
-            else self.told
-        )
+        several = [TOLD.format(len(self.body.each), len(self.flight.a), self.loss)]
+        return [*(several if self.body.upto != 1 else []), *self.told]
 
     def to_the_end(self, options: RunOptions) -> Finish:
         """Follow the rod: hard strikes by finite elements, what lies between them as a rigid body."""
@@ -165,7 +161,7 @@ class SolidCourse:
         Both models have modes of the same rod on other meshes: those of like frequency that move what may
         touch alike are one, and keep their energy. Vibration without such a partner is left out.
         """
-        modes, last = self.vibration.modes, self.last
+        modes, last = self.flight.modes, self.last
         back = self.case.scene.impact.angle - self.begun  # to the attitude in which the other's modes stand
         sites = range(len(rod.sites.along_t))
         x = turned(last.model.geometry.rod_points - last.view.rigid(last.model.initial_state()).centre, back)
@@ -181,16 +177,16 @@ class SolidCourse:
             j = int(np.abs(row).argmax())
             if abs(row[j]) > ALIKE and i == int(np.abs(alike[:, j]).argmax()):
                 size = np.sign(row[j]) * sqrt(2.0) * modes.omega[i]  # amplitudes are those of the half rod
-                q[j], rate[j] = size * self.vibration.a[i] / rod.omega[j], size * self.vibration.b[i]
+                q[j], rate[j] = size * self.flight.a[i] / rod.omega[j], size * self.flight.b[i]
         return q, rate
 
     def swing_on(self, state: State) -> None:
         """Take over a later state of the rigid body; what the modes lose meanwhile is damping."""
-        held, modes = self.held, self.vibration.modes
-        dt, rates = state.time - self.state.time, self.vibration.b * modes.omega
-        a, rate = swung(modes.omega, self.loss, dt, self.vibration.a, rates)
-        self.vibration = replace(self.vibration, a=a, b=rate / modes.omega)
-        self.damped += held - self.held
+        held, modes = self.vibration, self.flight.modes
+        dt, rates = state.time - self.state.time, self.flight.b * modes.omega
+        a, rate = swung(modes.omega, self.loss, dt, self.flight.a, rates)
+        self.flight = replace(self.flight, a=a, b=rate / modes.omega)
+        self.damped += held - self.vibration
         self.state = state
 
     def _touch(self) -> State | None:
@@ -222,7 +218,7 @@ class SolidCourse:
         motion = view.rigid(model.initial_state())
         centre = np.array([motion.centre[0], 0.0, before.height])
         moved = replace(motion, centre=centre, V_n=before.V_n, V_t=before.V_t, Omega=before.Omega)
-        vibration = replace(self.vibration, modes=view.modes)
+        vibration = replace(self.flight, modes=view.modes)
         model = lowered(carry(model, view, self.last, turn, moved, vibration), START_GAP)
         taken = vibration.energy
         end = solve(case, replace(options, out=None, resume=False), model, view, one_strike(self.case))
@@ -250,7 +246,7 @@ class SolidCourse:
             self.told.append(NARROW.format(len(self.body.each), narrow))
         outside = self.body.touching(after.alpha, after.V_n, after.V_t, after.Omega).height  # beside its dent
         self.state = after._replace(height=max(after.height, outside))
-        self.last, self.vibration, self.damped = end, end.flight, 0.0
+        self.last, self.flight, self.damped = end, end.flight, 0.0
 
     def _recorded(self, before: State, after: State, end: SolidResult, taken: float) -> StrikeRecord:
         """Return the record of a strike that began with a vibration ``taken``, J."""

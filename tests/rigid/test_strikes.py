@@ -127,6 +127,39 @@ def test_the_second_strike_of_a_rod_without_friction(e):
     assert wanted == pytest.approx(1.5 * (1 + e) - e)
 
 
+@pytest.mark.parametrize("e", [0.0, 0.5, 1.0])
+@pytest.mark.parametrize("f", [0.0, 0.1, 0.3])
+def test_two_strikes_of_a_falling_rod_that_slides(e, f):
+    """Impulse and momentum with Coulomb's friction, p (1, f), in closed form; the flight by a fine search."""
+    length, alpha, v, slide = 1.0, math.radians(60.0), 2.0, -6.0
+    k2, half = length**2 / 12, 0.5
+
+    def struck(alpha, V_n, V_t, Omega, end):
+        d_c, d_d = end * half * math.sin(alpha), end * half * math.cos(alpha)
+        p = -(1 + e) * (V_n + d_c * Omega) / (1 + d_c * (d_c - f * d_d) / k2)
+        after = V_n + p, V_t + f * p, Omega + (d_c * p - d_d * f * p) / k2
+        assert after[1] - d_d * after[2] < 0.0  # it slides down to the end
+        return after
+
+    V_n, V_t, Omega = struck(alpha, -v, slide, 0.0, 1)
+    t = np.linspace(0.0, 0.5, 500001)[1:]
+    turned = alpha + Omega * t
+    over = half * math.cos(alpha) + V_n * t - 0.5 * G * t**2
+    gap = np.stack([over - end * half * np.cos(turned) for end in (1, -1)])
+    later = int(np.argmax((gap < 0.0).any(axis=0)))
+    end = 1 if gap[0, later] < 0.0 else -1
+    found = follow(thin(length), start(thin(length), 60.0, -v, slide), k2, e, f, until=2)
+    first, second = found.strikes
+    assert (first.V_n, first.V_t, first.Omega) == pytest.approx((V_n, V_t, Omega), rel=1e-12)
+    if e == 0.0:
+        return  # the contact is held: no flight
+    assert second.before.state.time == pytest.approx(t[later], abs=2e-6)
+    assert second.before.corner == (0 if end == 1 else 1)
+    state = second.before.state
+    wanted = struck(state.alpha, state.V_n, state.V_t, state.Omega, end)
+    assert (second.V_n, second.V_t, second.Omega) == pytest.approx(wanted, rel=1e-12)
+
+
 # their tables 4.1 and 4.2: length, moment of inertia, speed of the tail with an
 # elastic and a plastic nose, in their units
 SLAPDOWN = [
