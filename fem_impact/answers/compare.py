@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
-from fem_impact.outcome.keys import Key, Unknown, known, or_none
+from fem_impact.outcome.keys import Key, Num, Unknown, known, or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.outcome.shares import shares
-from fem_impact.run.tests import MeasuredTests
+from fem_impact.run.tests import OTHERS, MeasuredTests
 from rigid.experiments import Statistic, measured_set
 
 ComparisonRow = dict[str, Any]
@@ -86,6 +87,21 @@ def verdict(model: float, band: float | None, measured: Statistic) -> str:
     return f"miss by {beyond if away > 0 else -beyond:+.1f} SD"
 
 
+def measured_value(outcome: Outcome, name: str) -> tuple[Num, float | None]:
+    """Return value and half band of a number of tests: a key of the outcome, or one of `OTHERS`."""
+    return (OTHERS[name](outcome), None) if name in OTHERS else outcome.estimate(name)
+
+
+def _quantities(measured: Iterable[str]) -> tuple[ComparedQuantity, ...]:
+    """Return all compared quantities: those of a camera, others that the tests hold, those none can see."""
+    usual = {quantity.measured for quantity in MEASURED}
+    more = [ComparedQuantity(n, KEY_TABLE[n], n) for n in measured if n in KEY_TABLE and n not in usual]
+    other = [
+        ComparedQuantity(n, Key(n, "number", n.rsplit("_", 1)[1], ""), n) for n in measured if n in OTHERS
+    ]
+    return (*MEASURED, *more, *other, *UNSEEN)
+
+
 def compare(outcome: Outcome, tests: MeasuredTests | None = None) -> list[ComparisonRow]:
     """Return one row a quantity of an outcome beside tests; without them beside the set of its scene's id.
 
@@ -94,8 +110,8 @@ def compare(outcome: Outcome, tests: MeasuredTests | None = None) -> list[Compar
     """
     set_id, rows = outcome.provenance.scene_id, []
     statistics = (tests or measured_set(set_id)).statistics()
-    for quantity in (*MEASURED, *UNSEEN):
-        key, (model, band) = quantity.key, outcome.estimate(quantity.key)
+    for quantity in _quantities(statistics):
+        key, (model, band) = quantity.key, measured_value(outcome, quantity.key.name)
         computed = {"set": set_id, "quantity": quantity.name, "unit": key.unit, "model": or_none(model)}
         measured = statistics.get(quantity.measured or "")
         if isinstance(model, Unknown):

@@ -15,6 +15,7 @@ from fem_impact.errors import EXIT_CODES, UsageError, did_you_mean
 COMMANDS = {
     "run": "compute one scene and write its results",
     "check": "check a scene and say what it comes to, without computing",
+    "validate": "compare a scene with its tests, with uncertainties: which input to measure better",
     "assess": "say whether rigid theory may be used for a scene, and what vibration costs",
     "sweep": "compute a scene with values varied in all combinations",
     "cost": "show what accuracy costs: error and computing time of every setting",

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import hypot
 from pathlib import Path
@@ -13,11 +13,20 @@ import numpy as np
 
 from fem_impact.arrays import Array, Ints
 from fem_impact.case.bodies import Bodies
+from fem_impact.outcome.keys import Num, Unknown
+from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.scene.camera import Camera, read_camera
 from fem_impact.scene.means import Mean, holds_means, read_means
 from fem_impact.scene.types import OWN
 from rigid import Arms, kinetic_energy
-from rigid.experiments import Statistic, derived_columns, measured_set, of_mean, statistic
+from rigid.experiments import (
+    Statistic,
+    covariance_of_means,
+    derived_columns,
+    measured_set,
+    of_mean,
+    statistic,
+)
 
 if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
@@ -33,6 +42,28 @@ class MeasuredTests(Protocol):
     def statistics(self) -> dict[str, Statistic]:
         """Return the statistics by quantity, SI."""
 
+    def covariance(self, names: Sequence[str]) -> Array:
+        """Return the covariance (k, k) of the means of named quantities, SI."""
+
+
+def _contact_time(outcome: Outcome) -> Num:
+    intervals = outcome.contact.intervals
+    return intervals if isinstance(intervals, Unknown) else sum(one.end - one.start for one in intervals)
+
+
+def _depth(outcome: Outcome) -> Num:
+    sites = outcome.contact.sites
+    return sites if isinstance(sites, Unknown) else max((one.depth for one in sites), default=0.0)
+
+
+OTHERS: dict[str, Callable[[Outcome], Num]] = {
+    "contact_time_s": _contact_time,
+    "depth_m": _depth,
+}
+"""Numbers of tests that are no key of an outcome: time of all contacts, indentation of the barrier."""
+NUMBERS = frozenset({key.name for key in KEY_TABLE.values() if key.kind == "number"} | set(OTHERS))
+"""What a file of means may state beside the quantities of a camera."""
+
 
 @dataclass(frozen=True, slots=True)
 class MeanTests:
@@ -43,7 +74,15 @@ class MeanTests:
 
     def statistics(self) -> dict[str, Statistic]:
         """Return mean, standard deviation and 95 % interval of the mean for each stated quantity."""
-        return {name: of_mean(mean.mean, mean.sd, mean.n) for name, mean in self.means.items()}
+        return {
+            name: replace(of_mean(mean.mean, mean.sd, mean.n), systematic=mean.systematic)
+            for name, mean in self.means.items()
+        }
+
+    def covariance(self, names: Sequence[str]) -> Array:
+        """Return the covariance (k, k) of means; how they belong together is not stated, so they do not."""
+        stated = [self.means[name] for name in names]
+        return np.diag([one.sd**2 / one.n + one.systematic**2 for one in stated])
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,8 +96,16 @@ class SingleTests:
 
     def statistics(self) -> dict[str, Statistic]:
         """Return mean, standard deviation and 95 % interval of the mean, of what follows from them too."""
+        return {name: statistic(values) for name, values in self._columns().items()}
+
+    def covariance(self, names: Sequence[str]) -> Array:
+        """Return the covariance (k, k) of means, from how they vary together between tests."""
+        return covariance_of_means(self._columns(), names)
+
+    def _columns(self) -> dict[str, Array]:
+        """Return each quantity of all tests, those that follow from the velocities too."""
         derived = derived_columns(self.motion, **self.arms._asdict(), k2=self.k2, mass=self.mass)
-        return {name: statistic(values) for name, values in {**self.motion, **derived}.items()}
+        return {**self.motion, **derived}
 
 
 def tests_of(scene: Scene) -> MeasuredTests | None:
@@ -126,7 +173,7 @@ def _own(scene: Scene, changed: int) -> MeasuredTests:
     """Return the tests of a file; ``changed`` is when, so that one that is changed is read again."""
     file = scene.measured or ""
     if holds_means(file):
-        means = read_means(file)
+        means = read_means(file, NUMBERS)
         return MeanTests(_arms(scene, means.arms), means.means)
     camera, body = read_camera(file), scene.projectile.rigid_body
     return SingleTests(_arms(scene, camera.arms), camera.motion, body.k2, body.mass)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -24,11 +24,15 @@ SCATTER = ("sd", "standard_error")
 
 @dataclass(frozen=True, slots=True)
 class Mean:
-    """Mean and standard deviation of single tests, SI, and the number of tests."""
+    """Mean and standard deviation of single tests, SI, and the number of tests.
+
+    ``systematic`` is the standard uncertainty that all tests share, such as that of the instrument.
+    """
 
     mean: float
     sd: float
     n: int
+    systematic: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +48,7 @@ def holds_means(path: str | Path) -> bool:
     return "quantity" in read_user_table(path, f"{TESTS} (single tests) or {HEADER} (means)").names
 
 
-def read_means(path: str | Path) -> Means:
+def read_means(path: str | Path, others: Collection[str] = ()) -> Means:
     """Read means with their scatter.
 
     Parameters
@@ -53,7 +57,9 @@ def read_means(path: str | Path) -> Means:
         UTF-8 CSV with the columns ``quantity``, ``mean``, ``sd`` (standard deviation of single tests) or
         ``standard_error`` (of the mean), and ``n`` (number of tests). A quantity is ``e``, ``mu``,
         ``Omega_rad_per_s``, ``V_n_m_per_s`` or ``V_t_m_per_s``, the last three in any unit of theirs. Columns
-        ``d_c_m`` and ``d_d_m`` may state the arms of the contact point with which ``e`` was worked out.
+        ``d_c_m`` and ``d_d_m`` may state the arms of the contact point with which ``e`` was worked out, a
+        column ``systematic`` the standard uncertainty that all tests share.
+    others : names of further quantities, each with the SI unit that its name ends with
 
     Raises
     ------
@@ -66,7 +72,7 @@ def read_means(path: str | Path) -> Means:
     arms: dict[str, list[float]] = {name: [] for name in ARMS if f"{name}_m" in table.names}
     for line, row in table.records():
         place = f"{path}: line {line}"
-        name, mean = _read_row(row, scatter, place)
+        name, mean = _read_row(row, scatter, place, others)
         if name in means:
             raise ResultError(f"{place}: {name} has a line already. Keep one.")
         means[name] = mean
@@ -89,15 +95,16 @@ def _scatter(names: Sequence[str], path: str | Path) -> str:
     return given[0]
 
 
-def _read_row(row: Mapping[str, str], scatter: str, place: str) -> tuple[str, Mean]:
+def _read_row(row: Mapping[str, str], scatter: str, place: str, others: Collection[str]) -> tuple[str, Mean]:
     """Return the quantity of a row, and its mean and scatter in SI."""
     column = row["quantity"]
-    name = next((name for name in KINDS if column == name or column.startswith((f"{name}_", f"{name} "))), "")
+    usual = (name for name in KINDS if column == name or column.startswith((f"{name}_", f"{name} ")))
+    name = column if column in others else next(usual, "")
     if not name:
-        known = did_you_mean(column, KINDS, f"Known: {', '.join(KINDS)}.")
+        known = did_you_mean(column, (*KINDS, *others), f"Known: {', '.join(KINDS)} and keys of an outcome.")
         raise ResultError(f"{place}: {column!r} is not a quantity of tests. {known}")
     factor = 1.0
-    if KINDS[name]:
+    if KINDS.get(name):
         factor = unit_of(column, KINDS[name], name, f"{place}, quantity").to_si("1")
     elif column != name:
         raise ResultError(f"{place}: {name} is a pure number. Write {name}, not {column!r}.")
@@ -111,7 +118,11 @@ def _read_row(row: Mapping[str, str], scatter: str, place: str) -> tuple[str, Me
     if abs(mean) > LARGEST or spread > LARGEST:
         raise ResultError(f"{place}: {row['mean']} with {row[scatter]} is too large to be one of a test.")
     _check_likely(name, mean, place)
-    return name, Mean(mean, spread * tests**0.5 if scatter == "standard_error" else spread, int(tests))
+    shared = factor * finite(f"{place}, column systematic", row.get("systematic") or "0")
+    if shared < 0:
+        raise ResultError(f"{place}, column systematic: {row['systematic']} must not be below 0.")
+    sd = spread * tests**0.5 if scatter == "standard_error" else spread
+    return name, Mean(mean, sd, int(tests), shared)
 
 
 def _check_likely(name: str, mean: float, place: str) -> None:

@@ -5,7 +5,7 @@ from .angles import AtAngle, angle_sets, at_angle, critical_ratio_against_angle,
 from .audit import AuditRecord, audit, audit_statistics, column_arms
 from .correlation import Correlation, correlation, correlations
 from .sets import MeasuredSet, derived_columns, measured_set, measured_sets, set_ids
-from .statistics import Statistic, of_mean, statistic
+from .statistics import Statistic, covariance_of_means, of_mean, statistic
 from .tables import printed_statistics, table
 
 __all__ = [
@@ -21,6 +21,7 @@ __all__ = [
     "column_arms",
     "correlation",
     "correlations",
+    "covariance_of_means",
     "critical_ratio_against_angle",
     "derived_columns",
     "drawn_losses",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
@@ -19,7 +19,7 @@ from ..errors import DataError
 from ..losses import losses
 from ..massive import solve
 from ..uncertainty.estimate import MOTION
-from .statistics import Statistic, statistic
+from .statistics import Statistic, covariance_of_means, statistic
 from .tables import table
 
 DIAMETER = 0.019
@@ -97,6 +97,10 @@ class MeasuredSet:
     def statistics(self) -> dict[str, Statistic]:
         """Mean, sample SD and 95 % interval of the mean for each recomputed quantity."""
         return {name: statistic(values) for name, values in self.recomputed().items()}
+
+    def covariance(self, names: Sequence[str]) -> Floats:
+        """Covariance (k, k) of the means of named quantities."""
+        return covariance_of_means(self.recomputed(), names)
 
 
 def derived_columns(

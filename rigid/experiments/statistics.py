@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..arrays import Floats
 from ..errors import DataError
 
 
@@ -22,6 +24,8 @@ class Statistic:
         Student's 95 % interval of the mean.
     n : int
         Number of tests.
+    systematic : float
+        Standard uncertainty that all tests share, such as that of the instrument.
     """
 
     mean: float
@@ -29,6 +33,7 @@ class Statistic:
     low: float
     high: float
     n: int
+    systematic: float = 0.0
 
 
 def statistic(values: ArrayLike, level: float = 0.95) -> Statistic:
@@ -74,3 +79,15 @@ def of_mean(mean: float, sd: float, n: int, level: float = 0.95) -> Statistic:
 
     half = float(stdtrit(n - 1, (1 + level) / 2)) * sd / n**0.5
     return Statistic(mean, sd, mean - half, mean + half, n)
+
+
+def covariance_of_means(columns: Mapping[str, Floats], names: Sequence[str]) -> Floats:
+    """Covariance (k, k) of the means of k columns (n,), from how they vary together between tests.
+
+    Examples
+    --------
+    >>> covariance_of_means({"e": np.array([1.0, 2.0, 3.0])}, ["e"])
+    array([[0.33333333]])
+    """
+    rows = np.array([columns[name] for name in names])
+    return np.asarray(np.atleast_2d(np.cov(rows)) / rows.shape[1])

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fem_impact.answers.v_and_v import Comparison
 from fem_impact.evidence.studies.inputs import UNCERTAIN_INPUTS
-from fem_impact.evidence.studies.validated import NAMES, Comparison, ValidatedSet, nominal_place
+from fem_impact.evidence.studies.validated import NAMES, ValidatedSet, nominal_place
 
 PLACES = np.linspace(0.0, 1.0, 21)  # of one input over its interval
 SHOWN = ("e", "mu", "Omega")

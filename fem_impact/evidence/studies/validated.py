@@ -11,6 +11,7 @@ from scipy.stats import qmc
 
 from fem_impact import load
 from fem_impact.answers.compare import MEASURED, verdict
+from fem_impact.answers.v_and_v import COVERAGE, Comparison
 from fem_impact.arrays import Array
 from fem_impact.evidence.studies.inputs import UNCERTAIN_INPUTS, sample_values
 from fem_impact.evidence.studies.response import ResponseSurface
@@ -23,7 +24,6 @@ from rigid.uncertainty.estimate import MOTION
 
 SEED = 20260101  # of all samples
 DRAWN = 1024  # points at which a response surface is evaluated
-COVERAGE = 2.0  # E +- 2 u_val, the interval of the model's error (V&V 20, section 6)
 NAMES = tuple(q.measured for q in MEASURED if q.measured)
 VIBRATION = "E_vib_over_E_0"
 FRICTION = "friction"  # the input that belongs to a surface state, nominal inside its interval
@@ -31,59 +31,6 @@ OUTPUTS = (*NAMES, VIBRATION)
 """Quantities of a response surface, by their names in the measured sets."""
 KEYS = (*(q.key.name for q in MEASURED), VIBRATION)
 """Their keys in an outcome."""
-
-
-@dataclass(frozen=True, slots=True)
-class Comparison:
-    """One quantity of one set in the terms of V&V 20, each in the unit of the quantity.
-
-    Attributes
-    ----------
-    S, D : computed value, the limit of the levels at the nominal inputs; measured mean
-    u_num : half of the half-width of its band
-    u_input : root mean square change over the uncertain inputs, each uniform over its interval, from the
-        nominal ones: they stand at the end of some intervals
-    u_D : standard error of the mean, and of the tracked velocities
-    scatter : verdict by the 95 % interval of the mean and the scatter of the tests (`compare.verdict`)
-    """
-
-    set: str
-    quantity: str
-    S: float
-    D: float
-    u_num: float
-    u_input: float
-    u_D: float
-    scatter: str = ""
-
-    @property
-    def E(self) -> float:
-        """Comparison error S - D."""
-        return self.S - self.D
-
-    @property
-    def u_val(self) -> float:
-        """Standard uncertainty of the comparison error."""
-        return hypot(self.u_num, self.u_input, self.u_D)
-
-    @property
-    def interval(self) -> tuple[float, float]:
-        """Interval of the model's error, E +- 2 u_val."""
-        return self.E - COVERAGE * self.u_val, self.E + COVERAGE * self.u_val
-
-    @property
-    def in_error(self) -> bool:
-        """Whether the interval of the model's error leaves out zero."""
-        low, high = self.interval
-        return not low <= 0 <= high
-
-    @property
-    def verdict(self) -> str:
-        """Return whether the comparison shows an error of the model."""
-        low, high = self.interval
-        if not self.in_error:
-            return "no error shown"
-        return f"model too {'high' if low > 0 else 'low'} by at least {min(abs(low), abs(high)):.2g}"
 
 
 @dataclass(frozen=True, slots=True)

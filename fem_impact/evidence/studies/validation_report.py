@@ -9,10 +9,11 @@ from scipy.stats import sobol_indices, uniform, wasserstein_distance
 
 from fem_impact.answers.compare import MEASURED
 from fem_impact.answers.report import Sheet, StudyReport
+from fem_impact.answers.v_and_v import COVERAGE, Comparison
 from fem_impact.arrays import Array
 from fem_impact.evidence.studies.inputs import UNCERTAIN_INPUTS
 from fem_impact.evidence.studies.reach import MISS, SHOWN, reach_sentences
-from fem_impact.evidence.studies.validated import COVERAGE, NAMES, OUTPUTS, SEED, Comparison, ValidatedSet
+from fem_impact.evidence.studies.validated import NAMES, OUTPUTS, SEED, ValidatedSet
 from fem_impact.figures.panels import Look, Mark, Panel, Picture, Series
 from fem_impact.tables.table import Cell, Table
 from rigid.experiments import correlations

@@ -12,6 +12,7 @@ import pytest
 from study_fakes import outcome, published
 
 from fem_impact.answers.report import Request
+from fem_impact.answers.v_and_v import Comparison
 from fem_impact.case.effects.plasticity import hardening_of
 from fem_impact.errors import RunError
 from fem_impact.evidence.studies import validation as study
@@ -26,7 +27,7 @@ from fem_impact.evidence.studies.inputs import (
 )
 from fem_impact.evidence.studies.reach import reach, reach_sentences
 from fem_impact.evidence.studies.response import fit
-from fem_impact.evidence.studies.validated import KEYS, NAMES, Comparison, nominal_place, unit_sample
+from fem_impact.evidence.studies.validated import KEYS, NAMES, nominal_place, unit_sample
 from fem_impact.evidence.studies.validation import conclude, plan
 from fem_impact.jobs.job import Failure
 from fem_impact.outcome.record import KEY_TABLE

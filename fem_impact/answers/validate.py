@@ -1,0 +1,203 @@
+"""A scene beside its own tests by ASME V&V 20, and which input is worth measuring better.
+
+Each measured number has the error E = S - D of the model and its standard uncertainty u_val, made of the
+mesh, the inputs and the tests. Sobol's indices (Saltelli 2010, as SciPy computes them) share what the inputs
+cause out among them. The inputs are varied in the reduced or the rigid model, which takes milliseconds; S is
+that of the fidelity asked for.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from fem_impact.answers.compare import MEASURED, measured_value
+from fem_impact.answers.simulate import simulate
+from fem_impact.answers.v_and_v import COVERAGE, Comparison, joint
+from fem_impact.arrays import Array
+from fem_impact.errors import SceneError, UsageError
+from fem_impact.options import RunOptions
+from fem_impact.outcome.keys import Unknown, known
+from fem_impact.run.tests import NUMBERS, MeasuredTests, tests_of
+from fem_impact.scene.shipped import replace_all
+from fem_impact.scene.types import Scene
+from rigid.experiments import Statistic
+
+SAMPLES = 64  # of each of the two samples that Sobol's indices are made of
+SEED = 20260101
+FOLLOWS = ("V_n", "V_t", "E_ln_over_E_0", "E_lt_over_E_0", "E_r_over_E_0")
+"""Quantities that follow from e, mu and Omega, and are no further evidence in the joint statement."""
+FRICTION = "surface.friction"
+_QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*")
+Ends = tuple[Any, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class Validation:
+    """What the tests of a scene say of its model.
+
+    Attributes
+    ----------
+    comparisons : one a measured number that the model knows
+    unknown : measured numbers that it does not know, with the reason
+    inputs : keys of the uncertain inputs
+    total : (inputs, numbers) Sobol's total indices
+    joined : numbers of the joint statement
+    distance, p : Mahalanobis' distance squared of their errors, and the probability of a larger one if the
+        model has no error
+    runs : of the reduced or rigid model
+    """
+
+    comparisons: tuple[Comparison, ...]
+    unknown: Mapping[str, str]
+    inputs: tuple[str, ...]
+    total: Array
+    joined: tuple[str, ...]
+    distance: float
+    p: float
+    runs: int
+
+    @property
+    def shares(self) -> Array:
+        """(inputs + 2, numbers) parts of u_val squared: of each input, of the tests, of the mesh."""
+        total = np.maximum(self.total, 0.0)
+        of_inputs = total / np.maximum(total.sum(axis=0), 1e-300)
+        u = np.array([(c.u_input, c.u_D, c.u_num) for c in self.comparisons]).T ** 2
+        parts = np.vstack([of_inputs * u[0], u[1:]])
+        return np.asarray(parts / parts.sum(axis=0))
+
+    @property
+    def better(self) -> str:
+        """What holds the largest part of u_val squared on average: an input, ``tests`` or ``mesh``."""
+        names = (*self.inputs, "tests", "mesh")
+        return names[int(np.argmax(self.shares.mean(axis=1)))]
+
+
+def validate(
+    scene: Scene,
+    uncertain: Mapping[str, Ends] | None = None,
+    fidelity: str = "modal",
+    samples: int = SAMPLES,
+    options: RunOptions = RunOptions(),
+) -> Validation:
+    """Compare a scene with its tests.
+
+    Parameters
+    ----------
+    uncertain : lowest and highest value of each uncertain input by its key, such as
+        ``{"impact.angle": ("44 deg", "46 deg")}``; each is uniform between. By default friction over its
+        interval
+    fidelity : of the compared run; the inputs are varied in the reduced model, or the rigid one for "rigid"
+    samples : a power of two; (inputs + 2) times as many runs are made
+
+    Raises
+    ------
+    SceneError
+        The scene names no tests, or a value is none of the key.
+    UsageError
+        The ends of an interval are no numbers of one unit, or there is no interval.
+    """
+    from scipy import stats
+
+    tests = tests_of(scene)
+    if tests is None:
+        raise SceneError("is missing: there is nothing to compare with.", key="measured", remedy=_TESTS)
+    stated = _friction(scene) if uncertain is None else uncertain
+    intervals = [_interval(key, ends) for key, ends in stated.items()]
+    quick = "rigid" if fidelity == "rigid" else "modal"
+    run = partial(simulate, options=options)
+    names, at = _measured(tests), {q.measured: q.key.name for q in MEASURED if q.measured}
+    keys = [at.get(name, name) for name in names]
+    found = [measured_value(run(scene, fidelity), key) for key in keys]
+    unknown = {n: v.reason for n, (v, _) in zip(names, found, strict=True) if isinstance(v, Unknown)}
+    seen = [i for i, name in enumerate(names) if name not in unknown]
+    if not seen:
+        raise SceneError("state nothing that the model knows.", key="measured", remedy=_TESTS)
+    wanted = [keys[i] for i in seen]
+
+    def numbers(one: Scene) -> list[float]:
+        outcome = run(one, quick)
+        return [known(measured_value(outcome, key)[0]) for key in wanted]
+
+    drawn: list[Array] = []
+
+    def of_units(x: Array) -> Array:
+        """Return the numbers (numbers, n) of inputs (inputs, n), each from 0 to 1."""
+        values = np.array([numbers(_at(scene, intervals, column)) for column in x.T]).T
+        drawn.append(values)
+        return values
+
+    nominal, uniform = np.array(numbers(scene)), [stats.uniform()] * len(intervals)
+    rng = np.random.default_rng(SEED)
+    indices = stats.sobol_indices(func=of_units, n=samples, dists=uniform, rng=rng)
+    moved = np.concatenate(drawn[:2], axis=1) - nominal[:, None]
+    statistics = tests.statistics()
+    comparisons = tuple(
+        _comparison(scene.id, names[i], found[i], statistics[names[i]], float(np.sqrt(np.mean(change**2))))
+        for i, change in zip(seen, moved, strict=True)
+    )
+    free = [at for at, i in enumerate(seen) if names[i] not in FOLLOWS] or list(range(len(seen)))
+    C = moved[free] @ moved[free].T / moved.shape[1]
+    C += np.diag([comparisons[j].u_num ** 2 for j in free])
+    C += tests.covariance([names[seen[j]] for j in free])
+    distance, p = joint(np.array([comparisons[j].E for j in free]), C)
+    return Validation(
+        comparisons=comparisons,
+        unknown=unknown,
+        inputs=tuple(key for key, *_ in intervals),
+        total=np.nan_to_num(np.atleast_2d(indices.total_order)).T,
+        joined=tuple(names[seen[j]] for j in free),
+        distance=distance,
+        p=p,
+        runs=sum(values.shape[1] for values in drawn) + 1,
+    )
+
+
+_TESTS = 'Name a file of tests in the scene: measured = "my_tests.csv".'
+
+
+def _friction(scene: Scene) -> dict[str, Ends]:
+    """Return the interval of friction of a scene as its one uncertain input (UsageError: it has none)."""
+    surface = scene.surface
+    if surface.friction_low == surface.friction_high:
+        remedy = "State one, such as --uncertain impact.angle=44,46deg."
+        raise UsageError("is missing: no input of the scene is uncertain.", key="--uncertain", remedy=remedy)
+    return {FRICTION: (surface.friction_low, surface.friction_high)}
+
+
+def _measured(tests: MeasuredTests) -> list[str]:
+    """Return the measured numbers that can be compared, by their names in the tests."""
+    compared = {q.measured for q in MEASURED if q.measured}
+    return [n for n in tests.statistics() if n in compared or n in NUMBERS]
+
+
+def _interval(key: str, ends: Ends) -> tuple[str, float, float, str]:
+    """Return key, ends and unit of an interval."""
+    read = [_QUANTITY.fullmatch(str(end)) for end in ends]
+    if len(read) != 2 or not all(read) or read[0][2] != read[1][2]:  # type: ignore[index]
+        remedy = f"Write {key}=LOW,HIGH with one unit, such as impact.angle=44,46deg."
+        raise UsageError("needs two numbers of one unit.", key=key, value=list(ends), remedy=remedy)
+    (low, unit), (high, _) = (match.groups() for match in read if match)
+    return key, float(low), float(high), unit
+
+
+def _at(scene: Scene, intervals: Sequence[tuple[str, float, float, str]], place: Array) -> Scene:
+    """Return the scene with its uncertain inputs at places (inputs,), each from 0 to 1 of its interval."""
+    changes: dict[str, Any] = {}
+    for (key, low, high, unit), share in zip(intervals, place.tolist(), strict=True):
+        value = low + share * (high - low)
+        changes[key] = f"{value!r} {unit}" if unit else value
+    return replace(replace_all(scene, changes), measured=scene.measured)  # its tests are of this impact
+
+
+def _comparison(
+    scene: str, name: str, found: tuple[Any, float | None], measured: Statistic, u_input: float
+) -> Comparison:
+    value, band = found
+    u_D = float(np.hypot(measured.sd / np.sqrt(measured.n), measured.systematic))
+    return Comparison(scene, name, float(value), measured.mean, (band or 0.0) / COVERAGE, u_input, u_D)

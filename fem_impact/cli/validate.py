@@ -1,0 +1,103 @@
+"""The command ``validate``: a scene beside its own tests, and which input is worth measuring better."""
+
+from __future__ import annotations
+
+from contextlib import closing
+from typing import TYPE_CHECKING, Any
+
+from fem_impact.cli.options import Options
+from fem_impact.cli.parser import CommandParser
+from fem_impact.cli.scene_options import add_scene, changed_scene
+from fem_impact.cli.terminal import chosen_meter, print_answer
+from fem_impact.errors import UsageError
+from fem_impact.options import FIDELITIES, RunOptions
+from fem_impact.tables.table import Table
+from fem_impact.tables.text import wrapped
+
+if TYPE_CHECKING:
+    from fem_impact.answers.validate import Validation
+
+NUMBERS = ("S", "D", "E", "u_num", "u_input", "u_D")
+ERRORS = ("number", "model S", "tests D", "S - D", "u_num", "u_input", "u_D", "verdict")
+
+
+def add_options(parser: CommandParser) -> None:
+    """State the command and its options."""
+    parser.state(
+        validate,
+        "fem-impact validate t5b",
+        "fem-impact validate t5b --uncertain surface.friction=0.45,0.7 --uncertain impact.angle=44.5,45.5deg",
+    )
+    add_scene(parser)
+    about = "lowest and highest value of an uncertain input, as impact.angle=44,46deg; may be repeated"
+    parser.add_argument("--uncertain", action="append", default=[], metavar="KEY=LOW,HIGH", help=about)
+    fidelity = "of the compared run (default: modal); the inputs are varied in the reduced or rigid model"
+    parser.add_argument("--fidelity", choices=FIDELITIES, default="modal", help=fidelity)
+    runs = "runs of each of the two samples of the inputs, a power of two (default: 64)"
+    parser.add_argument("--samples", type=int, default=64, metavar="N", help=runs)
+
+
+def validate(options: Options) -> int:
+    """Compare a scene with its tests and print errors, their uncertainties and what these are made of."""
+    from fem_impact.answers.validate import validate as validated
+    from fem_impact.answers.vary import read_vary
+
+    scene = changed_scene(options.scene, options.changes)
+    pairs = [read_vary(text) for text in options.uncertain]
+    intervals: dict[str, Any] = dict(pairs)
+    if options.samples < 2 or options.samples & (options.samples - 1):
+        remedy = "Write 16, 32, 64 or 128."
+        raise UsageError("is no power of two.", key="--samples", value=options.samples, remedy=remedy)
+    with closing(chosen_meter(options)) as meter:
+        kept = RunOptions(progress=meter) if options.fidelity == "solid" else RunOptions()
+        found = validated(scene, intervals or None, options.fidelity, options.samples, kept)
+    print_answer(options, _document(found), _text(found, options.fidelity))
+    return 0
+
+
+def _document(found: Validation) -> dict[str, Any]:
+    names = [one.quantity for one in found.comparisons]
+    shares = dict(zip((*found.inputs, "tests", "mesh"), found.shares.tolist(), strict=True))
+    return {
+        "comparisons": [
+            {name: getattr(one, name) for name in ("quantity", *NUMBERS, "verdict")}
+            for one in found.comparisons
+        ],
+        "not_known": dict(found.unknown),
+        "shares": {key: dict(zip(names, row, strict=True)) for key, row in shares.items()},
+        "joint": {"numbers": found.joined, "distance": found.distance, "p": found.p},
+        "measure_better": found.better,
+    }
+
+
+def _text(found: Validation, fidelity: str) -> str:
+    rows = [
+        (one.quantity, *(f"{getattr(one, name):.3g}" for name in NUMBERS), one.verdict)
+        for one in found.comparisons
+    ]
+    parts = [
+        (key, *(f"{100 * share:.0f} %" for share in row))
+        for key, row in zip((*found.inputs, "tests", "mesh"), found.shares.tolist(), strict=True)
+    ]
+    names = tuple(one.quantity for one in found.comparisons)
+    mean = 100 * float(found.shares.mean(axis=1).max())
+    joint = (
+        f"Jointly ({', '.join(found.joined)}): distance squared {found.distance:.3g}, p = {found.p:.2g} that "
+        "a model without error would be as far away."
+    )
+    better = f"Measure better: {found.better}. It holds {mean:.0f} % of u_val squared on average."
+    sentences = [joint, better, *(f"{name} is not compared: {why}" for name, why in found.unknown.items())]
+    return "\n".join(
+        [
+            f"ASME V&V 20, {fidelity}; {found.runs} runs over the uncertain inputs",
+            "",
+            Table.of(ERRORS, rows, left=(0, 7)).markdown(),
+            "",
+            "parts of u_val squared",
+            "",
+            Table.of(("of", *names), parts).markdown(),
+            "",
+            *(line for sentence in sentences for line in wrapped(sentence)),
+            "",
+        ]
+    )
