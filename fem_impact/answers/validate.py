@@ -1,9 +1,9 @@
 """A scene beside its own tests by ASME V&V 20, and which input is worth measuring better.
 
 Each measured number has the error E = S - D of the model and its standard uncertainty u_val, made of the
-mesh, the inputs and the tests. Sobol's indices (Saltelli 2010, as SciPy computes them) share what the inputs
-cause out among them. The inputs are varied in the reduced or the rigid model, which takes milliseconds; S is
-that of the fidelity asked for.
+model (the band of its meshes, or the half-width of the reduced model), the inputs and the tests. Sobol's
+indices (Saltelli 2010, as SciPy computes them) share what the inputs cause out among them. The inputs are
+varied in the reduced or the rigid model, which takes milliseconds; S is that of the fidelity asked for.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from fem_impact.answers.v_and_v import COVERAGE, Comparison, joint
 from fem_impact.arrays import Array
 from fem_impact.errors import SceneError, UsageError
 from fem_impact.options import RunOptions
-from fem_impact.outcome.keys import Unknown, known
+from fem_impact.outcome.keys import Num, Unknown, known
 from fem_impact.run.tests import NUMBERS, MeasuredTests, tests_of
 from fem_impact.scene.shipped import replace_all
 from fem_impact.scene.types import Scene
@@ -64,7 +64,7 @@ class Validation:
 
     @property
     def shares(self) -> Array:
-        """(inputs + 2, numbers) parts of u_val squared: of each input, of the tests, of the mesh."""
+        """(inputs + 2, numbers) parts of u_val squared: of each input, of the tests, of the model (u_num)."""
         total = np.maximum(self.total, 0.0)
         of_inputs = total / np.maximum(total.sum(axis=0), 1e-300)
         u = np.array([(c.u_input, c.u_D, c.u_num) for c in self.comparisons]).T ** 2
@@ -72,10 +72,10 @@ class Validation:
         return np.asarray(parts / parts.sum(axis=0))
 
     @property
-    def better(self) -> str:
-        """What holds the largest part of u_val squared on average: an input, ``tests`` or ``mesh``."""
-        names = (*self.inputs, "tests", "mesh")
-        return names[int(np.argmax(self.shares.mean(axis=1)))]
+    def better(self) -> tuple[str, float]:
+        """What to measure better, an input or ``tests``, and its mean part of u_val squared."""
+        parts = self.shares.mean(axis=1)[:-1]
+        return (*self.inputs, "tests")[int(np.argmax(parts))], float(parts.max())
 
 
 def validate(
@@ -114,7 +114,7 @@ def validate(
     names, at = _measured(tests), {q.measured: q.key.name for q in MEASURED if q.measured}
     keys = [at.get(name, name) for name in names]
     found = [measured_value(run(scene, fidelity), key) for key in keys]
-    unknown = {n: v.reason for n, (v, _) in zip(names, found, strict=True) if isinstance(v, Unknown)}
+    unknown = {n: why for n, one in zip(names, found, strict=True) if (why := _not_compared(*one, fidelity))}
     seen = [i for i, name in enumerate(names) if name not in unknown]
     if not seen:
         raise SceneError("state nothing that the model knows.", key="measured", remedy=_TESTS)
@@ -129,7 +129,7 @@ def validate(
     def of_units(x: Array) -> Array:
         """Return the numbers (numbers, n) of inputs (inputs, n), each from 0 to 1."""
         values = np.array([numbers(_at(scene, intervals, column)) for column in x.T]).T
-        drawn.append(values)
+        drawn.append(values.copy())  # the indices centre what they are given
         return values
 
     nominal, uniform = np.array(numbers(scene)), [stats.uniform()] * len(intervals)
@@ -159,6 +159,15 @@ def validate(
 
 
 _TESTS = 'Name a file of tests in the scene: measured = "my_tests.csv".'
+
+
+def _not_compared(value: Num, band: float | None, fidelity: str) -> str:
+    """Return why a number cannot be compared, empty where it can."""
+    if isinstance(value, Unknown):
+        return value.reason
+    if band is None and fidelity == "modal":
+        return "how far the reduced model is off in it is not known; use --fidelity solid."
+    return ""
 
 
 def _friction(scene: Scene) -> dict[str, Ends]:

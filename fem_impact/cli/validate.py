@@ -57,7 +57,7 @@ def validate(options: Options) -> int:
 
 def _document(found: Validation) -> dict[str, Any]:
     names = [one.quantity for one in found.comparisons]
-    shares = dict(zip((*found.inputs, "tests", "mesh"), found.shares.tolist(), strict=True))
+    shares = dict(zip((*found.inputs, "tests", "model"), found.shares.tolist(), strict=True))
     return {
         "comparisons": [
             {name: getattr(one, name) for name in ("quantity", *NUMBERS, "verdict")}
@@ -66,7 +66,7 @@ def _document(found: Validation) -> dict[str, Any]:
         "not_known": dict(found.unknown),
         "shares": {key: dict(zip(names, row, strict=True)) for key, row in shares.items()},
         "joint": {"numbers": found.joined, "distance": found.distance, "p": found.p},
-        "measure_better": found.better,
+        "measure_better": found.better[0],
     }
 
 
@@ -77,15 +77,15 @@ def _text(found: Validation, fidelity: str) -> str:
     ]
     parts = [
         (key, *(f"{100 * share:.0f} %" for share in row))
-        for key, row in zip((*found.inputs, "tests", "mesh"), found.shares.tolist(), strict=True)
+        for key, row in zip((*found.inputs, "tests", "model"), found.shares.tolist(), strict=True)
     ]
     names = tuple(one.quantity for one in found.comparisons)
-    mean = 100 * float(found.shares.mean(axis=1).max())
     joint = (
         f"Jointly ({', '.join(found.joined)}): distance squared {found.distance:.3g}, p = {found.p:.2g} that "
         "a model without error would be as far away."
     )
-    better = f"Measure better: {found.better}. It holds {mean:.0f} % of u_val squared on average."
+    name, part = found.better
+    better = f"Measure better: {name}. It holds {100 * part:.0f} % of u_val squared, mean of the numbers."
     sentences = [joint, better, *(f"{name} is not compared: {why}" for name, why in found.unknown.items())]
     return "\n".join(
         [

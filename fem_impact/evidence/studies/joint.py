@@ -23,10 +23,11 @@ import numpy as np
 
 from fem_impact import load, replace_all
 from fem_impact.answers.report import Request, Sheet, StudyReport
+from fem_impact.answers.v_and_v import COVERAGE, joint
 from fem_impact.arrays import Array
 from fem_impact.evidence.studies.inputs import changes, sample_values
 from fem_impact.evidence.studies.reach import SHOWN
-from fem_impact.evidence.studies.validated import COVERAGE, NAMES, outputs, unit_sample
+from fem_impact.evidence.studies.validated import NAMES, outputs, unit_sample
 from fem_impact.figures.panels import Mark, Panel, Picture, Series
 from fem_impact.jobs.job import Job
 from fem_impact.jobs.run import JobResults
@@ -65,14 +66,12 @@ class JointError:
     @property
     def distance(self) -> float:
         """D2."""
-        return float(self.E @ np.linalg.solve(self.C, self.E))
+        return joint(self.E, self.C)[0]
 
     @property
     def p(self) -> float:
         """Probability of a distance as large or larger without an error of the model."""
-        from scipy.stats import chi2
-
-        return float(chi2.sf(self.distance, len(self.E)))
+        return joint(self.E, self.C)[1]
 
     @property
     def shares(self) -> Array:

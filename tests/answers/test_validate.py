@@ -1,0 +1,94 @@
+"""A scene beside its own tests: errors, parts of their uncertainty, the joint statement, any number."""
+
+import numpy as np
+import pytest
+
+from fem_impact.answers.compare import compare
+from fem_impact.answers.v_and_v import joint
+from fem_impact.answers.validate import validate
+from fem_impact.errors import ResultError, SceneError, UsageError
+from fem_impact.run import tests as own_tests
+from fem_impact.run.simulate import simulate
+from fem_impact.scene.read import read_dict
+from fem_impact.scene.shipped import load
+from fem_impact.scene.write import to_dict
+
+F = (0.2, 0.3)
+UNCERTAIN = {"surface.friction": F, "impact.v_n": ("-1.1 m/s", "-0.9 m/s")}
+
+
+def scene_with(place, means, f=0.25):
+    """Return a rod that slides all the time, so that its mu is f by rigid theory, with means of tests."""
+    file = place / "my_means.csv"
+    file.write_text(means)
+    stated = to_dict(load("quick")) | {"measured": str(file), "id": "mine"}
+    stated["surface"] = {"state": "custom", "friction": f, "source": "a test"}
+    stated["impact"] = {"angle": "45 deg", "v_n": "-1 m/s", "v_t": "-9 m/s"}
+    return read_dict(stated)
+
+
+MU = "quantity,mean,sd,n,systematic\nmu,0.30,0.04,4,0.015\n"
+
+
+def test_errors_and_parts_of_a_number_with_a_known_answer(tmp_path):
+    found = validate(scene_with(tmp_path, MU), UNCERTAIN, "rigid", samples=32)
+    (mu,) = found.comparisons
+    spread = (F[1] - F[0]) / 12**0.5
+    assert (mu.S, mu.E) == pytest.approx((0.25, -0.05))
+    assert mu.u_input == pytest.approx(spread, rel=0.03)
+    assert mu.u_D == pytest.approx(np.hypot(0.02, 0.015))
+    assert found.total[:, 0] == pytest.approx([1.0, 0.0], abs=0.02)
+    whole = spread**2 + 0.02**2 + 0.015**2
+    assert found.shares[:, 0] == pytest.approx([spread**2 / whole, 0, 1 - spread**2 / whole, 0], abs=0.02)
+    assert found.better[0] == "surface.friction"
+    assert found.distance == pytest.approx(0.05**2 / whole, rel=0.05)
+    assert found.runs == 32 * 4 + 1
+
+
+def test_numbers_that_one_input_moves_together_count_once():
+    together = np.array([[1.0, 0.99], [0.99, 1.0]])
+    assert joint(np.array([2.0, 2.0]), together)[0] == pytest.approx(8 / 1.99)
+    assert joint(np.array([2.0, -2.0]), together)[0] == pytest.approx(8 / 0.01)
+    assert joint(np.array([1.96]), np.eye(1))[1] == pytest.approx(0.05, abs=1e-3)
+
+
+def test_single_tests_bring_their_own_correlation(tmp_path):
+    rows = ["v_n_m_per_s,v_t_m_per_s,V_n_m_per_s,V_t_m_per_s,Omega_rad_per_s"]
+    rows += [f"-1,-9,{0.3 + a},{-8.7 + 0.3 * a + b},{20 * a}" for a, b in ((0, 0), (0.1, 0.02), (0.05, 0.05))]
+    tests = own_tests.tests_of(scene_with(tmp_path, "\n".join(rows)))
+    C = tests.covariance(["V_n", "Omega"])
+    assert C[0, 1] / np.sqrt(C[0, 0] * C[1, 1]) == pytest.approx(1.0)
+    assert C[0, 0] == pytest.approx(0.05**2 / 3)
+
+
+def test_any_number_of_an_outcome_may_be_measured(tmp_path):
+    means = "quantity,mean,sd,n\npeak_force_N,9000,400,5\ncontact_time_s,1.5e-4,1e-5,5\ndepth_m,1e-4,1e-5,5\n"
+    scene = scene_with(tmp_path, means)
+    outcome = simulate(scene, "modal")
+    rows = {row["quantity"]: row for row in compare(outcome, own_tests.tests_of(scene))}
+    assert rows["peak_force_N"]["model"] == outcome.contact.peak_force
+    intervals = outcome.contact.intervals
+    assert rows["contact_time_s"]["model"] == pytest.approx(sum(one.end - one.start for one in intervals))
+    assert rows["depth_m"]["model"] == max(one.depth for one in outcome.contact.sites)
+    assert all(rows[name]["verdict"] for name in ("peak_force_N", "contact_time_s", "depth_m"))
+
+
+@pytest.mark.parametrize(
+    ("means", "words"),
+    [
+        ("quantity,mean,sd,n\npeak_force_kN,9,1,4\n", "not a quantity of tests. Did you mean peak_force_N?"),
+        (MU.replace("0.015", "-0.015"), "column systematic"),
+    ],
+)
+def test_what_no_outcome_has_is_refused(tmp_path, means, words):
+    with pytest.raises(ResultError, match=words):
+        own_tests.tests_of(scene_with(tmp_path, means))
+
+
+def test_what_cannot_be_validated_is_refused(tmp_path):
+    with pytest.raises(UsageError, match="no input of the scene is uncertain"):
+        validate(scene_with(tmp_path, MU), None, "rigid")
+    with pytest.raises(UsageError, match="two numbers of one unit"):
+        validate(scene_with(tmp_path, MU), {"impact.v_n": ("-1 m/s", "-900 mm/s")}, "rigid")
+    with pytest.raises(SceneError, match="nothing to compare with"):
+        validate(load("elastic-frictionless"), UNCERTAIN, "rigid")
