@@ -98,8 +98,9 @@ def _scatter(names: Sequence[str], path: str | Path) -> str:
 def _read_row(row: Mapping[str, str], scatter: str, place: str, others: Collection[str]) -> tuple[str, Mean]:
     """Return the quantity of a row, and its mean and scatter in SI."""
     column = row["quantity"]
-    usual = (name for name in KINDS if column == name or column.startswith((f"{name}_", f"{name} ")))
-    name = column if column in others else next(usual, "")
+    name = next((name for name in KINDS if column == name or column.startswith((f"{name}_", f"{name} "))), "")
+    if column in others and column != name and not KINDS.get(name):
+        name = column  # e_edge is a number of its own, Omega_rad_per_s is Omega
     if not name:
         known = did_you_mean(column, (*KINDS, *others), f"Known: {', '.join(KINDS)} and keys of an outcome.")
         raise ResultError(f"{place}: {column!r} is not a quantity of tests. {known}")
