@@ -26,7 +26,7 @@ def add_options(parser: CommandParser) -> None:
     parser.state(
         validate,
         "fem-impact validate t5b",
-        "fem-impact validate t5b --uncertain surface.friction=0.45,0.7 --uncertain impact.angle=44.5,45.5deg",
+        "fem-impact validate t5b --uncertain impact.angle=44.5,45.5deg",
     )
     add_scene(parser)
     about = "lowest and highest value of an uncertain input, as impact.angle=44,46deg; may be repeated"
