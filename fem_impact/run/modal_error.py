@@ -1,8 +1,8 @@
 """How far the reduced model is off for a scene: half-widths that hold nine in ten finite-element results.
 
-Scenes drawn at random ran by both models (`fem_impact.case.measured.reduced_pairs`). Where a
-scene stands among them is told by the numbers of `Place`. The error expected there is the mean of the stored
-ones, of which each counts the more the nearer its scene stands. A half-width is a multiple of it, conformal
+Scenes drawn at random ran by both models (`fem_impact.case.measured.reduced_pairs`). Where a scene stands
+among them is told by the numbers of `Place`. The error expected there is the mean of the stored ones, of
+which each counts the more the nearer its scene stands. A half-width is a multiple of it, conformal
 as jackknife+ (Barber et al. 2021, doi:10.1214/20-AOS1965): the multiple is each stored scene's own error over
 what the others let expect of it, and the `HELD` quantile over the scenes is told. No distribution is assumed,
 only that the scene is of the kind of those that were drawn.
@@ -20,14 +20,16 @@ import numpy as np
 from fem_impact.arrays import Array
 from fem_impact.case.case import Case
 from fem_impact.case.measured import reduced_pairs
-from fem_impact.outcome.keys import Unknown, or_none
+from fem_impact.outcome.keys import or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.physics.contact_law import contact_law
 
 HELD = 0.9
 """Share of differences from finite elements that a half-width holds."""
-NEAR = 1.5  # standard deviations of the stored numbers at which a scene counts exp(-1/2)
-COMMON = 1.0  # scenes' weight of the mean over all of them
+# standard deviations of the stored numbers at which a scene counts exp(-1/2), and how many scenes the mean
+# over all of them counts for: about the least widths of stored scenes that are left out one by one, which
+# change by a tenth from .5 to 2 and from 1 to 10
+NEAR, COMMON = 1.5, 1.0
 VIBRATION = "E_vib_over_E_0"
 LEAST_VIBRATION = 0.005  # of E_0, below which errors of the vibration energy no longer fall with it
 TOLD = (
@@ -60,6 +62,12 @@ class Place(NamedTuple):
 
 ENDS = (-1.0, 2.5), (-1.5, 1.5), (-1.5, 1.5), (-0.5, 2.0), (-2.0, 2.0), (0.0, 1.0)
 """Lower and upper end of each number of `Place`: what lies beyond one behaves as at the end."""
+CALLED = (
+    *("speed over that at which it yields", "bending period over time of contact"),
+    *("friction over the ratio at which it sticks", "wall over depth of the contact"),
+    *("edge over depth of the contact", "mass over that which the contact feels"),
+)
+"""What the numbers of `Place` are called in a sentence."""
 
 
 def place_of(case: Case, outcome: Outcome) -> Place:
@@ -99,23 +107,23 @@ class Stored:
     places: Array
     errors: Array
 
-    def half_width(self, place: Array, of: int) -> float:
+    def half_width(self, place: Array, of: int, unlike: bool = False) -> float:
         """Return the half-width, over `scale_of`, of a number of `TOLD` at a place (6,).
 
-        Outside the ends of the stored places it is the widest that a stored scene would be told.
+        Of a scene ``unlike`` the stored ones it is at least the widest that one of them would be told.
         """
         known = np.isfinite(self.errors[:, of])
         places, errors = self.places[known], self.errors[known, of]
         expected = _expected(places, errors, self.places.std(axis=0))
-        if self.outside(place):
+        if unlike:
             return float((errors / expected).max() * expected.max())
         halves = np.sort(errors / expected * _expected(places, errors, self.places.std(axis=0), place))
         return float(halves[min(ceil(HELD * (len(errors) + 1)), len(errors)) - 1])
 
     def outside(self, place: Array) -> tuple[str, ...]:
-        """Return the names of numbers of a place (6,) that lie beyond all stored ones."""
+        """Return which numbers of a place (6,) lie beyond all stored ones, as `CALLED`."""
         beyond = (place < self.places.min(axis=0)) | (place > self.places.max(axis=0))
-        return tuple(name for name, far in zip(Place._fields, beyond, strict=True) if far)
+        return tuple(name for name, far in zip(CALLED, beyond, strict=True) if far)
 
 
 def _expected(places: Array, errors: Array, spread: Array, at: Array | None = None) -> Array:
@@ -142,30 +150,32 @@ def scale_of(key: str, outcome: Outcome) -> float:
 
 def half_widths(place: Place, outcome: Outcome) -> dict[str, float]:
     """Return half-widths, by key, of those numbers of `TOLD` that an outcome of the reduced model knows."""
-    at, table = np.array(place), stored()
+    at, table, far = np.array(place), stored(), bool(unlike(place, outcome))
     halves = {
-        key: table.half_width(at, of) * scale_of(key, outcome)
+        key: table.half_width(at, of, far) * scale_of(key, outcome)
         for of, key in enumerate(TOLD)
         if or_none(KEY_TABLE[key].of(outcome)) is not None
     }
     if or_none(outcome.restitution.paper.e) is not None:
-        halves["e_paper"] = halves["e_edge"]  # arms a little apart take nearly the same share of the approach
+        halves["e_paper"] = halves["e_edge"]  # arms a little apart take nearly the same approach
     return halves
+
+
+def unlike(place: Place, outcome: Outcome) -> tuple[str, ...]:
+    """Return in what a scene is unlike all stored ones, of which one place touched."""
+    sites = or_none(outcome.contact.sites) or ()
+    several = ("the number of places that touch",) if len(sites) > 1 else ()
+    return (*stored().outside(np.array(place)), *several)
 
 
 def sentence(place: Place, outcome: Outcome) -> str:
     """Say what the half-widths are, and where they are those of unlike scenes."""
-    table, sites = stored(), outcome.contact.sites
-    far = table.outside(np.array(place))
     told = (
-        f"Half-widths hold nine in ten results of finite elements, by {len(table.places)} scenes that both "
-        "models computed; they say nothing of the change of a number by vibration."
+        f"Half-widths hold nine in ten results of finite elements, by {len(stored().places)} scenes that "
+        "both models computed; they say nothing of the change of a number by vibration."
     )
-    if far:
-        told += f" None of them is like this one in {', '.join(far)}: the widest count."
-    if not isinstance(sites, Unknown) and len(sites) > 1:
-        told += " More than one place touches, which none of them has."
-    return told
+    far = unlike(place, outcome)
+    return f"{told} None of them is like this one in {', '.join(far)}: the widest count." if far else told
 
 
 @cache

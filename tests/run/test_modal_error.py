@@ -10,7 +10,17 @@ from fem_impact import load, replace, simulate
 from fem_impact.case.case import Case
 from fem_impact.outcome.limitation import texts
 from fem_impact.run import modal_error
-from fem_impact.run.modal_error import HELD, TOLD, Place, Stored, half_widths, place_of, scale_of, stored
+from fem_impact.run.modal_error import (
+    CALLED,
+    HELD,
+    TOLD,
+    Place,
+    Stored,
+    half_widths,
+    place_of,
+    scale_of,
+    stored,
+)
 
 
 def drawn(n, seed):
@@ -46,8 +56,8 @@ def test_numbers_that_are_not_known_do_not_count_and_unlike_scenes_get_the_wides
     assert some.half_width(places[0], 0) == Stored(places, np.hstack([some.errors])).half_width(places[0], 0)
     table, far = Stored(places, errors), places[0].copy()
     far[2] = 5.0
-    assert table.outside(far) == ("sticks",) and table.outside(places[0]) == ()
-    assert table.half_width(far, 0) > errors[:, 0].mean() * 2
+    assert table.outside(far) == (CALLED[2],) and table.outside(places[0]) == ()
+    assert table.half_width(far, 0, unlike=True) >= max(table.half_width(place, 0) for place in places)
 
 
 def test_a_scene_stands_where_its_numbers_say():
@@ -81,5 +91,10 @@ def test_an_outcome_tells_half_widths_in_its_units_and_what_it_is_unlike(monkeyp
     far = Place(*(np.array(stored().places.max(axis=0)) + 1.0))
     assert "None of them is like this one in" in modal_error.sentence(far, outcome)
     assert half_widths(far, outcome)["mu"] > halves["mu"]
+    twice = dataclasses.replace(outcome.contact, sites=2 * outcome.contact.sites)
+    later = dataclasses.replace(outcome, contact=twice)
+    near = place_of(Case.of(load("t5b"), "modal"), outcome)
+    assert "number of places" in modal_error.sentence(near, later)
+    assert half_widths(near, later)["mu"] > halves["mu"]
     told = " ".join(texts(outcome.validity.limitations, "model"))
     assert f"{len(stored().places)} scenes" in told and "None of them" not in told
