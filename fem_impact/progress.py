@@ -114,14 +114,14 @@ def describe(progress: Progress | CaseProgress) -> str:
     parts = (
         progress.note,
         f"t {progress.time_s * 1e6:.0f}/{progress.end_time_s * 1e6:.0f} us",
-        _left(progress),
+        left_text(progress),
         f"step {progress.step}  energy drift {progress.energy_drift:+.1e}" if progress.step else "",
         progress.contact,
     )
     return "  ".join(part for part in parts if part)
 
 
-def _left(progress: Progress) -> str:
+def left_text(progress: Progress) -> str:
     """Return the time still needed, with its range where that says more; empty where it cannot be told."""
     if progress.eta_s is None:
         return ""

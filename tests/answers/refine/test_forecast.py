@@ -49,7 +49,8 @@ def test_a_mesh_that_stands_is_forecast_by_the_impact_of_the_level_before():
     assert seen[0].eta_s == pytest.approx(12 * (1 + 2.4))
     assert seen[0].eta_range_s == pytest.approx((7.2 * (1 + 1.2), 19.2 * (1 + 4.5)))
     level(at(200, 1.0))
-    assert seen[1].eta_s == pytest.approx(1 + 6 + 12 * 2.4)
+    assert seen[1].text == "level 2: about 41 s left (16 s to 1 min 46 s)."
+    assert seen[2].eta_s == pytest.approx(1 + 6 + 12 * 2.4)
     assert describe(seen[0]).startswith("level 2  t 0/100 us  about 41 s left (16 s to 1 min 46 s)")
 
 
