@@ -116,7 +116,14 @@ def rod(
     near = None if contact is None else np.array([np.hypot(*contact[:2]), contact[2]])
     split = shape.shoulder(near, pitch / 2 ** len(zones))
     start = _body_start(shape, split, half.plug, pitch, zones, buffer) if nose else 0.0
-    count = _slices(length, start, wanted, pitch)
+    if not wanted > 0.0:
+        raise MeshError(f"slice_length must be positive, not {wanted} m")
+    if length < start + 0.5 * pitch:
+        raise MeshError(
+            f"length {length} m leaves no body above the nose, which needs {start:.6g} m: "
+            "take a longer rod, a smaller zone or fewer levels"
+        )
+    count = max(1, round((length - start) / wanted))
     slab = (length - start) / count
     points, cells = _body(half, shape.radius, start, slab, count)
     body_cells = np.arange(len(cells)).reshape(count, -1).T
@@ -147,17 +154,6 @@ def _body_start(
         for level, zone in enumerate(zones, 1)
     )
     return max([start, *tops])
-
-
-def _slices(length: float, start: float, wanted: float, pitch: float) -> int:
-    if not wanted > 0.0:
-        raise MeshError(f"slice_length must be positive, not {wanted} m")
-    if length < start + 0.5 * pitch:
-        raise MeshError(
-            f"length {length} m leaves no body above the nose, which needs {start:.6g} m: "
-            "take a longer rod, a smaller zone or fewer levels"
-        )
-    return max(1, round((length - start) / wanted))
 
 
 def _body(half: Section, radius: float, start: float, slab: float, count: int) -> tuple[FloatArray, IntArray]:

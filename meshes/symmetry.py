@@ -72,7 +72,11 @@ def half_of(part: Part, stated: str | None) -> Part:
     if 2 in planes:
         part = _doubled(part, 2)
     if 1 not in planes and 0 in planes:
-        part = _quarter_turn(part)
+        # a half that was cut in x = 0 turned about z, so that it is cut in y = 0
+        sign = 1.0 if part.points[:, 0].max() > 0.0 else -1.0
+        x, y, z = part.points.T
+        turned = replace(part, points=np.stack([-sign * y, sign * x, z], axis=1))
+        part = turned.tell("it is turned about z by 90 deg, its plane x = 0 to y = 0")
     elif 0 in planes:
         part = _doubled(part, 0)
     if 0 in planes or 1 in planes:
@@ -201,14 +205,6 @@ def _doubled(part: Part, axis: int) -> Part:
     )
 
 
-def _quarter_turn(part: Part) -> Part:
-    """Return a half that was cut in x = 0 turned about z, so that it is cut in y = 0."""
-    sign = 1.0 if part.points[:, 0].max() > 0.0 else -1.0
-    x, y, z = part.points.T
-    turned = replace(part, points=np.stack([-sign * y, sign * x, z], axis=1))
-    return turned.tell("it is turned about z by 90 deg, its plane x = 0 to y = 0")
-
-
 def _on_positive_side(part: Part) -> Part:
     """Return a half on y >= 0, mirrored if it was given on the other side."""
     if part.points[:, 1].max() > 0.0:
@@ -229,18 +225,10 @@ def _cut(part: Part) -> Part:
             f"has {len(across)} cells across the plane y = 0, the first about {where}. The plane of symmetry "
             "must lie between cells: give a mesh with faces there, or the half y >= 0."
         )
-    _require_mirrored(points, part.cells, near)
-    places, cells, kept = made
-    used, new = np.unique(cells[kept], return_inverse=True)
-    half = Part(places[used], new.reshape(-1, 8), part.origin[kept], part.told)
-    return half.tell(f"{len(across)} cells across the plane y = 0 are cut there") if len(across) else half
-
-
-def _require_mirrored(points: FloatArray, cells: IntArray, near: float) -> None:
-    """Refuse a body whose nodes or cells on both sides of y = 0 are not mirror images of each other."""
+    # refuse a body whose nodes or cells on both sides of y = 0 are not mirror images of each other
     from scipy.spatial import cKDTree  # here: every command imports this room, few read such a mesh
 
-    for what, places in (("node", points), ("cell", points[cells].mean(axis=1))):
+    for what, places in (("node", points), ("cell", points[part.cells].mean(axis=1))):
         away = cKDTree(places).query(places * [1.0, -1.0, 1.0])[0]
         lonely: BoolArray = away > 2.0 * near
         if lonely.any():
@@ -249,6 +237,10 @@ def _require_mirrored(points: FloatArray, cells: IntArray, near: float) -> None:
                 f"no mirror image, the first at {place_text(places[lonely][0])}. The model holds half of a "
                 "symmetric body: mirror the mesh, turn it, or give the half y >= 0."
             )
+    places, cells, kept = made
+    used, new = np.unique(cells[kept], return_inverse=True)
+    half = Part(places[used], new.reshape(-1, 8), part.origin[kept], part.told)
+    return half.tell(f"{len(across)} cells across the plane y = 0 are cut there") if len(across) else half
 
 
 def size_text(part: Part, planes: tuple[int, ...] = ()) -> str:

@@ -137,7 +137,16 @@ class Reduction:
         gravity, ruled = _gravity(case, end.contacts)
         failed = _open_ledger(end.missing) or ruled
         cut = failed or ("" if end.separated else end.reason)
-        origin = _provenance(case, choices)
+        origin = Provenance(
+            fidelity=case.fidelity,
+            scene_id=case.scene.id,
+            scene_title=case.scene.title,
+            scene_digest=digest(case.scene),
+            created_utc=utc_now(),
+            versions=installed_versions(),
+            effects=tuple(name for name in case.active if case.fidelity in EFFECTS[name].fidelities),
+            effect_choices=choices,
+        )
         shown = () if withheld or cut else unusual(origin, self.motion, self.restitution, energy)
         alone = case.scene.impact.until == FIRST
         again = strikes_again(end.leaving) if end.finished and not failed and alone else ""
@@ -162,19 +171,6 @@ class Reduction:
         )
         outcome = without(outcome, Unknown(withheld)) if withheld else outcome
         return without_end(outcome, cut) if cut else outcome
-
-
-def _provenance(case: Case, choices: tuple[EffectChoice, ...] | Unknown) -> Provenance:
-    return Provenance(
-        fidelity=case.fidelity,
-        scene_id=case.scene.id,
-        scene_title=case.scene.title,
-        scene_digest=digest(case.scene),
-        created_utc=utc_now(),
-        versions=installed_versions(),
-        effects=tuple(name for name in case.active if case.fidelity in EFFECTS[name].fidelities),
-        effect_choices=choices,
-    )
 
 
 def _validity(

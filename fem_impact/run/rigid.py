@@ -45,7 +45,10 @@ def rigid_outcome(case: Case) -> Outcome:
     loss = normal_loss(case, case.contact)
     path, wall, cpu = _timed_path(case.contact, loss.e, case.slots.friction_over_speed)
     V_n, V_t, Omega = (float(velocity) for velocity in path.motion)
-    base = _barrier_gain(case, V_n, V_t)
+    # the velocity, m/s, that a free barrier gains where V_n, V_t is the rod's relative to it
+    mass, before = case.bodies.body.mass, case.scene.relative
+    share = 0.0 if case.scene.barrier.mass is None else mass / (mass + case.scene.barrier.mass)
+    base = -share * (V_n - before.v_n), -share * (V_t - before.v_t)
     reduction = Reduction.of(
         case,
         ImpactEnd(
@@ -80,13 +83,6 @@ def rigid_outcome(case: Case) -> Outcome:
         unmeshed=UNKNOWN,
         limited=limitations("model", loss.source, *ASSUMPTIONS, *plate, *heated),
     )
-
-
-def _barrier_gain(case: Case, V_n: float, V_t: float) -> tuple[float, float]:
-    """Return the velocity, m/s, that a free barrier gains where V_n, V_t is the rod's relative to it."""
-    mass, before = case.bodies.body.mass, case.scene.relative
-    share = 0.0 if case.scene.barrier.mass is None else mass / (mass + case.scene.barrier.mass)
-    return -share * (V_n - before.v_n), -share * (V_t - before.v_t)
 
 
 def _timed_path(

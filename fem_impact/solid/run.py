@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import resource
 import sys
-from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -152,7 +151,11 @@ def solve(
     watchers = Watchers.of(case, model, view, out, options.resume, ahead)
     observers: list[Observer] = [*watchers.all]
     if options.progress is not None:
-        observers.append(_progress_observer(case, model, watchers, options.progress))
+        show, end = options.progress, case.size.steps * case.size.step
+        if not compiled_before():  # told at once
+            show(compiling(end, 20))
+        stopping = case.contact.effective_mass * case.contact.approach
+        observers.append(ProgressObserver(show, watchers.watch, model, end, stopping, case.scene.id))
     evaluate(model, model.initial_state())  # compiles the kernels before the time loop
     clock = Stopwatch()
     if out is not None:
@@ -180,17 +183,6 @@ def _standing(case: Case, model: Model, options: RunOptions) -> Progress:
     cells = len(bodies.rod.mesh.cells) + (len(bodies.barrier.cells) if bodies.barrier is not None else 0)
     time = run_time(cells, sum(zone.count for zone in model.zones), end / model.step)
     return standing(end, case.scene.id, None if options.resume else time)
-
-
-def _progress_observer(
-    case: Case, model: Model, watchers: Watchers, show: Callable[[Progress], None]
-) -> ProgressObserver:
-    """Return the observer that reports progress; report a first compilation at once."""
-    end = case.size.steps * case.size.step
-    if not compiled_before():
-        show(compiling(end, 20))
-    stopping = case.contact.effective_mass * case.contact.approach
-    return ProgressObserver(show, watchers.watch, model, end, stopping, case.scene.id)
 
 
 def _checkpoint(

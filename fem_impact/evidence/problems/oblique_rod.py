@@ -223,20 +223,6 @@ def _contacts(result: SolidResult, exact: ObliqueRebound, around: list[ObliqueRe
     return Check.shown("contacts", "1", contacts, len(exact.contacts), note)
 
 
-def _allow(p: Values, drop: RodDrop) -> None:
-    """Refuse a contact wider than the rounded edge or narrower than a cell."""
-    half = drop.ellipse.half_axes(drop.touch())[0]
-    arc = p["tip_radius"] * min(p["angle"], pi / 2 - p["angle"])
-    if half > arc:
-        raise SceneError(
-            f"the contact would reach {half * 1e3:.2g} mm to either side, over the end of the rounded edge.",
-            key="v_n",
-            value=p["v_n"],
-            remedy="Take a lower speed, a larger tip_radius or an angle nearer to 45 degrees.",
-        )
-    within(p, "tip_size", 0.0, half, "m", "the contact is as narrow on either side of its middle.")
-
-
 def solve(p: Values) -> Solved:
     """Run the scene and the modal reference with the same barrier.
 
@@ -253,7 +239,17 @@ def solve(p: Values) -> Solved:
     rod = scene.projectile.rigid_body
     assert isinstance(rod, Projectile), "it is a plain rod"
     drop = RodDrop(p, rod)
-    _allow(p, drop)
+    # refuse a contact wider than the rounded edge or narrower than a cell
+    half = drop.ellipse.half_axes(drop.touch())[0]
+    arc = p["tip_radius"] * min(p["angle"], pi / 2 - p["angle"])
+    if half > arc:
+        raise SceneError(
+            f"the contact would reach {half * 1e3:.2g} mm to either side, over the end of the rounded edge.",
+            key="v_n",
+            value=p["v_n"],
+            remedy="Take a lower speed, a larger tip_radius or an angle nearer to 45 degrees.",
+        )
+    within(p, "tip_size", 0.0, half, "m", "the contact is as narrow on either side of its middle.")
     result = run_solid(Case.of(scene))
     if result.model.book.touching:
         remedy = "Give a longer time."
