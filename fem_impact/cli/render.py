@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from fem_impact.cli.options import Options
 from fem_impact.cli.parser import CommandParser
@@ -13,9 +12,6 @@ from fem_impact.cli.paths import checked_file, checked_result
 from fem_impact.cli.terminal import print_answer
 from fem_impact.errors import MissingLibraryError, ResultError, UsageError
 from fem_impact.files.run_directory import FIELDS
-
-if TYPE_CHECKING:
-    from fem_impact.films.movement import Span
 
 FILMED = ("strain", "stress", "velocity", "plastic")  # what a film can show, the default first
 
@@ -56,8 +52,14 @@ def render(options: Options) -> int:
     for result in results:
         _check_fields(result)
     from fem_impact.films import film as films
+    from fem_impact.films.movement import Span
+    from fem_impact.scene.units import option_quantity
 
-    span = _span(options)
+    first, last, speed = (
+        option_quantity(text, "time", key) if text else None
+        for text, key in ((options.first, "--from"), (options.last, "--until"), (options.speed, "--speed"))
+    )
+    span = Span(first, last, options.frames, speed)
     if len(results) > 1 and options.field != FILMED[0]:
         raise UsageError("shows the strain only, side by side.", key="--field", value=options.field)
     turning = out is not None and out.suffix == ".html"
@@ -76,18 +78,6 @@ def render(options: Options) -> int:
     document = {"path": str(film.path) if film.path else None, "notes": list(film.notes)}
     print_answer(options, document, f"film: {film.path}\n" if film.path else "", film.notes)
     return 0 if film.path else MissingLibraryError.exit_code
-
-
-def _span(options: Options) -> Span:
-    """Return what the film shall show."""
-    from fem_impact.films.movement import Span
-    from fem_impact.scene.units import option_quantity
-
-    first, last, speed = (
-        option_quantity(text, "time", key) if text else None
-        for text, key in ((options.first, "--from"), (options.last, "--until"), (options.speed, "--speed"))
-    )
-    return Span(first, last, options.frames, speed)
 
 
 def _check_fields(result: Path) -> None:

@@ -239,7 +239,13 @@ def print_outcome(
     gravity = or_none(ADDED.of(outcome.energy))
     added = "" if gravity is None else f", to which gravity added {outcome.told(ADDED.key, 100.0)} %"
     lines += ["", *wrapped(f"of the initial energy, E_0 = {_number(outcome.energy.E_0)} J{added}{of}:")]
-    listed = _listed_shares(outcome)
+    # the keys of the listed shares of E_0 by their labels
+    energy = outcome.energy
+    listed = {
+        _label(share, energy): share.key
+        for share in shares("terminal")
+        if not (share.key.path[-1] in _IF_ON and isinstance(share.of(energy), Unknown))
+    }
     lines += [
         _line(label, outcome.told(key, 100.0), "%", _changed(spread, key, 100.0))
         for label, key in listed.items()
@@ -249,7 +255,12 @@ def print_outcome(
     missing = 100 * outcome.energy.residual
     lines += [_line("not accounted for", plain(missing, 2) if abs(missing) >= 1e-3 else "under 0.001", "%")]
     lines += ["", _line(HEATING, outcome.told(SKIN, 100.0), "%", _changed(spread, SKIN, 100.0))]
-    lines += _contact_lines(outcome, spread)
+    # peak force and flash temperature, of those that are known
+    lines += [
+        _line(label, outcome.told(key), key.unit, _changed(spread, key))
+        for label, key in (("peak force", PEAK), ("flash temperature", FLASH))
+        if not isinstance(key.of(outcome), Unknown)
+    ]
     if or_none(outcome.energy.below_floor):
         floor = _value(outcome.energy.vibration_floor)
         lines += [f"  vibration is below its numerical floor (fraction {floor})"]
@@ -272,16 +283,6 @@ def _motion_rows(outcome: Outcome, own_tests: bool) -> list[tuple[str, str, str]
     if or_none(barrier.Omega_b) is not None:
         rows.append(("Omega of the barrier after", "barrier_Omega_rad_per_s", "rad/s"))
     return rows
-
-
-def _listed_shares(outcome: Outcome) -> dict[str, Key]:
-    """Return the keys of the listed shares of E_0 by their labels."""
-    energy = outcome.energy
-    return {
-        _label(share, energy): share.key
-        for share in shares("terminal")
-        if not (share.key.path[-1] in _IF_ON and isinstance(share.of(energy), Unknown))
-    }
 
 
 def _label(share: EnergyShare, energy: Energy) -> str:
@@ -320,15 +321,6 @@ def _percent(value: Num) -> str:
 def _motion_line(outcome: Outcome, label: str, name: str, unit: str, spread: FrictionSpread | None) -> str:
     key = KEY_TABLE[name]
     return _line(label, outcome.told(key), unit, _changed(spread, key))
-
-
-def _contact_lines(outcome: Outcome, spread: FrictionSpread | None) -> list[str]:
-    """Return peak force and flash temperature, of those that are known."""
-    return [
-        _line(label, outcome.told(key), key.unit, _changed(spread, key))
-        for label, key in (("peak force", PEAK), ("flash temperature", FLASH))
-        if not isinstance(key.of(outcome), Unknown)
-    ]
 
 
 def _changed(spread: FrictionSpread | None, key: Key, scale: float = 1.0) -> str:

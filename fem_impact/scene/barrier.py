@@ -57,7 +57,14 @@ class Barrier:
         check_numbers(self, fields.BARRIER)
         _check_support(self)
         _check_turning(self)
-        _check_layers(self)
+        # refuse layers on a barrier that bends or is free to move
+        if self.layers and self.bends:
+            remedy = 'Leave out the layers, or support = "infinite".'
+            problem = "lie on a plate that bends, whose impedance is known for one material alone."
+            raise SceneError(problem, key="layers", remedy=remedy)
+        if self.layers and self.mass is not None:
+            problem = "lie on a barrier that is free to move: only a massive one may have them."
+            raise SceneError(problem, key="layers", remedy="Leave out the layers, or the mass.")
 
     @property
     def strata(self) -> tuple[tuple[float, Material], ...]:
@@ -75,17 +82,6 @@ class Barrier:
     def bends(self) -> bool:
         """Whether it is a plate whose bending waves run away."""
         return self.support == "infinite"
-
-
-def _check_layers(barrier: Barrier) -> None:
-    """Refuse layers on a barrier that bends or is free to move."""
-    if barrier.layers and barrier.bends:
-        remedy = 'Leave out the layers, or support = "infinite".'
-        problem = "lie on a plate that bends, whose impedance is known for one material alone."
-        raise SceneError(problem, key="layers", remedy=remedy)
-    if barrier.layers and barrier.mass is not None:
-        problem = "lie on a barrier that is free to move: only a massive one may have them."
-        raise SceneError(problem, key="layers", remedy="Leave out the layers, or the mass.")
 
 
 def _check_turning(barrier: Barrier) -> None:

@@ -41,7 +41,14 @@ class Impact:
 
     def __post_init__(self) -> None:
         check_numbers(self, (*fields.MOTION, fields.HEIGHT, fields.SPEED, fields.SLOPE))
-        _check_until(self.until)
+        # refuse another word than those that say how far a body is followed (SceneError)
+        if not isinstance(self.until, str) or not (
+            self.until in (FIRST, REST) or STRIKES.fullmatch(self.until)
+        ):
+            remedy = 'Use "first", "rest", or a number of strikes up to 999, such as "3 strikes".'
+            raise SceneError(
+                "does not say how far the body is followed.", key="until", value=self.until, remedy=remedy
+            )
         if self.height is None and self.speed is None:
             return
         speed = self.speed if self.height is None else _fallen(self.height)
@@ -96,15 +103,6 @@ class Impact:
     def beside(self) -> float:
         """Angle, rad, from the rod's axis to its velocity; about 0 for a rod that was dropped."""
         return atan2(-self.v_t, -self.v_n) - self.angle
-
-
-def _check_until(until: object) -> None:
-    """Refuse another word than those that say how far a body is followed (SceneError)."""
-    if not isinstance(until, str) or not (until in (FIRST, REST) or STRIKES.fullmatch(until)):
-        remedy = 'Use "first", "rest", or a number of strikes up to 999, such as "3 strikes".'
-        raise SceneError(
-            "does not say how far the body is followed.", key="until", value=until, remedy=remedy
-        )
 
 
 def _fallen(height: float) -> float:

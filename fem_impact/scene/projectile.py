@@ -212,7 +212,22 @@ class ProjectileSpec:
         check_numbers(self, fields.PROJECTILE)
         if self.shape is None:
             _check_tip_name(self.tip)
-            _check_tip(self)
+            if self.tip_radius > self.diameter / 2:
+                raise SceneError(
+                    f"is larger than the rod's radius ({self.diameter * 500:.3g} mm).",
+                    key="tip_radius",
+                    value=f"{self.tip_radius * 1e3:.3g} mm",
+                    remedy="Give a tip radius of at most half the diameter.",
+                )
+            if (self.tip == "plain") != (self.tip_radius == 0.0):
+                raise SceneError(
+                    f'does not fit tip "{self.tip}": a plain tip has radius 0, the others one above 0.',
+                    key="tip_radius",
+                    value=f"{self.tip_radius * 1e3:.3g} mm",
+                    remedy="Leave tip_radius out, or choose another tip."
+                    if self.tip == "plain"
+                    else 'Change tip_radius, or choose tip = "plain" for a sharp-edged flat face.',
+                )
         if self.bore != ():
             object.__setattr__(self, "bore", checked_points(self.bore, "bore"))
         if self.segments:
@@ -240,25 +255,6 @@ def _check_tip_name(tip: str) -> None:
     from fem_impact.scene.tips import tips
 
     check_choice(tip, tuple(tips()), "tip")
-
-
-def _check_tip(rod: ProjectileSpec) -> None:
-    if rod.tip_radius > rod.diameter / 2:
-        raise SceneError(
-            f"is larger than the rod's radius ({rod.diameter * 500:.3g} mm).",
-            key="tip_radius",
-            value=f"{rod.tip_radius * 1e3:.3g} mm",
-            remedy="Give a tip radius of at most half the diameter.",
-        )
-    if (rod.tip == "plain") != (rod.tip_radius == 0.0):
-        raise SceneError(
-            f'does not fit tip "{rod.tip}": a plain tip has radius 0, the others have a radius above 0.',
-            key="tip_radius",
-            value=f"{rod.tip_radius * 1e3:.3g} mm",
-            remedy="Leave tip_radius out, or choose another tip."
-            if rod.tip == "plain"
-            else 'Change tip_radius, or choose tip = "plain" for a sharp-edged flat face.',
-        )
 
 
 def _check_segments(rod: ProjectileSpec) -> None:

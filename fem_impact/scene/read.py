@@ -55,7 +55,16 @@ def read_toml(path: str | Path) -> Scene:
 
 def read_tables(path: Path) -> dict[str, Any]:
     """Return the tables of a scene file unchecked, with its own files found from its place."""
-    return _with_points(_beside(_parse(_load(path), str(path)), path), path)
+    # put the points of a profile's CSV file, which is named from the scene's directory, in its place
+    data = _beside(_parse(_load(path), str(path)), path)
+    rod = data.get("projectile")
+    if not isinstance(rod, Mapping) or not isinstance(rod.get("profile"), str):
+        return data
+    try:
+        points = read_points(path.parent / rod["profile"])
+    except ResultError as error:
+        raise SceneError(str(error), key="projectile.profile", source=str(path)) from None
+    return data | {"projectile": {**rod, "profile": [[HEIGHT.write(z), RADIUS.write(r)] for z, r in points]}}
 
 
 def _beside(data: dict[str, Any], path: Path) -> dict[str, Any]:
@@ -66,18 +75,6 @@ def _beside(data: dict[str, Any], path: Path) -> dict[str, Any]:
     if isinstance(rod, Mapping) and isinstance(rod.get("mesh"), str):
         data = data | {"projectile": {**rod, "mesh": str((path.parent / rod["mesh"]).resolve())}}
     return data
-
-
-def _with_points(data: dict[str, Any], place: Path) -> dict[str, Any]:
-    """Put the points of a profile's CSV file, which is named from the scene's directory, in its place."""
-    rod = data.get("projectile")
-    if not isinstance(rod, Mapping) or not isinstance(rod.get("profile"), str):
-        return data
-    try:
-        points = read_points(place.parent / rod["profile"])
-    except ResultError as error:
-        raise SceneError(str(error), key="projectile.profile", source=str(place)) from None
-    return data | {"projectile": {**rod, "profile": [[HEIGHT.write(z), RADIUS.write(r)] for z, r in points]}}
 
 
 def read_dict(data: Mapping[str, Any], source: str = "scene") -> Scene:
@@ -158,7 +155,16 @@ def read_scene(data: Table) -> Scene:
         "heating": lambda: within(data, "heating", lambda t: Heating(**numbers_of(t, fields.HEATING)), {}),
         "strikes": lambda: within(data, "strikes", _strikes, {}),
     }
-    read = _all_read(parts)
+    # all parts read; of several complaints a misspelt key comes before what is missing for it
+    read: dict[str, Any] = {}
+    complaints: list[SceneError] = []
+    for name, part in parts.items():
+        try:
+            read[name] = part()
+        except SceneError as error:
+            complaints.append(error)
+    if complaints:
+        raise min(complaints, key=lambda error: error.problem != UNKNOWN_KEY)
     if read["surface"] is None:
         pair = read["projectile"].material, read["barrier"].struck
         of_pair = partial(of_known, lambda: pair_surface(*pair))
@@ -176,20 +182,6 @@ def read_scene(data: Table) -> Scene:
 
 def _strikes(table: Table) -> Following:
     return Following(table.get("fidelity", ""), **numbers_of(table, fields.STRIKES, ("fidelity",)))
-
-
-def _all_read(parts: Mapping[str, Callable[[], Any]]) -> dict[str, Any]:
-    """Return all parts read; of several complaints a misspelt key comes before what is missing for it."""
-    read: dict[str, Any] = {}
-    complaints: list[SceneError] = []
-    for name, part in parts.items():
-        try:
-            read[name] = part()
-        except SceneError as error:
-            complaints.append(error)
-    if complaints:
-        raise min(complaints, key=lambda error: error.problem != UNKNOWN_KEY)
-    return read
 
 
 def _check_measured(scene: Scene) -> None:
@@ -235,7 +227,10 @@ def _projectile(table: Table) -> ProjectileSpec:
     if "mesh" in known:
         return _of_mesh(known, own)
     if "profile" in known:
-        return _of_profile(known, own)
+        check_keys(known, ("profile", "profile_smooth", "material"))
+        points = stated_points(known["profile"], "profile")
+        shape = Profile(points, known.get("profile_smooth", False))
+        return ProjectileSpec.turned(shape, within(known, "material", read_material), **own)
     return _named_shape(known, own) if "shape" in known else _rod(known, own)
 
 
@@ -266,13 +261,6 @@ def _refuse_hollow(table: Table) -> None:
                 'bore = [["0 mm", "7 mm"], ["80 mm", "7 mm"]], each its place from the tip and inner radius'
             )
             raise SceneError(UNKNOWN_KEY, key=key, value=table[key], remedy=f"State the bore: {points}.")
-
-
-def _of_profile(table: Table, own: dict[str, Any]) -> ProjectileSpec:
-    check_keys(table, ("profile", "profile_smooth", "material"))
-    points = stated_points(table["profile"], "profile")
-    shape = Profile(points, table.get("profile_smooth", False))
-    return ProjectileSpec.turned(shape, within(table, "material", read_material), **own)
 
 
 def _of_mesh(table: Table, own: dict[str, Any]) -> ProjectileSpec:

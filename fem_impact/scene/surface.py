@@ -35,7 +35,19 @@ class Surface:
         check_numbers(self, fields.SURFACE)
         check_numbers(self, fields.SKIN)
         check_text(self.source, "source", 1000)
-        _check_skin(self)
+        # refuse half a hardened layer, or one on surfaces that were not freshly cut
+        stated = [key for key in ("skin_depth", "skin_factor") if getattr(self, key) is not None]
+        if len(stated) == 1:
+            other = "skin_factor" if stated == ["skin_depth"] else "skin_depth"
+            raise SceneError(
+                "is missing.", key=other, remedy=f"Give it beside {stated[0]}, or leave out both."
+            )
+        if stated and self.state in ("contaminated", "cleaned"):
+            raise SceneError(
+                f"means nothing on {self.state} surfaces: the layer is that of freshly cut ones.",
+                key="skin_depth",
+                remedy='Leave it out, or use state = "machined" or "custom".',
+            )
         if not self.friction_low <= self.friction <= self.friction_high:
             raise SceneError(
                 f"lies outside its own interval, {self.friction_low:g} to {self.friction_high:g}.",
@@ -43,17 +55,3 @@ class Surface:
                 value=self.friction,
                 remedy="Give friction_low <= friction <= friction_high.",
             )
-
-
-def _check_skin(surface: Surface) -> None:
-    """Refuse half a hardened layer, or one on surfaces that were not freshly cut."""
-    stated = [key for key in ("skin_depth", "skin_factor") if getattr(surface, key) is not None]
-    if len(stated) == 1:
-        other = "skin_factor" if stated == ["skin_depth"] else "skin_depth"
-        raise SceneError("is missing.", key=other, remedy=f"Give it beside {stated[0]}, or leave out both.")
-    if stated and surface.state in ("contaminated", "cleaned"):
-        raise SceneError(
-            f"means nothing on {surface.state} surfaces: the layer is that of freshly cut ones.",
-            key="skin_depth",
-            remedy='Leave it out, or use state = "machined" or "custom".',
-        )

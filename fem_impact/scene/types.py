@@ -137,7 +137,15 @@ class Scene:
         if self.restitution is not None:
             check_numbers(self, fields.TOP)
         _check_approach(self)
-        _check_tip_size(self)
+        largest = self.projectile.diameter / 4
+        size = self.accuracy.tip_size
+        if size is not None and size > largest:
+            raise SceneError(
+                f"is too coarse for a rod of {self.projectile.diameter * 1e3:g} mm diameter.",
+                key="accuracy.tip_size",
+                value=f"{size * 1e3:.3g} mm",
+                remedy=f"Give at most {largest * 1e3:g} mm.",
+            )
 
     @property
     def across(self) -> int:
@@ -187,15 +195,3 @@ def _check_approach(scene: Scene) -> None:
             parameter.checked(seen_speed)
         except SceneError as error:
             raise error.under("impact") from None
-
-
-def _check_tip_size(scene: Scene) -> None:
-    largest = scene.projectile.diameter / 4
-    size = scene.accuracy.tip_size
-    if size is not None and size > largest:
-        raise SceneError(
-            f"is too coarse for a rod of {scene.projectile.diameter * 1e3:g} mm diameter.",
-            key="accuracy.tip_size",
-            value=f"{size * 1e3:.3g} mm",
-            remedy=f"Give at most {largest * 1e3:g} mm.",
-        )

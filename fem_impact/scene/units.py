@@ -135,7 +135,22 @@ def parse_quantity(value: Any, dimension: str, key: str) -> float:
     if not isinstance(value, str):
         article = "an" if dim.name[0] in "aeiou" else "a"
         raise SceneError(f"a bare number is not {article} {dim.name}.", key=key, value=value, remedy=remedy)
-    return _read_text(value, dim, key, remedy)
+    match = _QUANTITY.fullmatch(value) if len(value) <= _LONGEST else None
+    if match is None:
+        raise SceneError(_why_not(value, dim), key=key, value=value, remedy=remedy)
+    number, symbol = match.group(1), _plain(match.group(2) or "")
+    if symbol.startswith(","):
+        raise SceneError("has a decimal comma; write a decimal point.", key=key, value=value, remedy=remedy)
+    if not symbol:
+        raise SceneError("has no unit.", key=key, value=value, remedy=remedy)
+    unit = dim.unit(symbol)
+    if unit is None:
+        hint = did_you_mean(symbol, [unit.symbol for unit in dim.units], "")
+        unknown_unit = f"{symbol[:20]!r} is not a unit of {dim.name} ({dim.symbols}). {hint}".rstrip()
+        raise SceneError(unknown_unit, key=key, value=value, remedy=remedy)
+    if not math.isfinite(float(number)):
+        raise SceneError("is too large for a number.", key=key, value=value)
+    return unit.to_si(number) + 0.0 if float(number) else unit.offset
 
 
 def parse_share(value: Any, key: str) -> float:
@@ -192,36 +207,10 @@ def _digits(number: Decimal) -> str:
     return f"{number:f}" if -7 < number.adjusted() < 9 else f"{number}"
 
 
-def _read_text(text: str, dim: Dimension, key: str, remedy: str) -> float:
-    match = _QUANTITY.fullmatch(text) if len(text) <= _LONGEST else None
-    if match is None:
-        raise SceneError(_why_not(text, dim), key=key, value=text, remedy=remedy)
-    number, symbol = match.group(1), _plain(match.group(2) or "")
-    if symbol.startswith(","):
-        raise SceneError("has a decimal comma; write a decimal point.", key=key, value=text, remedy=remedy)
-    if not symbol:
-        raise SceneError("has no unit.", key=key, value=text, remedy=remedy)
-    unit = dim.unit(symbol)
-    if unit is None:
-        raise SceneError(_unknown_unit(symbol, dim), key=key, value=text, remedy=remedy)
-    return _finite(number, unit, key, text)
-
-
-def _finite(number: str, unit: Unit, key: str, text: str) -> float:
-    if not math.isfinite(float(number)):
-        raise SceneError("is too large for a number.", key=key, value=text)
-    return unit.to_si(number) + 0.0 if float(number) else unit.offset
-
-
 def _plain(symbol: str) -> str:
     """Fold the usual spellings of a unit into one."""
     folded = symbol.strip().replace(" ", "").replace("³", "3").replace("^3", "3").replace("°", "deg")
     return folded.replace("µ", "u").replace("μ", "u")
-
-
-def _unknown_unit(symbol: str, dim: Dimension) -> str:
-    hint = did_you_mean(symbol, [unit.symbol for unit in dim.units], "")
-    return f"{symbol[:20]!r} is not a unit of {dim.name} ({dim.symbols}). {hint}".rstrip()
 
 
 def _why_not(text: str, dim: Dimension) -> str:
