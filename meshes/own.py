@@ -121,9 +121,7 @@ def read_own(path: str | Path, unit: float = 1.0, stated: Stated | None = None) 
     parent = np.flatnonzero(chosen)[of[made.parent]]
     if cut:
         stated = replace(stated, symmetry="half", tip="-z" if stated.tip else None)
-    names = ", ".join(f'"{name}"' for name in sorted(stored.sets)[:8])
-    set_hint = f" Or name those that are the body: mesh_sets = [...] of {names}." if names else ""
-    body, origin = _own(Part(made.points, made.cells, _corners(made.cells)), stated, set_hint)
+    body, origin = _own(Part(made.points, made.cells, _corners(made.cells)), stated, _set_hint(stored))
     files = file_faces(stored, chosen)
     of = parent[origin // 8]  # (m, 8), all corners of a cell are of one cell of the file
     sets = {name: np.isin(of[:, 0], cells) for name, cells in stored.sets.items()}
@@ -238,6 +236,11 @@ def _halved(
         else f"half of {len(cells)} tetrahedra is taken: all of the body is there, with faces on y = 0"
     )
     return places, tuple(made.items()), own[np.concatenate([of["tetra"], of["wedge"]])], (told,)
+
+
+def _set_hint(stored: StoredMesh) -> str:
+    names = ", ".join(f'"{name}"' for name in sorted(stored.sets)[:8])
+    return f" Or name those that are the body: mesh_sets = [...] of {names}." if names else ""
 
 
 def _own(part: Part, stated: Stated, hint: str) -> tuple[OwnBody, IntArray]:
