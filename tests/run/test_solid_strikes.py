@@ -8,6 +8,7 @@ from fem_impact.case.case import Case
 from fem_impact.errors import SceneError
 from fem_impact.modal.rod import modal_rod
 from fem_impact.modal.sites import skin
+from fem_impact.options import RunOptions
 from fem_impact.outcome.limitation import texts
 from fem_impact.run.simulate import simulate
 from fem_impact.run.solid_strikes import SolidCourse
@@ -149,6 +150,21 @@ def test_a_yielding_rod_strikes_in_the_order_of_the_reduced_model(name):
     E_0 = modal.each[0].before
     assert solid.friction == pytest.approx(modal.friction, abs=0.05 * E_0)
     assert solid.plastic == pytest.approx(modal.plastic, abs=0.25 * E_0)
+
+
+@pytest.mark.slow
+def test_a_run_that_is_killed_between_strikes_goes_on_to_the_same_end(tmp_path, monkeypatch):
+    def killed(*_):
+        raise KeyboardInterrupt
+
+    scene = capsule(**{"accuracy.tip_size": "2 mm", "impact.until": "2 strikes"})
+    with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
+        patch.setattr(SolidCourse, "_strike", killed)
+        simulate(scene, "solid", RunOptions(tmp_path, checkpoint_s=0.0))
+    whole, again = (
+        simulate(scene, "solid", options) for options in (RunOptions(), RunOptions(tmp_path, resume=True))
+    )
+    assert again.strikes.each == whole.strikes.each
 
 
 @pytest.mark.slow
