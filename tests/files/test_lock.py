@@ -162,7 +162,7 @@ def test_the_drafts_of_a_killed_run_are_removed_by_the_next(tmp_path):
     assert not list(tmp_path.glob(".*"))
 
 
-@pytest.mark.parametrize("stop", [signal.SIGTERM, signal.SIGKILL])
+@pytest.mark.parametrize("stop", [pytest.param(signal.SIGTERM, marks=pytest.mark.slow), signal.SIGKILL])
 def test_a_stopped_cost_leaves_no_worker(tmp_path, stop):
     line = [sys.executable, "-m", "fem_impact", "cost", "t5b", "--quiet", "--out", str(tmp_path)]
     child = subprocess.Popen(line, stderr=subprocess.DEVNULL)

@@ -51,7 +51,9 @@ BALL = {
 }
 
 
-@pytest.mark.parametrize("effects", [["friction"], ["vibration", "friction"]])
+@pytest.mark.parametrize(
+    "effects", [pytest.param(["friction"], marks=pytest.mark.slow), ["vibration", "friction"]]
+)
 def test_a_ball_is_round_everywhere(effects):
     """Far from its pole, too, it is meshed finely where it touches, and has a rest that may be rigid."""
     ball = BALL | {"effects": [*effects, "barrier-elastic"]}

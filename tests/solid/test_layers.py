@@ -214,6 +214,7 @@ def test_a_layer_of_the_base_s_own_material_changes_nothing():
     assert layered.energy.plastic_barrier == pytest.approx(plain.energy.plastic_barrier, rel=0.01)
 
 
+@pytest.mark.slow
 def test_a_hard_plate_on_a_soft_base_lies_between_both_and_is_balanced():
     effects = ["auto", "radiation"]
     hard, both, soft = (

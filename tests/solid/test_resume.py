@@ -93,6 +93,7 @@ def test_resumed_is_uninterrupted(effects, tmp_path):
         assert (found.stretch == expected.stretch).all() and (found.bending == expected.bending).all()
 
 
+@pytest.mark.slow
 def test_a_run_on_a_plate_that_is_meshed_through_goes_on(tmp_path):
     scene = short(SETS[2])
     scene = replace(scene, barrier=replace(scene.barrier, thickness=5e-3))

@@ -118,6 +118,7 @@ def test_rows_are_no_lower_than_a_share_of_the_indentation():
         assert geometry.tip_size * 0.5 ** (geometry.skin_rows + 1) < LOW * depth
 
 
+@pytest.mark.slow
 def test_the_mass_of_thin_rows_saves_steps_and_moves_nothing(monkeypatch):
     scene = replace_all(SCENE, {"save.frames": 0, "accuracy.mass_scaling": 1.0})
     heavy = simulate(scene)

@@ -35,6 +35,7 @@ def test_another_metal_shape_and_speed():
     assert done.passed
 
 
+@pytest.mark.slow
 def test_a_bar_without_hardening_goes_on_though_its_foot_thins():
     """Its smallest stable step falls to 0.014 of the first, where other runs end as crushed."""
     found = checks(verify("taylor", {**PERFECT, "slices": 40, "time": "42 us"}))

@@ -14,6 +14,7 @@ def rebounds(**changes):
     return {c.name: c for c in found.checks}
 
 
+@pytest.mark.slow
 def test_the_rebound_comes_nearer_with_smaller_cells_and_grows_with_the_speed():
     coarse, fine, slow = (
         rebounds(cells=n, speed=v)[f"{HARD}, printed"] for n, v in ((4, 3.0), (6, 3.0), (4, 1.5))

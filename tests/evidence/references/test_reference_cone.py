@@ -29,7 +29,7 @@ def test_pressure_and_radius_change_with_the_cells_by_their_first_order_error_al
 
 
 def test_friction_raises_the_pressure_and_holds_the_bulge_back():
-    plain, rough = (cone.indent(STEEL, ANGLE, f, 6).coefficients() for f in (0.0, 0.2))
+    plain, rough = (cone.indent(STEEL, ANGLE, f, 5).coefficients() for f in (0.0, 0.2))
     assert 1.05 * plain[0] < rough[0] < 1.2 * plain[0]
     assert rough[1] < plain[1]
 
