@@ -82,9 +82,11 @@ def conclude(request: Request, results: Results) -> StudyReport:
 def convergence_rows(name: str, levels: Levels) -> list[Row]:
     """Return one row per quantity; none with fewer than `LEAST` levels.
 
+    Levels that do not resolve their contact are left out where as many others remain.
     ``told`` are limit and half-width that the first two levels tell, the first three and so on.
     """
-    meshes = levels.meshes
+    resolved = [mesh for mesh in levels.meshes if mesh.resolved]
+    meshes = resolved if len(resolved) >= LEAST else levels.meshes
     if len(meshes) < LEAST:
         return []
     sizes, rows = [mesh.size for mesh in meshes], []
@@ -96,7 +98,7 @@ def convergence_rows(name: str, levels: Levels) -> list[Row]:
             "quantity": quantity,
             "tip_size_m": sizes,
             "values": means,
-            "default": levels.default - 1,
+            "default": levels.default - 1 - len(levels.meshes),
             "apart": [max(on_mesh) - min(on_mesh) for on_mesh in values],
             "fit": limit(sizes, means),
             "told": [told for n in range(2, len(meshes)) if (told := _told(meshes[:n], key.name))],

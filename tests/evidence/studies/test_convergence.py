@@ -1,6 +1,7 @@
 """The limits of measured sets: the levels of each, one row a quantity, what failed is said."""
 
 import json
+from dataclasses import replace
 
 import pytest
 from study_fakes import outcome, published
@@ -84,6 +85,15 @@ def test_a_failed_set_is_said_and_the_others_still_count(tmp_path):
     assert [f["scene_id"] for f in found.document["failures"]] == ["t5b"]
     assert "| t6-17 | e |" in found.text
     assert "| t5b | e |" not in found.text
+
+
+def test_a_pilot_that_resolves_nothing_counts_where_there_are_no_three_others():
+    levels = levels_of(6e-4, 4e-4, 3e-4, 2e-4)
+    lost = [replace(levels.meshes[0], resolved=False), *levels.meshes[1:]]
+    for meshes, sizes in ((lost, [4e-4, 3e-4, 2e-4]), (lost[:3], [6e-4, 4e-4, 3e-4])):
+        row = convergence_rows("t5b", Levels(tuple(meshes), 3))[0]
+        assert row["tip_size_m"] == sizes
+        assert row["tip_size_m"][row["default"]] == 3e-4
 
 
 def test_two_levels_have_no_limit():
