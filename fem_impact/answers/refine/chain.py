@@ -54,8 +54,6 @@ MORE = 1
 BUDGET = 600.0  # s of wall time for all levels, unless stated
 LATE = 1.3  # of the budget, beyond which a level that has begun is given up
 MOST_FINER = 3  # splits beyond those that resolve the contact, where a band decides
-
-
 Decides = Callable[[Sequence[LevelRun]], bool]
 """Says whether levels from coarse to fine are enough for an answer."""
 
