@@ -61,7 +61,7 @@ def test_the_printed_shares_add_up_to_the_initial_energy_and_what_gravity_added(
     _, out, _ = cli(*line)
     head, listed = re.search(r"of the initial energy, (.*):\n((?:  .*\n)*)  not acc", out).groups()
     added = re.fullmatch(r"E_0 = \S+ J, to which gravity added (\S+) %", head)
-    shares = [float(share) for share in re.findall(r"(\S+) %", listed)]
+    shares = [float(share) for share in re.findall(r"([-\d.]+)(?: \+- \S+)? %", listed)]
     assert float(added[1]) > 1 and "gravity" not in listed
-    assert sum(shares) == pytest.approx(100 + float(added[1]), abs=0.1)  # three digits
+    assert sum(shares) == pytest.approx(100 + float(added[1]), abs=1.0)  # no digit more than holds
     assert "gravity added" not in cli("run", "t5b", "--fidelity", "modal")[1]
