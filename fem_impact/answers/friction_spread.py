@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from fem_impact.errors import FemImpactError
 from fem_impact.outcome.keys import Key, or_none
-from fem_impact.outcome.record import KEYS, Outcome
+from fem_impact.outcome.record import KEYS, ROUND_OFF, Outcome
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.impact import FIRST
 from fem_impact.scene.types import Scene
@@ -77,6 +77,6 @@ def _changes(stated: Outcome, ends: list[Outcome]) -> dict[Key, tuple[float, flo
         numbers = [value for value in values if value is not None]
         if len(numbers) == 1 + len(ends):
             low, high = min(numbers) - numbers[0], max(numbers) - numbers[0]
-            if high - low > LEAST * abs(numbers[0]):
+            if high - low > max(LEAST * abs(numbers[0]), ROUND_OFF):
                 found[key] = low, high
     return found

@@ -215,6 +215,7 @@ _BARRIER = (
 HEATING = "friction + top 0.1 mm of both"
 """Label of the work that can heat the contact."""
 SKIN, PEAK, FLASH = (KEY_TABLE[name] for name in ("W_skin_over_E_0", "peak_force_N", "flash_temperature_K"))
+RESIDUAL = KEY_TABLE["residual_over_E_0"]
 _IF_ON = ("damping", "contact", "plate", "barrier")
 """Shares that are left out where they are not known: their effects are off."""
 
@@ -247,13 +248,11 @@ def print_outcome(
         if not (share.key.path[-1] in _IF_ON and isinstance(share.of(energy), Unknown))
     }
     lines += [
-        _line(label, outcome.told(key, 100.0), "%", _changed(spread, key, 100.0))
-        for label, key in listed.items()
+        _line(label, _share(outcome, key), "%", _changed(spread, key, 100.0)) for label, key in listed.items()
     ]
     if above := above_modes(outcome.energy):
         lines += [_line(ABOVE, plain(100 * above), "%")]
-    missing = 100 * outcome.energy.residual
-    lines += [_line("not accounted for", plain(missing, 2) if abs(missing) >= 1e-3 else "under 0.001", "%")]
+    lines += [_line("not accounted for", _share(outcome, RESIDUAL), "%")]
     lines += ["", _line(HEATING, outcome.told(SKIN, 100.0), "%", _changed(spread, SKIN, 100.0))]
     # peak force and flash temperature, of those that are known
     lines += [
@@ -321,6 +320,13 @@ def _percent(value: Num) -> str:
 def _motion_line(outcome: Outcome, label: str, name: str, unit: str, spread: FrictionSpread | None) -> str:
     key = KEY_TABLE[name]
     return _line(label, outcome.told(key), unit, _changed(spread, key))
+
+
+def _share(outcome: Outcome, key: Key) -> str:
+    """Return a share in per cent as text."""
+    value, band = outcome.estimate(key)
+    tiny = not isinstance(value, Unknown) and band is None and 0 < abs(value) < 1e-5
+    return "under 0.001" if tiny else outcome.told(key, 100.0)
 
 
 def _changed(spread: FrictionSpread | None, key: Key, scale: float = 1.0) -> str:

@@ -36,6 +36,8 @@ from fem_impact.tables.text import plain, with_band
 from fem_impact.version import __version__
 
 PACKAGES = ("numpy", "scipy", "scikit-fem", "numba")
+ROUND_OFF = 1e-9
+"""Size below which a number of a run, SI or a share of E_0, is told as 0."""
 _version = cache(metadata.version)  # a file is read each time else
 
 
@@ -128,7 +130,8 @@ class Outcome:
     def told(self, key: Key | str, scale: float = 1.0) -> str:
         """Return a number times ``scale`` as text: with its half-width to the digits that hold.
 
-        One that may have a half-width and has none is told to three digits; "not known" stands for `Unknown`.
+        One that may have a half-width and has none is told to three digits, and as 0 below `ROUND_OFF`; "not
+        known" stands for `Unknown`.
 
         Examples
         --------
@@ -143,7 +146,9 @@ class Outcome:
             return "not known"
         if band is not None:
             return with_band(scale * value, scale * band)
-        return plain(scale * value, 3 if key.banded else 4)
+        if key.banded:
+            return plain(scale * value) if abs(value) >= ROUND_OFF else "0"
+        return plain(scale * value, 4)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the flat keys with plain JSON values."""
