@@ -13,6 +13,7 @@ import result_maker
 from fem_impact.errors import ResultError
 from fem_impact.files.atomic import write_bytes
 from fem_impact.files.digests import read_signed, signed
+from fem_impact.outcome.check import SCHEMA_VERSION
 from fem_impact.pages.html import bullets, paragraph, section, table
 from fem_impact.pages.sections import contact_places, effects_section
 from fem_impact.pages.study_page import draw_study, read_study
@@ -330,10 +331,10 @@ def test_study_without_runs_or_comparison_still_reports(study):
     [
         ({"schema": "other/2"}, '"schema" = "other/2" is not'),
         ({"rows": "none"}, "rows must be array"),
-        ({"rows": [{"schema_version": 11}]}, r"rows\[0\]: key .* is missing"),
+        ({"rows": [{"schema_version": SCHEMA_VERSION}]}, r"rows\[0\]: key .* is missing"),
         (
             {"rows": [{"schema_version": 3}]},
-            r"rows\[0\]: .* is not the version 11 .*; compute the run again",
+            rf"rows\[0\]: .* is not the version {SCHEMA_VERSION} .*; compute the run again",
         ),
         ({"comparison": [{"set": "t2"}]}, r"comparison\[0\] must contain .*quantity"),
     ],
