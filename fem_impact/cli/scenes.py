@@ -7,7 +7,6 @@ import sys
 from collections.abc import Iterator
 from typing import Any
 
-from fem_impact.case.effects.registry import EFFECTS
 from fem_impact.cli.options import Options
 from fem_impact.cli.parser import CommandParser
 from fem_impact.cli.terminal import print_json, print_table
@@ -131,6 +130,8 @@ def _friction(options: Options) -> int:
 
 def _added(options: Options) -> int:
     """List what other installed packages add, and the fidelities that compute it."""
+    from fem_impact.case.effects.registry import EFFECTS  # which imports numpy
+
     rows = [
         (group, name, package, EFFECTS[name].fidelities if group == "effects" else FIDELITIES)
         for group, name, package in listed()

@@ -68,8 +68,8 @@ STUDIES = {
         "Measured sets on the levels of a run and a finer one, at two places of the plate's grid, and what "
         "vanishing elements would give: the limit of each quantity, its order, and the bands of fewer levels "
         "beside it.",
-        "4 sets with all their levels, some 6 min",
-        "the levels of a default run: 4 sets, some 1 min",
+        "4 runs, each a set with all its levels, some 6 min",
+        "4 runs on the levels of a default run, some 1 min",
         4,
         4,
         "t3-machined, t3-contaminated, t5b, t6-17",

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from fem_impact.case.bodies import LaterStrike
 from fem_impact.case.effects.registry import AUTO
-from fem_impact.outcome.keys import Num, Unknown, known, or_none
+from fem_impact.outcome.keys import Num, Unknown, known
 from fem_impact.outcome.record import Outcome
 from fem_impact.outcome.strikes import StrikeRecord, Strikes
 from fem_impact.physics.contact import ContactPair
@@ -268,28 +268,6 @@ class Followed:
             plastic=mass * (1.0 - loss.viscous) * strike.normal,
             damping=mass * loss.viscous * strike.normal,
         )
-
-    def first_record(self, outcome: Outcome) -> StrikeRecord:
-        """Return the impact of an outcome of finite elements as the first strike."""
-        case, motion, energy = self.case, outcome.motion, outcome.energy
-        seen, E_0, pair = case.scene.relative, energy.E_0, case.contact
-        before = self.touching(seen.angle, seen.v_n, seen.v_t, seen.omega)
-        after = self.after(outcome)
-        parts = [energy.friction, energy.plastic, energy.damping, energy.vibration]
-        friction, plastic, damping, vibration = (E_0 * (or_none(part) or 0.0) for part in parts)
-        place = pair.touch_point[0] - pair.body.x_c, pair.touch_point[1] - pair.body.z_c
-        impulse = motion.mass * (after.V_n - seen.v_n), motion.mass * (after.V_t - seen.v_t)
-        record = self.record(
-            outcome.provenance.fidelity,
-            *(before, after, place, pair.arms, impulse),
-            part=self.part_of(place, 0.0, seen.angle),
-            force=or_none(outcome.contact.peak_force),
-            friction=friction,
-            plastic=plastic,
-            damping=damping,
-            vibration=vibration,
-        )
-        return replace(record, other=record.before - record.after - friction - plastic - damping - vibration)
 
     def record(
         self,

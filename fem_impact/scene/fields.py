@@ -66,11 +66,26 @@ SLOPE = Parameter(
 )
 SPEED = Parameter("speed", "speed along the rod's axis", "speed", 1e-6, 500.0, derived=_GIVEN)
 _EXACT = "none: it is taken as exact"
+_NO_GUESS = "chosen for this package: an uncertainty that is not stated is not guessed"
 STRIKES = (
     Parameter(
-        "angle_error", "how far the angle may be off", "angle", 0.0, math.radians(10.0), derived=_EXACT
+        "angle_error",
+        "how far the angle may be off",
+        "angle",
+        0.0,
+        math.radians(10.0),
+        derived=_EXACT,
+        source=_NO_GUESS,
     ),
-    Parameter("speed_error", "share by which the velocities may be off", "", 0.0, 0.5, derived=_EXACT),
+    Parameter(
+        "speed_error",
+        "share by which the velocities may be off",
+        "",
+        0.0,
+        0.5,
+        derived=_EXACT,
+        source=_NO_GUESS,
+    ),
 )
 _MASSIVE = "none: the barrier is massive"
 BARRIER = (

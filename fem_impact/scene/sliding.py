@@ -5,14 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Self
+from math import prod
+from typing import TYPE_CHECKING, Self
 
-import numpy as np
-
-from fem_impact.arrays import Array
 from fem_impact.errors import SceneError
 from fem_impact.scene.checks import check_text
 from fem_impact.scene.parameter import Parameter
+
+if TYPE_CHECKING:
+    from fem_impact.arrays import Array
 
 MOST = 1000  # numbers of a grid
 LARGEST = 10.0  # factor
@@ -54,7 +55,7 @@ class SlidingLaw:
         check_text(self.source, "source", 1000)
         if len(self.speed) < 2 or self.speed[0] != 0:
             raise SceneError("must have two speeds or more, from 0 on.", key="speed", value=list(self.speed))
-        if len(self.factor) != np.prod(self.shape) or len(self.factor) > MOST:
+        if len(self.factor) != prod(self.shape) or len(self.factor) > MOST:
             wanted = " x ".join(map(str, self.shape))
             problem = f"has {len(self.factor)} numbers, not {wanted} (temperatures, pressures, speeds)."
             raise SceneError(problem, key="factor", remedy=f"Give at most {MOST}.")
@@ -82,6 +83,8 @@ class SlidingLaw:
         >>> law.over_speed(1e9, 293.0)
         ((0.0, 1.0, 3.0), (1.0, 0.5, 0.25))
         """
+        import numpy as np
+
         speeds, nan = np.asarray(speed, dtype=np.float64), float("nan")
         rows = [friction(speeds, p, T) for T in temperature or (nan,) for p in pressure or (nan,)]
         values = np.concatenate(rows)
@@ -95,6 +98,8 @@ class SlidingLaw:
 
     def over_speed(self, pressure: float, temperature: float) -> SpeedTable:
         """Return the factor over the speed at a pressure, Pa, and a temperature, K."""
+        import numpy as np
+
         values: Array = np.reshape(np.array(self.factor), self.shape)
         for points, at in ((self.temperature, temperature), (self.pressure, pressure)):
             place = float(np.interp(at, points, np.arange(len(points)))) if points else 0.0

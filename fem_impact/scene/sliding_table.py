@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
 from fem_impact.errors import SceneError
 from fem_impact.scene.sliding import AXES, SlidingLaw
 from fem_impact.scene.tables import Table, check_keys, needed
@@ -27,6 +25,8 @@ def law_of(table: Table, name: str = "") -> SlidingLaw:
         if not isinstance(stated, list | tuple):
             raise SceneError("must be a list.", key=axis.key, value=stated, remedy=f"As in {EXAMPLE}.")
         axes[axis.key] = tuple(parse_quantity(one, axis.dimension, axis.key) for one in stated)
+    import numpy as np
+
     try:
         factor = np.array(needed(table, "factor", "a number for each speed"), dtype=np.float64)
     except (ValueError, TypeError):
@@ -46,6 +46,8 @@ def written(law: SlidingLaw) -> str | dict[str, Any]:
     """Return the name of a law, or its table."""
     if law.name:
         return law.name
+    import numpy as np
+
     axes = {axis.key: [axis.write(value) for value in getattr(law, axis.key)] for axis in AXES}
     axes = {key: values for key, values in axes.items() if values}
     shape = [len(axes[axis.key]) for axis in reversed(AXES) if axis.key in axes]

@@ -50,7 +50,7 @@ def path_over_speed(
     >>> rod = dict(e=0.4, f=0.5, d_c=0.02, d_d=0.035, k2=5.6e-4)
     >>> path = path_over_speed(-1.5, -3.0, over=((0.0, 4.0), (1.0, 0.5)), **rod)
     >>> f"{path.mu:.2f}"
-    '0.36'
+    '0.30'
     """
     u, w = start = float(approach_velocity(*floats(v_n, d_c, omega))), v_t - d_d * omega
     n_n, n_t, t_t = 1.0 + d_c**2 / k2, -d_c * d_d / k2, 1.0 + d_d**2 / k2

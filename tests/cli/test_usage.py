@@ -43,7 +43,7 @@ DROP = (*ROD, "--height", "0.82 m", "--surface", "machined")
         ),
         (("run", "t5b", "--set", "accuracy=5 %", "--budget", "-1 min"), "must lie above 0"),
         (("cost", "t5b", "--of", "speed"), "is not a quantity of interest"),
-        (("cost", "t5b", "--finest", "0.5 mm"), "Give at most"),
+        (("cost", "t5b", "--finer", "9"), "Known: 0, 1, 2, 3"),
         (("verify", "nope"), "is no problem of the verification"),
         (("verify", "ber"), "Did you mean bar?"),
         (("verify", "modes", "--set", "length"), "is not of the form"),

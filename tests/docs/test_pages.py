@@ -114,7 +114,8 @@ def test_the_example_of_own_tests_is_compared(cli, tmp_path):
         (tmp_path / name).write_text(marked(f"file: {name}", page) + "\n")
     scene = (tmp_path / "my-tested-rod.toml").read_text()
     (tmp_path / "single.toml").write_text(scene.replace("my_means.csv", "my_tests.csv"))
-    run, report, *_ = [line.split()[1:] for line in marked_lines(page)]
+    lines = [line.split()[1:] for line in marked_lines(page)]
+    run, report = (next(line for line in lines if line[0] == name) for name in ("run", "report"))
     code, out, _ = cli(*run)
     assert (code, "beside 8 measured tests" in out) == (0, True)
     assert cli(*report)[0] == 0

@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
@@ -372,6 +372,7 @@ def test_a_mirror_image_strikes_as_its_mirror_image(case):
     if begin.V_n + shape.corners[shape.lowest(begin.alpha)].arms(begin.alpha)[0] * begin.Omega >= 0:
         return
     other = begin._replace(alpha=-begin.alpha, V_t=-begin.V_t, Omega=-begin.Omega)
+    assume((other, -g_t) != (begin, g_t))  # a body balanced upright falls to one side, and so does its image
     one = follow(shape, begin, body.k2, e, f, g_n=g_n, g_t=g_t, until=3)
     two = follow(shape, other, body.k2, e, f, g_n=g_n, g_t=-g_t, until=3)
     assert len(one.strikes) == len(two.strikes)

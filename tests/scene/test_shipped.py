@@ -14,6 +14,7 @@ from fem_impact.scene.inputs import STATED, inputs, materials_of
 from fem_impact.scene.library import materials, shipped, surfaces
 from fem_impact.scene.read import read_dict, read_toml
 from fem_impact.scene.shipped import load, replace
+from fem_impact.scene.strikes import Following
 from fem_impact.scene.types import MEASURED_SETS, Accuracy, Heating, Save
 from fem_impact.scene.write import to_dict
 from rigid.experiments import measured_set, set_ids
@@ -146,18 +147,20 @@ DERIVED = {
         f"heating.{body}_melting": f"that of the {body}'s material, if it is a shipped one"
         for body in ("rod", "barrier")
     },
+    "strikes.angle_error": "none: it is taken as exact",
+    "strikes.speed_error": "none: it is taken as exact",
     "accuracy.max_time": "2.5 ms, or 2.8 times the bending period and the contact time where that is longer",
 }
 
 
 def test_the_table_of_defaults_is_what_an_unstated_value_becomes():
     made = {"impact": Impact(0.5, -1.0, -1.0), "accuracy": Accuracy(), "save": Save()}
-    made["heating"] = Heating()
+    made |= {"heating": Heating(), "strikes": Following()}
     elastic = load("elastic-frictionless")
     for default in DEFAULTS:
         section, key = default.key.split(".")
         assert getattr(made[section], key) == getattr(getattr(elastic, section), key), default
-        assert to_dict(elastic)[section].get(key, DERIVED.get(default.key)) == default.value
+        assert to_dict(elastic).get(section, {}).get(key, DERIVED.get(default.key)) == default.value
         assert len(default.source) > 20, default
 
 

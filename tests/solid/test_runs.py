@@ -294,7 +294,7 @@ def _between(share):
     """Make meshes whose lowest point stands a share of a cell beside the middle of a cell."""
     real = body.build_geometry
 
-    def made(bodies, zones, gap, meshed, vibrating):
+    def made(bodies, zones, gap, meshed, vibrating, rod=None):
         scene, h = bodies.scene, zones.tip_size
         angle = scene.impact.angle
         turn = share * h / scene.projectile.tip_radius
@@ -384,7 +384,7 @@ def test_a_run_takes_one_thread_of_linear_algebra(monkeypatch):
     """Whatever the program that calls it has set: further ones wait for each other on a busy machine."""
     found = []
 
-    def solved(plan, options):
+    def solved(plan, options, ahead):
         found.extend(one["num_threads"] for one in threadpool_info() if one["user_api"] == "blas")
         raise RunError("stopped here")
 
