@@ -115,8 +115,9 @@ def _verdict(folder: Path, case: Case) -> tuple[str, Sequence[Line]]:
             lines,
         )
     told = read_signed(read_text(stored), str(stored))
-    answer = told["answer"].upper()
-    criterion = f"Criterion: vibration changes e by at most {told['tolerance']:g}. Answer: {answer}."
+    answer, within = told["answer"].upper(), told["within"]
+    of, change = within["of"], within["change"]
+    criterion = f"Criterion: vibration changes {of} by at most {change:g}. Answer: {answer}."
     return criterion, [(title, sentence) for title, sentence in told["box"]]
 
 

@@ -5,6 +5,8 @@ import json
 import pytest
 import result_maker
 
+from fem_impact.answers.verdict.assess import assess
+from fem_impact.answers.verdict.sentences import document
 from fem_impact.errors import ResultError
 from fem_impact.files.digests import signed
 from fem_impact.pages.sheet import write_sheet
@@ -36,10 +38,11 @@ def test_it_states_numbers_with_errors_sources_what_is_left_out_and_where_to_sig
 
 
 def test_it_states_the_verdict_that_lies_in_the_folder_and_the_criterion(run):
-    told = {"answer": "no", "tolerance": 0.05, "box": [["May rigid theory be used here?", "NO: too long"]]}
+    told = document(assess(load("quick"), "modal", 0.04, of="friction"))
     (run / "verdict.json").write_text(json.dumps(signed(told)), encoding="utf-8")
     text = write_sheet(run).read_text(encoding="utf-8")
-    assert "by at most 0.05. Answer: NO." in text and "NO: too long" in text
+    assert f"vibration changes friction by at most 0.04. Answer: {told['answer'].upper()}." in text
+    assert told["box"][0][0] in text
 
 
 def test_a_scene_that_was_changed_after_the_run_is_not_signed(run):

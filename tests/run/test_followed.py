@@ -171,6 +171,15 @@ def test_a_rod_slides_on_down_a_slope_steeper_than_its_friction_holds():
     assert held.end == "rests"
 
 
+def test_a_slope_that_was_not_stated_is_told_where_the_rod_moves_beside_its_axis():
+    straight_down = {"impact": {"angle": "30 deg", "v_n": "-2 m/s", "v_t": "0 m/s", "until": "2 strikes"}}
+    guessed = replace_all(load("t5b"), straight_down)
+    told = " ".join(texts(simulate(guessed, "rigid").validity.limitations, "model"))
+    assert "the barrier slopes by 30 degrees" in told and 'impact.slope = "0 deg"' in told
+    level = simulate(replace(guessed, "impact.slope", "0 deg"), "rigid")
+    assert "No impact.slope" not in " ".join(texts(level.validity.limitations, "model"))
+
+
 def test_a_wanted_number_of_strikes_is_done():
     strikes = simulate(rattling(impact__until="3 strikes"), "rigid").strikes
     assert (len(strikes.each), strikes.end) == (3, "goes on")

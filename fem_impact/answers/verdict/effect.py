@@ -122,22 +122,28 @@ def modal_pair(scene: Scene) -> Pair:
 
 
 def modal_effect(scene: Scene, pair: Pair, of: str = "e") -> VibrationEffect:
-    """Return what the reduced model says of the change of a number, with its known error."""
+    """Return what the reduced model says of the change of a number, with its known error.
+
+    Shares of E_0 have the half-widths that the run itself tells, where those are wider: these know how unlike
+    the scene is to those that both models computed.
+    """
     error, bodies = known_error(untargeted(scene)), Case(scene).bodies
     thin = half_space_error(bodies) * abs(known(pair[0].restitution.edge.e)) if is_thin(bodies) else 0.0
+    told = {share.key.path[-1]: pair[0].estimate(share.key)[1] or 0.0 for share in SHARES}
+    shares = {name: max(half, told.get(name, 0.0)) for name, half in error.shares.items()}
     return VibrationEffect(
         of,
         scene.impact.angle,
         _difference(pair, of),
         error.changes[of] + thin,
         known(pair[0].energy.vibration),
-        error.shares["vibration"],
+        shares["vibration"],
         *pair,
         error.sentence(of) + THIN_PLATE.format(thin) * bool(thin),
         REDUCED,
         REDUCED,
         f"known error of {REDUCED}",
-        error.shares,
+        shares,
     )
 
 
