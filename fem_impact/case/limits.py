@@ -15,6 +15,7 @@ from fem_impact.physics.contact import FLAT
 from fem_impact.scene import library
 from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.impact import BESIDE, FIRST
+from fem_impact.scene.shipped import replace as change
 from fem_impact.scene.strikes import Following
 from fem_impact.scene.types import Scene
 from fem_impact.scene.units import format_quantity
@@ -276,26 +277,41 @@ def require_first_part(bodies: Bodies) -> None:
 
 def _require_no_flank(bodies: Bodies, body: Turned, fidelity: str) -> None:
     """Refuse a flank of a turned body that comes down nearly flat (SceneError)."""
-    angle, size = bodies.scene.impact.angle, bodies.contact.round_contact
-    (rho, _), (length, height), flat = bodies.contact.touch_point, body.flank(angle), FLAT * size.depth
-    if length <= 2 * size.a_t or height >= flat:
+    if not _lays_flank(bodies, body):
         return
-    deep = f"{size.depth * 1e3:.2g} mm"
-    if rho == body.face == 0 and not body.tip_curvature(angle):
+    angle, deep = bodies.scene.impact.angle, bodies.contact.round_contact.depth
+    if bodies.contact.touch_point[0] == body.face == 0 and not body.tip_curvature(angle):
         raise SceneError(
-            f"ends in a point that would be pressed in by {deep}, as far as to its flanks.",
+            f"ends in a point that would be pressed in by {deep * 1e3:.2g} mm, as far as to its flanks.",
             key="projectile",
             remedy="Round the point, or cut it off flat.",
         )
-    steeper = math.degrees(math.asin(min(1.0, flat / length)) - math.asin(height / length))
-    turned = f"Change it by {steeper:.2g} deg or more."
-    slower = f"Give a lower speed or stronger materials: the tip is pressed in by {deep}."
+    length, _ = body.flank(angle)
+    found = [at for side in (-1, 1) if (at := _pointed(bodies, body, side)) is not None]
+    told = f"Give an angle of {' or '.join(f'{at} deg' for at in found)}."
+    slower = f"Give a lower speed or stronger materials: the tip is pressed in by {deep * 1e3:.2g} mm."
     raise SceneError(
         f"lays a flank of {length * 1e3:.3g} mm along the barrier: a line would touch, not a point.",
         key="impact.angle",
         value=_angle(bodies),
-        remedy=f"{turned if flat < length else slower} {_any_part(fidelity)}",
+        remedy=f"{told if found and FLAT * deep < length else slower} {_any_part(fidelity)}",
     )
+
+
+def _lays_flank(bodies: Bodies, body: Turned) -> bool:
+    """Return whether a flank of a turned body comes down nearly flat."""
+    size, (length, height) = bodies.contact.round_contact, body.flank(bodies.scene.impact.angle)
+    return length > 2 * size.a_t and height < FLAT * size.depth
+
+
+def _pointed(bodies: Bodies, body: Turned, side: int) -> int | None:
+    """Return the nearest angle, whole deg, on one side at which a point touches; None where there is none."""
+    stated = math.degrees(bodies.scene.impact.angle)
+    for angle in range(math.floor(stated) + (side > 0), 90 * side, side):
+        turned = Bodies(change(bodies.scene, "impact.angle", f"{angle} deg"), bodies.effects)
+        if angle != stated and not turned.contact.lands_flat and not _lays_flank(turned, body):
+            return angle
+    return None
 
 
 def _require_tip(bodies: Bodies, body: Faceted, fidelity: str) -> None:
