@@ -35,19 +35,19 @@ class FrictionSpread:
         return f"{scale * low:+.2g} to {scale * high:+.2g}" if high > low else ""
 
 
-def friction_spread(scene: Scene, fidelity: str) -> FrictionSpread:
+def friction_spread(scene: Scene, fidelity: str, outcome: Outcome | None = None) -> FrictionSpread:
     """Return what the stated interval of friction changes of the first impact.
 
-    Finite elements take the reduced model for it, a body that has none the rigid theory.
+    Finite elements take the reduced model for it, a body that has none the rigid theory. An ``outcome`` that
+    this program has just computed stands for the run at the stated friction, where it is of the same model.
     """
     surface = scene.surface
     if surface.friction_low < surface.friction_high:
         for model in ("rigid",) if fidelity == "rigid" else ("modal", "rigid"):
             try:
-                stated, *ends = (
-                    _at(scene, f, model)
-                    for f in (surface.friction, surface.friction_low, surface.friction_high)
-                )
+                stated = outcome if outcome and fidelity == model and scene.impact.until == FIRST else None
+                stated = stated or _at(scene, surface.friction, model)
+                ends = [_at(scene, f, model) for f in (surface.friction_low, surface.friction_high)]
             except FemImpactError:
                 continue
             by = "rigid theory" if model == "rigid" else "the reduced model"

@@ -8,7 +8,6 @@ varied in the reduced or the rigid model, which takes milliseconds; S is that of
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -19,6 +18,7 @@ import numpy as np
 from fem_impact.answers.compare import MEASURED, measured_value
 from fem_impact.answers.simulate import simulate
 from fem_impact.answers.v_and_v import COVERAGE, Comparison, joint
+from fem_impact.answers.vary import measure
 from fem_impact.arrays import Array
 from fem_impact.errors import SceneError, UsageError
 from fem_impact.options import RunOptions
@@ -33,7 +33,6 @@ SEED = 20260101
 FOLLOWS = ("V_n", "V_t", "E_ln_over_E_0", "E_lt_over_E_0", "E_r_over_E_0")
 """Quantities that follow from e, mu and Omega, and are no further evidence in the joint statement."""
 FRICTION = "surface.friction"
-_QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*")
 Ends = tuple[Any, Any]
 
 
@@ -187,12 +186,13 @@ def _measured(tests: MeasuredTests) -> list[str]:
 
 def _interval(key: str, ends: Ends) -> tuple[str, float, float, str]:
     """Return key, ends and unit of an interval."""
-    read = [_QUANTITY.fullmatch(str(end)) for end in ends]
-    if len(read) != 2 or not all(read) or read[0][2] != read[1][2]:  # type: ignore[index]
+    read = [measure(end) for end in ends]
+    numbers, units = [number for number, _ in read if not isinstance(number, str)], {unit for _, unit in read}
+    if len(read) != 2 or len(numbers) != 2 or len(units) != 1:
         remedy = f"Write {key}=LOW,HIGH with one unit, such as impact.angle=44,46deg."
         raise UsageError("needs two numbers of one unit.", key=key, value=list(ends), remedy=remedy)
-    (low, unit), (high, _) = (match.groups() for match in read if match)
-    return key, float(low), float(high), unit
+    (low, high), (unit,) = numbers, units
+    return key, low, high, unit
 
 
 def _at(scene: Scene, intervals: Sequence[tuple[str, float, float, str]], place: Array) -> Scene:

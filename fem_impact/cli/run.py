@@ -117,7 +117,7 @@ def run(options: Options) -> int:
         sys.stdout.write(outcome.to_json().rstrip("\n") + "\n")
     else:
         own_tests = (scene.measured or "").endswith(OWN)
-        spread = friction_spread(scene, case.fidelity) if outcome.validity.finished else None
+        spread = friction_spread(scene, case.fidelity, outcome) if outcome.validity.finished else None
         print_outcome(outcome, out, own_tests, spread)
         if scene.impact.until != FIRST:
             from fem_impact.cli.strikes import print_strikes

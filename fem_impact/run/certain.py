@@ -88,9 +88,9 @@ def _halton(number: int, base: int) -> float:
 
 def _rigid(scene: Scene) -> list[StrikeRecord]:
     """Return the first strikes of a rigid body."""
-    body, seen = Followed.of(Case.of(scene, "rigid")), scene.relative
+    body = Followed.of(Case.of(scene, "rigid"))
     body.upto = min(SEEN, scene.impact.most_strikes or SEEN)
-    body.go_on(body.touching(seen.angle, seen.v_n, seen.v_t, seen.omega))
+    body.go_on(body.coming)
     return body.each
 
 

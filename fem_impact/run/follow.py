@@ -96,8 +96,8 @@ class _Course:
     @classmethod
     def of(cls, case: Case, end: SolidResult | None, options: RunOptions) -> _Course:
         """Return the course before the first strike."""
-        body, seen = Followed.of(case), case.scene.relative
-        return cls(case, end, options, body, body.touching(seen.angle, seen.v_n, seen.v_t, seen.omega))
+        body = Followed.of(case)
+        return cls(case, end, options, body, body.coming)
 
     @property
     def held(self) -> tuple[float, float]:

@@ -74,8 +74,7 @@ class ModalCourse:
 
         It ends sooner than a first impact that stands by itself, which counts what touches much later to it.
         """
-        first, seen = closed(case, ahead=one_strike(case)), case.scene.relative
-        begin = followed.touching(seen.angle, seen.v_n, seen.v_t, seen.omega)
+        first, begin = closed(case, ahead=one_strike(case)), followed.coming
         course = cls(case, followed, first.rod, begin, first.last.q, first.last.rate, modal_loss(case))
         course._enter(begin, first, 0.0)
         return course

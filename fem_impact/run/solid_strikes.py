@@ -62,9 +62,9 @@ def _bodies(case: Case, later: LaterStrike) -> Bodies:
 
 def _expected(case: Case, count: int) -> list[LaterStrike]:
     """Return the strikes after the first by the rigid and, where it holds the scene, by the reduced model."""
-    rigid, seen = Followed.of(case), case.scene.relative
+    rigid = Followed.of(case)
     rigid.upto = count
-    rigid.go_on(rigid.touching(seen.angle, seen.v_n, seen.v_t, seen.omega))
+    rigid.go_on(rigid.coming)
     courses = [rigid]
     try:
         modal = Followed.of(Case.of(case.scene, "modal"))
@@ -115,9 +115,7 @@ class SolidCourse:
         The body has the inertia of its mesh from then on.
         """
         body.pull = replace(body.pull, k2=end.motion.inertia / end.motion.mass)
-        seen = body.case.scene.relative
-        begin = body.touching(seen.angle, seen.v_n, seen.v_t, seen.omega)
-        case = body.case
+        begin, case = body.coming, body.case
         course = cls(case, body, end, case.bodies.mesh_inclination, begin, end.flight, modal_loss(case))
         course._enter(begin, end, 0.0)
         return course

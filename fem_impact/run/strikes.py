@@ -191,6 +191,12 @@ class Followed:
         height = self.shape.corners[self.shape.lowest(alpha, omega)].arms(alpha)[1]
         return State(0.0, height, 0.0, alpha, v_n, v_t, omega)
 
+    @property
+    def coming(self) -> State:
+        """Return the body as it touches first, with the motion that the scene states."""
+        seen = self.case.scene.relative
+        return self.touching(seen.angle, seen.v_n, seen.v_t, seen.omega)
+
     @cached_property
     def _turned_over(self) -> Body:
         """The body with its tail as its tip."""

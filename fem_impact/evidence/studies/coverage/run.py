@@ -9,8 +9,6 @@ import time
 import traceback
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
-from functools import cache
-from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -39,8 +37,6 @@ MOST: Mapping[str, float] = {DEFAULT: 60.0, FINER: 90.0, FINEST: 180.0, MODAL: 6
 """Processor time, s, after which a run of each model is broken off: it is too dear for the study."""
 NEXT: Mapping[str, tuple[str, float]] = {FINER: (DEFAULT, 11.0), FINEST: (FINER, 10.0)}
 """After which run a finer one follows, and the processor time, s, that this may have taken at most."""
-ENGINE = ("answers/refine", "answers/simulate.py")
-"""Sources that run the levels; `source_digest` holds those of each level."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,7 +136,7 @@ class CoverageRun:
     def key(self) -> str:
         """Digest of scene, model, time and program."""
         stated = json.dumps([asdict(self.drawn), self.model, MOST[self.model]], sort_keys=True)
-        return hashlib.sha256(f"{stated} {source_digest()} {_engine_digest()}".encode()).hexdigest()
+        return hashlib.sha256(f"{stated} {source_digest()}".encode()).hexdigest()
 
     @property
     def fidelity(self) -> str:
@@ -219,16 +215,3 @@ def _expected_s(scene: Scene) -> float | None:
         return fem_impact.Case.of(scene).size.time
     except SceneError:  # of a scene that the levels alone can compute
         return None
-
-
-@cache
-def _engine_digest() -> str:
-    """Return the SHA-256 of the sources of `ENGINE`."""
-    root, digest = files("fem_impact"), hashlib.sha256()
-    for place in ENGINE:
-        entry = root.joinpath(*place.split("/"))
-        sources = [entry] if entry.is_file() else sorted(entry.iterdir(), key=lambda file: file.name)
-        for source in sources:
-            if source.name.endswith(".py"):
-                digest.update(source.name.encode() + source.read_bytes())
-    return digest.hexdigest()
