@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from fem_impact.answers.simulate import simulate
     from fem_impact.answers.sweep import sweep
     from fem_impact.answers.sweep_results import Results
+    from fem_impact.answers.validate import Validation, validate
     from fem_impact.answers.verdict.assess import Verdict, assess
     from fem_impact.case.case import Case
     from fem_impact.fem.exchange import to_meshio, to_pyvista, to_skfem
@@ -46,6 +47,7 @@ __all__ = [
     "RunOptions",
     "Scene",
     "Unknown",
+    "Validation",
     "Verdict",
     "assess",
     "format_quantity",
@@ -64,6 +66,7 @@ __all__ = [
     "to_pyvista",
     "to_skfem",
     "units",
+    "validate",
     "write_report",
 ]
 
@@ -74,6 +77,7 @@ _PLACES = {
     "RunOptions": "options:RunOptions",
     "Scene": "scene.types:Scene",
     "Unknown": "outcome.keys:Unknown",
+    "Validation": "answers.validate:Validation",
     "Verdict": "answers.verdict.assess:Verdict",
     "assess": "answers.verdict.assess:assess",
     "format_quantity": "scene.units:format_quantity",
@@ -92,6 +96,7 @@ _PLACES = {
     "to_pyvista": "fem.exchange:to_pyvista",
     "to_skfem": "fem.exchange:to_skfem",
     "units": "scene.units:",  # the module itself
+    "validate": "answers.validate:validate",
     "write_report": "pages.write:write_report",
 }
 

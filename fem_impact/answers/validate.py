@@ -3,7 +3,8 @@
 Each measured number has the error E = S - D of the model and its standard uncertainty u_val, made of the
 model (the band of its meshes, or the half-width of the reduced model), the inputs and the tests. Sobol's
 indices (Saltelli 2010, as SciPy computes them) share what the inputs cause out among them. The inputs are
-varied in the reduced or the rigid model, which takes milliseconds; S is that of the fidelity asked for.
+varied in the reduced or the rigid model, which takes milliseconds, or in the finite elements themselves; S is
+that of the fidelity asked for.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from fem_impact.answers.v_and_v import COVERAGE, Comparison, joint
 from fem_impact.answers.vary import measure
 from fem_impact.arrays import Array
 from fem_impact.errors import SceneError, UsageError
-from fem_impact.options import RunOptions
+from fem_impact.options import FIDELITIES, RunOptions
 from fem_impact.outcome.keys import Num, Unknown, known
 from fem_impact.run.tests import NUMBERS, MeasuredTests, tests_of
 from fem_impact.scene.shipped import replace_all
@@ -49,7 +50,8 @@ class Validation:
     joined : numbers of the joint statement
     distance, p : Mahalanobis' distance squared of their errors, and the probability of a larger one if the
         model has no error
-    runs : of the reduced or rigid model
+    varied : fidelity in which the inputs were varied
+    runs : of that
     """
 
     comparisons: tuple[Comparison, ...]
@@ -59,6 +61,7 @@ class Validation:
     joined: tuple[str, ...]
     distance: float
     p: float
+    varied: str
     runs: int
 
     @property
@@ -83,16 +86,19 @@ def validate(
     fidelity: str = "modal",
     samples: int = SAMPLES,
     options: RunOptions = RunOptions(),
+    inputs_by: str = "",
 ) -> Validation:
-    """Compare a scene with its tests.
+    """Compare a scene with its tests by ASME V&V 20, and find which input is worth measuring better.
 
     Parameters
     ----------
     uncertain : lowest and highest value of each uncertain input by its key, such as
         ``{"impact.angle": ("44 deg", "46 deg")}``; each is uniform between. By default friction over its
         interval
-    fidelity : of the compared run; the inputs are varied in the reduced model, or the rigid one for "rigid"
+    fidelity : of the compared run
     samples : a power of two; (inputs + 2) times as many runs are made
+    inputs_by : fidelity in which the inputs are varied; by default rigid for "rigid", else modal, which takes
+        milliseconds. "solid" takes (inputs + 2) times ``samples`` runs of finite elements
 
     Raises
     ------
@@ -100,6 +106,13 @@ def validate(
         The scene names no tests, or a value is none of the key.
     UsageError
         The ends of an interval are no numbers of one unit, or there is no interval.
+
+    Examples
+    --------
+    >>> import fem_impact
+    >>> found = fem_impact.validate(fem_impact.load("t5b"), fidelity="rigid", samples=2)
+    >>> found.inputs, found.joined
+    (('surface.friction',), ('Omega', 'e', 'mu'))
     """
     from scipy import stats
 
@@ -108,12 +121,21 @@ def validate(
         raise SceneError("is missing: there is nothing to compare with.", key="measured", remedy=_TESTS)
     stated = _friction(scene) if uncertain is None else uncertain
     intervals = [_interval(key, ends) for key, ends in stated.items()]
-    quick = "rigid" if fidelity == "rigid" else "modal"
+    quick = inputs_by or ("rigid" if fidelity == "rigid" else "modal")
+    if quick not in FIDELITIES:
+        remedy = f"Known: {', '.join(FIDELITIES)}."
+        raise UsageError("is no fidelity.", key="inputs_by", value=inputs_by, remedy=remedy)
     run = partial(simulate, options=options)
     names, at = _measured(tests), {q.measured: q.key.name for q in MEASURED if q.measured}
     keys = [at.get(name, name) for name in names]
     found = [measured_value(run(scene, fidelity), key) for key in keys]
-    unknown = {n: why for n, one in zip(names, found, strict=True) if (why := _not_compared(*one, fidelity))}
+    nominal_run = run(scene, quick)
+    varied = [measured_value(nominal_run, key)[0] for key in keys]
+    unknown = {
+        name: why
+        for name, one, moved in zip(names, found, varied, strict=True)
+        if (why := _not_compared(*one, fidelity) or _not_varied(moved, quick))
+    }
     seen = [i for i, name in enumerate(names) if name not in unknown]
     if not seen:
         raise SceneError("state nothing that the model knows.", key="measured", remedy=_TESTS)
@@ -131,7 +153,7 @@ def validate(
         drawn.append(values.copy())  # the indices centre what they are given
         return values
 
-    nominal, uniform = np.array(numbers(scene)), [stats.uniform()] * len(intervals)
+    nominal, uniform = np.array([known(varied[i]) for i in seen]), [stats.uniform()] * len(intervals)
     rng = np.random.default_rng(SEED)
     indices = stats.sobol_indices(func=of_units, n=samples, dists=uniform, rng=rng)
     moved = np.concatenate(drawn[:2], axis=1) - nominal[:, None]
@@ -149,10 +171,11 @@ def validate(
         comparisons=comparisons,
         unknown=unknown,
         inputs=tuple(key for key, *_ in intervals),
-        total=np.nan_to_num(np.atleast_2d(indices.total_order)).T,
+        total=np.nan_to_num(np.reshape(indices.total_order, (len(seen), len(intervals)))).T,
         joined=tuple(names[seen[j]] for j in free),
         distance=distance,
         p=p,
+        varied=quick,
         runs=sum(values.shape[1] for values in drawn) + 1,
     )
 
@@ -167,6 +190,13 @@ def _not_compared(value: Num, band: float | None, fidelity: str) -> str:
     if band is None and fidelity == "modal":
         return "how far the reduced model is off in it is not known; use --fidelity solid."
     return ""
+
+
+def _not_varied(value: Num, quick: str) -> str:
+    """Return why the inputs cannot be varied for a number, empty where they can."""
+    if not isinstance(value, Unknown):
+        return ""
+    return f"the inputs are varied in the {quick} model, which does not know it: {value.reason}. Take solid."
 
 
 def _friction(scene: Scene) -> dict[str, Ends]:

@@ -31,6 +31,8 @@ from rigid.experiments import (
 if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
 
+COVERAGE = 2.0  # standard uncertainties from the mean of one test to the ends of its interval
+
 
 class MeasuredTests(Protocol):
     """Measured tests: the arms d_c, d_d, m, of their e, and mean, scatter and interval of each quantity."""
@@ -74,15 +76,23 @@ class MeanTests:
 
     def statistics(self) -> dict[str, Statistic]:
         """Return mean, standard deviation and 95 % interval of the mean for each stated quantity."""
-        return {
-            name: replace(of_mean(mean.mean, mean.sd, mean.n), systematic=mean.systematic)
-            for name, mean in self.means.items()
-        }
+        return {name: _statistic(mean) for name, mean in self.means.items()}
 
     def covariance(self, names: Sequence[str]) -> Array:
-        """Return the covariance (k, k) of means; how they belong together is not stated, so they do not."""
+        """Return the covariance (k, k) of means; those whose correlation is not stated have none."""
         stated = [self.means[name] for name in names]
-        return np.diag([one.sd**2 / one.n + one.systematic**2 for one in stated])
+        r = np.array([[one.correlation.get(name, 0.0) for name in names] for one in stated])
+        r = np.where(r == 0, r.T, r)  # stated in one of the two rows
+        np.fill_diagonal(r, 1.0)
+        u = np.sqrt([one.sd**2 / one.n + one.systematic**2 for one in stated])
+        return np.asarray(r * np.outer(u, u))
+
+
+def _statistic(mean: Mean) -> Statistic:
+    if mean.n == 1:
+        half = COVERAGE * mean.systematic
+        return Statistic(mean.mean, 0.0, mean.mean - half, mean.mean + half, 1, mean.systematic)
+    return replace(of_mean(mean.mean, mean.sd, mean.n), systematic=mean.systematic)
 
 
 @dataclass(frozen=True, slots=True)

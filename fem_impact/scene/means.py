@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from fem_impact.errors import ResultError, did_you_mean
@@ -20,19 +20,23 @@ LIKELY = {
 }
 """Bounds of the means of pure numbers, and what these are; beyond them it is per cent or another quantity."""
 SCATTER = ("sd", "standard_error")
+CORRELATION = "r_"
+"""Begins the columns of correlation coefficients: ``r_mu`` is that with the mean of mu."""
 
 
 @dataclass(frozen=True, slots=True)
 class Mean:
     """Mean and standard deviation of single tests, SI, and the number of tests.
 
-    ``systematic`` is the standard uncertainty that all tests share, such as that of the instrument.
+    ``systematic`` is the standard uncertainty that all tests share, such as that of the instrument. A single
+    test has it alone. ``correlation`` is that with other means by their names, where it is stated.
     """
 
     mean: float
     sd: float
     n: int
     systematic: float = 0.0
+    correlation: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +62,8 @@ def read_means(path: str | Path, others: Collection[str] = ()) -> Means:
         ``standard_error`` (of the mean), and ``n`` (number of tests). A quantity is ``e``, ``mu``,
         ``Omega_rad_per_s``, ``V_n_m_per_s`` or ``V_t_m_per_s``, the last three in any unit of theirs. Columns
         ``d_c_m`` and ``d_d_m`` may state the arms of the contact point with which ``e`` was worked out, a
-        column ``systematic`` the standard uncertainty that all tests share.
+        column ``systematic`` the standard uncertainty that all tests share; where n is 1 it is the only one.
+        Columns such as ``r_mu`` may state the correlation of a mean with that of another quantity.
     others : names of further quantities, each with the SI unit that its name ends with
 
     Raises
@@ -80,6 +85,7 @@ def read_means(path: str | Path, others: Collection[str] = ()) -> Means:
             arms[arm].append(finite(f"{place}, column {arm}_m", row[f"{arm}_m"]))
     if not means:
         raise ResultError(f"{path}: holds no line below its header.")
+    _check_correlations(means, path)
     return Means(means, one_pair(arms, path))
 
 
@@ -110,20 +116,32 @@ def _read_row(row: Mapping[str, str], scatter: str, place: str, others: Collecti
     elif column != name:
         raise ResultError(f"{place}: {name} is a pure number. Write {name}, not {column!r}.")
     mean = factor * finite(f"{place}, column mean", row["mean"])
-    spread = factor * finite(f"{place}, column {scatter}", row[scatter])
     tests = finite(f"{place}, column n", row["n"])
-    if tests < 2 or tests != int(tests):
-        raise ResultError(f"{place}, column n: {row['n']} is not a number of tests, at least 2.")
-    if spread <= 0:
+    if tests < 1 or tests != int(tests):
+        raise ResultError(f"{place}, column n: {row['n']} is not a number of tests.")
+    spread = 0.0 if tests == 1 else factor * finite(f"{place}, column {scatter}", row[scatter])
+    if spread <= 0 and tests > 1:
         raise ResultError(f"{place}, column {scatter}: {row[scatter]} must be above 0: tests scatter.")
     if abs(mean) > LARGEST or spread > LARGEST:
         raise ResultError(f"{place}: {row['mean']} with {row[scatter]} is too large to be one of a test.")
     _check_likely(name, mean, place)
     shared = factor * finite(f"{place}, column systematic", row.get("systematic") or "0")
-    if shared < 0:
-        raise ResultError(f"{place}, column systematic: {row['systematic']} must not be below 0.")
+    if shared < 0 or (shared == 0 and tests == 1):
+        bound = "be above 0: one test has no other uncertainty" if tests == 1 else "not be below 0"
+        raise ResultError(f"{place}, column systematic: {row.get('systematic') or '0'} must {bound}.")
     sd = spread * tests**0.5 if scatter == "standard_error" else spread
-    return name, Mean(mean, sd, int(tests), shared)
+    columns = (column for column, cell in row.items() if column.startswith(CORRELATION) and cell)
+    together = {c.removeprefix(CORRELATION): finite(f"{place}, column {c}", row[c]) for c in columns}
+    return name, Mean(mean, sd, int(tests), shared, together)
+
+
+def _check_correlations(means: Mapping[str, Mean], path: str | Path) -> None:
+    """Refuse a correlation with a quantity that has no row, or one that no two means can have."""
+    for name, mean in means.items():
+        for other, r in mean.correlation.items():
+            if other not in means or not abs(r) <= 1 or (other == name and r != 1):
+                known = f"-1 to 1, with one of {', '.join(means)}"
+                raise ResultError(f"{path}: {name}, column {CORRELATION}{other}: {r:g} is none from {known}.")
 
 
 def _check_likely(name: str, mean: float, place: str) -> None:

@@ -45,6 +45,12 @@ def test_errors_and_parts_of_a_number_with_a_known_answer(tmp_path):
     assert found.runs == 32 * 4 + 1
 
 
+def test_one_uncertain_input_moves_several_numbers():
+    found = validate(load("t5b"), fidelity="rigid", samples=2)
+    assert found.total.shape == (1, 8) and found.shares.shape == (3, 8)
+    assert found.shares.sum(axis=0) == pytest.approx(np.ones(8))
+
+
 def test_numbers_that_one_input_moves_together_count_once():
     together = np.array([[1.0, 0.99], [0.99, 1.0]])
     assert joint(np.array([2.0, 2.0]), together)[0] == pytest.approx(8 / 1.99)
@@ -59,6 +65,23 @@ def test_single_tests_bring_their_own_correlation(tmp_path):
     C = tests.covariance(["V_n", "Omega"])
     assert C[0, 1] / np.sqrt(C[0, 0] * C[1, 1]) == pytest.approx(1.0)
     assert C[0, 0] == pytest.approx(0.05**2 / 3)
+
+
+def test_means_may_belong_together_and_one_test_has_its_systematic_uncertainty(tmp_path):
+    means = "quantity,mean,sd,n,systematic,r_mu\ne,0.3,0.1,4,0,0.8\nmu,0.3,,1,0.02,\n"
+    tests = own_tests.tests_of(scene_with(tmp_path, means))
+    assert tests.covariance(["mu", "e"]) == pytest.approx(np.array([[4e-4, 8e-4], [8e-4, 25e-4]]))
+    mu = tests.statistics()["mu"]
+    assert (mu.low, mu.high, mu.n) == pytest.approx((0.26, 0.34, 1))
+
+
+def test_inputs_are_varied_in_the_fidelity_asked_for_and_a_number_that_it_lacks_is_named(tmp_path):
+    scene = scene_with(tmp_path, MU + "E_vib_over_E_0,0.01,0.001,5,0\n")
+    found = validate(scene, UNCERTAIN, "modal", samples=2, inputs_by="rigid")
+    assert (found.varied, found.runs) == ("rigid", 9)
+    assert "varied in the rigid model, which does not know it" in found.unknown["E_vib_over_E_0"]
+    with pytest.raises(UsageError, match="is no fidelity"):
+        validate(scene, UNCERTAIN, inputs_by="coarse")
 
 
 def test_any_number_of_an_outcome_may_be_measured(tmp_path):
@@ -78,6 +101,8 @@ def test_any_number_of_an_outcome_may_be_measured(tmp_path):
     [
         ("quantity,mean,sd,n\npeak_force_kN,9,1,4\n", "not a quantity of tests. Did you mean peak_force_N?"),
         (MU.replace("0.015", "-0.015"), "column systematic"),
+        ("quantity,mean,sd,n\nmu,0.3,,1\n", "must be above 0: one test has no other"),
+        ("quantity,mean,sd,n,r_e\nmu,0.3,0.1,4,0.5\n", "column r_e: 0.5 is none"),
     ],
 )
 def test_what_no_outcome_has_is_refused(tmp_path, means, words):

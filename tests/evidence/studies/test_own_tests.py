@@ -179,7 +179,7 @@ def test_means_may_be_in_units_and_without_arms(tmp_path):
         ("quantity,mean,sd,n\nOmega,3,1,8\n", "quantity 'Omega' names no unit"),
         ("quantity,mean,sd,n\nOmega_m_per_s,3,1,8\n", "is not a unit of angular speed"),
         ("quantity,mean,sd,n\nmu_rad,3,1,8\n", "mu is a pure number"),
-        ("quantity,mean,sd,n\ne,0.3,0.1,1\n", "column n: 1 is not a number of tests"),
+        ("quantity,mean,sd,n\ne,0.3,0.1,0\n", "column n: 0 is not a number of tests"),
         ("quantity,mean,sd,n\ne,0.3,0.1,2.5\n", "column n: 2.5 is not a number of tests"),
         ("quantity,mean,sd,n\ne,0.3,0,8\n", "column sd: 0 must be above 0"),
         ("quantity,mean,sd,n\ne,x,0.1,8\n", "line 2, column mean: 'x' is not a finite number"),
