@@ -237,7 +237,7 @@ def _draw(picture: Picture, place: Path) -> None:
 
 def _markdown(report: StudyReport, document: Mapping[str, Any]) -> str:
     ran = f"`{document['command']}`: {document['runs']} runs, {len(document['failures'])} failed."
-    parts = [f"# {report.title}", ran, _bullets(report.findings)]
+    parts = [f"# {report.title}", _bullets(report.findings), ran]
     parts += [f"![{p.caption}](figures/{p.name}.png)\n\n{p.caption}" for p in report.pictures]
     for sheet in report.sheets:
         parts += [f"{sheet.caption} (`{sheet.name}.csv`)"]

@@ -48,21 +48,27 @@ def checked_page(option: str) -> Path:
 
 def write_page(path: Path, title: str, about: str, command: str, body: str) -> None:
     """Write a page: title, what it shows, the command with day, machine and commit, and the result."""
-    made = f"{MADE}{command}` on {datetime.now(UTC):%Y-%m-%d}, {machine()}, {version()}."
-    parts = (f"# {title}", about, made, body.strip())
+    parts = (f"# {title}", about, f"{_made(command)}.", body.strip())
     write_text(path, "\n\n".join(part for part in parts if part) + "\n")
 
 
+def _made(command: str) -> str:
+    """Return the line that tells what made a page, without its end."""
+    return f"{MADE}{command}` on {datetime.now(UTC):%Y-%m-%d}, {machine()}, {version()}"
+
+
 def write_study_page(path: Path, command: str, summary: str, folder: Path) -> None:
-    """Write the page of a study from its summary, its figures in a folder beside it."""
-    heading, _, body = summary.partition("\n")
-    figures = re.findall(r"\]\(figures/([\w-]+)\.png\)", body)
+    """Write the page of a study from its summary, its figures in a folder beside it.
+
+    Where the summary names the command with its numbers of runs, the page tells day, machine and commit too.
+    """
+    figures = re.findall(r"\]\(figures/([\w-]+)\.png\)", summary)
     beside = path.with_suffix("")
     for name in figures:
         beside.mkdir(exist_ok=True)
         shutil.copyfile(folder / "figures" / f"{name}.svg", beside / f"{name}.svg")
-    body = re.sub(r"\]\(figures/([\w-]+)\.png\)", rf"]({beside.name}/\1.svg)", body)
-    write_page(path, heading.lstrip("# "), "", command, body)
+    text = re.sub(r"\]\(figures/([\w-]+)\.png\)", rf"]({beside.name}/\1.svg)", summary)
+    write_text(path, text.replace(f"\n`{command}`:", f"\n{_made(command)}:", 1))
 
 
 def machine() -> str:

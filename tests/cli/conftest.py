@@ -10,6 +10,8 @@ from fem_impact.options import RunOptions
 from fem_impact.outcome.record import KEYS
 from fem_impact.progress import Progress
 
+SUMMARY = "# Sets\n\n- The answer.\n\n`fem-impact study sets --quick`: 3 runs, 0 failed.\n"
+
 
 def an_outcome(**changed):
     """Return a complete outcome; what a test does not set is a plausible value of its kind, or not known."""
@@ -49,7 +51,7 @@ def stand(monkeypatch):
         return called
 
     document = {"rows": [{"id": "t4", "e": 0.2}], "comparison": [], "failures": [], "notes": ["f matters"]}
-    table = types.SimpleNamespace(document=document, text="the table", runs=("sets/t4",))
+    table = types.SimpleNamespace(document=document, text=SUMMARY, runs=("sets/t4",))
     film = types.SimpleNamespace(path=None, notes=["install libegl1"])
     for place, result in {
         "fem_impact.answers.simulate.simulate": lambda: stand.outcome or an_outcome(),

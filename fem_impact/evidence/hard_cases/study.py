@@ -179,13 +179,18 @@ def plan(request: Request, results: object) -> list[HardCaseJob]:
 def conclude(request: Request, results: Mapping[str, HardCaseResult | Failure]) -> StudyReport:
     """Return the report: how many cases ended as they must, the table, and why a case did not close."""
     done = {name: result for name, result in results.items() if not isinstance(result, Failure)}
+    verdicts = [result.verdict for result in done.values()]
+    worst = max((r.residual or 0.0 for r in done.values() if r.verdict == "closed"), default=0.0)
     minutes = sum(result.cpu_s for result in done.values()) / 60
     rows = tuple(_row(CASES[name], result) for name, result in results.items())
     return StudyReport(
         "stress",
         "Hard cases",
         [
-            f"{len(done)} of {len(results)} as they must be, {minutes:.1f} minutes of CPU.",
+            f"{len(done)} of {len(results)} scenes that are hard on the solver end as they must: "
+            f"{verdicts.count('closed')} close their balances, the energy within {worst:.1g} of E_0, "
+            f"{verdicts.count('refused')} are refused with a reason and {verdicts.count('detected')} are "
+            f"stopped or cut short with a reason ({minutes:.1f} minutes of processor time).",
             *(f"`{name}`: {result.reason}" for name, result in done.items() if result.reason),
         ],
         sheets=[

@@ -100,15 +100,24 @@ def _picture(table: pandas.DataFrame) -> Picture:
 
 
 def _answer(table: pandas.DataFrame) -> str:
-    """Return the cause that changes each quantity of each set most, alone."""
-    parts = []
+    """Return the readings that bring all three numbers of a set to the tests, and what changes each most."""
+    parts, met = [], []
     for name, row in table.iterrows():
+        largest = []
         for quantity in SHOWN:
             values = row[quantity.name]
             changes = {cause: values[step] - values[BASE] for cause, step in ALONE.items()}
-            most = max(changes, key=lambda cause: abs(changes[cause]))
-            parts.append(f"{quantity.name} of {name} by {most} ({changes[most]:+.2g})")
-    return f"Each alone, most changes {', '.join(parts)}."
+            cause = max(changes, key=lambda cause: abs(changes[cause]))
+            unit = "" if quantity.key.unit == "-" else f" {quantity.key.unit}"
+            largest.append(f"{quantity.name} {changes[cause]:+.2g}{unit} ({cause})")
+        parts.append(f"{name} {', '.join(largest)}")
+        for step in STEPS:
+            if all(m.low <= row[q.name][step] <= m.high for q, m in _measured(name)):
+                met.append(f"{step} ({name})")
+    return (
+        f"{' and '.join(met) or 'None of these readings'} brings e, mu and Omega of a set into the 95 % "
+        f"intervals of its tests. The largest changes by one of them alone: {'; '.join(parts)}."
+    )
 
 
 def _sentence(name: str, row: pandas.Series) -> str:

@@ -83,7 +83,7 @@ def convergence_rows(name: str, levels: Levels) -> list[Row]:
     """Return one row per quantity; none with fewer than `LEAST` levels.
 
     Levels that do not resolve their contact are left out where as many others remain.
-    ``told`` are limit and half-width that the first two levels tell, the first three and so on.
+    ``told`` are limit and half-width that the levels of the default run tell, None where they tell none.
     """
     resolved = [mesh for mesh in levels.meshes if mesh.resolved]
     meshes = resolved if len(resolved) >= LEAST else levels.meshes
@@ -101,7 +101,7 @@ def convergence_rows(name: str, levels: Levels) -> list[Row]:
             "default": levels.default - 1 - len(levels.meshes),
             "apart": [max(on_mesh) - min(on_mesh) for on_mesh in values],
             "fit": limit(sizes, means),
-            "told": [told for n in range(2, len(meshes)) if (told := _told(meshes[:n], key.name))],
+            "told": _told(levels.meshes[: levels.default], key.name),
         }
         rows.append(row)
     return rows
@@ -116,15 +116,23 @@ def _told(meshes: Sequence[MeshRuns], name: str) -> tuple[float, float] | None:
 
 
 def _answer(rows: Sequence[Row]) -> list[str]:
-    """Return how far e on the finest mesh lies from its limit at most, and how wide the bands of that are."""
-    of_e = [row for row in rows if row["quantity"] == "e"]
-    if not of_e:
+    """Return how far a default run and the finest level lie from the limits, and the bands of these."""
+    parts = []
+    for name in STATED:
+        of = [row for row in rows if row["quantity"] == name]
+        if of:
+            usual, finest = (
+                max(abs(row["values"][row["default"] if last else -1] - row["fit"].value) for row in of)
+                for last in (True, False)
+            )
+            band = max(row["fit"].band for row in of)
+            parts.append(f"{name} {usual:.2g} (one level more {finest:.2g}, band of the limit {band:.2g})")
+    if not parts:
         return []
-    away = max(abs(row["values"][-1] - row["fit"].value) for row in of_e)
-    band = max(row["fit"].band for row in of_e)
+    sets = len({row["set"] for row in rows})
     return [
-        f"On the finest level e (paper's arms) of {len(of_e)} sets lies at most {away:.2g} from its limit "
-        f"for vanishing elements; the bands of the limits reach ± {band:.2g}."
+        f"The last level of a default run lies from the limit for vanishing elements, at most over {sets} "
+        f"sets: {', '.join(parts)}. e is that by the paper's arms."
     ]
 
 
@@ -141,15 +149,17 @@ def _sentence(row: Row) -> str:
 
 
 def _held(rows: Sequence[Row]) -> list[str]:
-    """Return the sentence on how many bands of fewer levels hold the limit of all."""
-    inside = [
-        abs(value - row["fit"].value) <= half + 1e-9 * abs(value)
-        for row in rows
-        for value, half in row["told"]
-    ]
-    if not inside:
+    """Return the sentence on how many bands of the default levels hold the limit of all, or overlap it."""
+    told = [(*row["told"], row["fit"]) for row in rows if row["told"]]
+    if not told:
         return []
-    return [f"Told by fewer levels: {sum(inside)} of {len(inside)} bands hold the limit of all."]
+    off = [abs(value - fit.value) - 1e-9 * abs(value) for value, _, fit in told]
+    inside = sum(away <= half for away, (_, half, _) in zip(off, told, strict=True))
+    near = sum(away <= half + fit.band for away, (_, half, fit) in zip(off, told, strict=True))
+    return [
+        f"{inside} of {len(told)} bands that the levels of a default run tell at two places of the grid hold "
+        f"the limit of all levels; {near} overlap its band."
+    ]
 
 
 def _sheet(rows: list[Row]) -> Sheet:

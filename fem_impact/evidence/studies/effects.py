@@ -170,9 +170,10 @@ def _report(runs: Runs) -> StudyReport:
         study="effects",
         title="Effects chosen by the scene, beside everything on",
         findings=[
-            f"{len(rows) - len(beyond)} of {len(rows)} scenes agree with everything on within {limits}.",
-            f"{len(cheaper)} of {len(rows)} take less processor time.",
-            *([f"Beyond: {', '.join(beyond)}."] if beyond else []),
+            "With the effects that the program chooses, "
+            f"{len(rows) - len(beyond)} of {len(rows)} scenes give what all effects on give, within {limits}"
+            + (f"; beyond: {', '.join(beyond)}" if beyond else "")
+            + f". {len(cheaper)} take less processor time.",
         ],
         sheets=[
             Sheet("ablation", "Auto beside everything on, on the same coarse mesh.", Table.of(columns, rows)),

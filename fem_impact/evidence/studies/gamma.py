@@ -210,9 +210,9 @@ def findings(points: DataFrame) -> list[str]:
     """Return the sentences of the study."""
     curve = points[points.family == "curve"]
     sentences = [
+        what_the_limit_says(curve),
         *(how_much(curve, kind) for kind in PLAIN),
         *(where_it_peaks(curve, kind) for kind in PLAIN),
-        what_the_limit_says(curve),
         *(other_inputs(points, kind) for kind in PLAIN),
         measured_sets(points),
         *(modes_less_elements(curve, kind) for kind in PLAIN),

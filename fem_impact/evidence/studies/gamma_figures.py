@@ -24,7 +24,7 @@ MARKS = (
 )
 USUAL = {"diameter_m": BODY, "speed_m_per_s": 2.1, "law": "tensile"}  # of the curve
 CURVE = (
-    "Vibration after the impact by finite elements, with the bands of two meshes: 19 mm rods at 45 degrees, "
+    "Vibration after the impact by finite elements, with the bands of the levels: 19 mm rods at 45 degrees, "
     "2.1 m/s. Diamonds: measured sets from their own scenes. Thin lines: the reduced model (modal). Last "
     "row: where the energy is after the impact."
 )

@@ -117,7 +117,8 @@ def report_of(table: pandas.DataFrame) -> StudyReport:
     """Return the study of scenes: near or not, and a panel a quantity; ``table`` as `table_of`."""
     rows = [(name, group_of(name), *row) for name, row in zip(table.index, table.to_numpy(), strict=True)]
     groups = {group: members.astype(float) for group, members in table.groupby(group_of, sort=False)}
-    sentences = [_near(group, members) for group, members in groups.items()]
+    sentences = [_near("all", table.astype(float))] if len(groups) > 1 else []
+    sentences += [_near(group, members) for group, members in groups.items()]
     panels = tuple(_panel(name, groups) for name in KEYS)
     return StudyReport(
         "reduced",

@@ -43,10 +43,10 @@ def study_report(sets: Sequence[ValidatedSet]) -> StudyReport:
             _surface_sheet(sets),
         ],
         [
-            "S is the limit of two meshes at the nominal inputs, D the measured mean, E = S - D.",
-            "u_num is half of the two-mesh band; u_input the root mean square change from the nominal "
+            "S is the limit of the levels of a run at the nominal inputs, D the measured mean, E = S - D.",
+            "u_num is half of their band; u_input the root mean square change from the nominal "
             "inputs, some of which stand at the end of their interval, over all inputs at once, each uniform "
-            "over its interval, on the coarser mesh; u_D the standard error of the mean and of the tracked "
+            "over its interval, on one coarse mesh; u_D the standard error of the mean and of the tracked "
             "velocities. They are taken as independent.",
             "The verdict says whether E +- 2 u_val leaves out zero. The column beside the tests counts no "
             "inputs: does S, with its band, lie in the 95 % interval of the measured mean, or within two "

@@ -63,7 +63,8 @@ def test_all_scenes_of_the_paper_make_a_summary(cli, fake, monkeypatch):
     line = ("cost", "paper", "--stored", "--finer", "0", "--out", "all", "--quiet", "--page", "cost.md")
     assert cli(*line)[0] == 0
     told = Path("cost.md").read_text()
-    assert told.startswith("# What accuracy costs\n\nMade by `fem-impact cost paper")
+    assert told.startswith("# What accuracy costs\n\n- ")
+    assert "\nMade by `fem-impact cost paper" in told
     assert "](cost/error-against-time.svg)" in told
     assert Path("cost/error-against-time.svg").exists()
     again = json.loads(Path("all/summary.json").read_text())

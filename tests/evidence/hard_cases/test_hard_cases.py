@@ -179,7 +179,7 @@ def test_the_command_prints_a_table_and_keeps_what_it_computed(cli):
     words = ("stress", "--only", "six-elements", "--out", "here", "--workers", "1")
     code, out, err = cli(*words)
     assert code == 0
-    assert "| six-elements |" in out and "1 of 1 as they must be" in out
+    assert "| six-elements |" in out and "1 of 1 scenes that are hard" in out
     assert "1 of 1 runs done" in err
     code, out, err = cli(*words, "--json")
     assert code == 0 and err == ""  # kept, so nothing is run
@@ -203,7 +203,7 @@ def test_the_report_tells_what_failed_and_why_a_case_did_not_close(tmp_path):
     refused = HardCaseResult("refused", "too few elements")
     results = {"six-elements": refused, "painleve": Failure("painleve", "FAILED, not closed: why")}
     found = published(conclude, Request(tmp_path), results)
-    assert "1 of 2 as they must be" in found.text and "`six-elements`: too few elements" in found.text
+    assert "1 of 2 scenes that are hard" in found.text and "`six-elements`: too few elements" in found.text
     assert "| **FAILED** |" in found.text and "failed: painleve: FAILED, not closed: why" in found.text
     assert [failure["scene_id"] for failure in found.document["failures"]] == ["painleve"]
 

@@ -43,7 +43,8 @@ def test_each_step_switches_on_what_it_says(tmp_path):
 def test_the_study_tells_each_change_and_draws_the_measured_interval(tmp_path):
     request = Request(tmp_path, ("t5b",))
     found = published(conclude, request, {j.name: fake(j) for j in plan(request, {})})
-    assert "Each alone, most changes e of t5b by skin (+1)" in found.text
+    assert "None of these readings brings e, mu and Omega of a set" in found.text
+    assert "one of them alone: t5b e +1 (skin), mu" in found.text
     assert "e 0.2, +0.13 to the measured mean: rate +0.01, hardness +0.1, skin +1, all +1.1" in found.text
     written = json.loads((tmp_path / "study.json").read_text())
     (sheet,) = written["sheets"]
