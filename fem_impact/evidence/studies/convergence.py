@@ -117,22 +117,21 @@ def _told(meshes: Sequence[MeshRuns], name: str) -> tuple[float, float] | None:
 
 def _answer(rows: Sequence[Row]) -> list[str]:
     """Return how far a default run and the finest level lie from the limits, and the bands of these."""
-    parts = []
+    worst: dict[str, list[str]] = {"default": [], "finest": [], "band": []}
     for name in STATED:
         of = [row for row in rows if row["quantity"] == name]
         if of:
-            usual, finest = (
-                max(abs(row["values"][row["default"] if last else -1] - row["fit"].value) for row in of)
-                for last in (True, False)
-            )
-            band = max(row["fit"].band for row in of)
-            parts.append(f"{name} {usual:.2g} (one level more {finest:.2g}, band of the limit {band:.2g})")
-    if not parts:
+            for way in ("default", "finest"):
+                off = (row["values"][row.get(way, -1)] - row["fit"].value for row in of)
+                worst[way].append(f"{max(map(abs, off)):.2g} of {name}")
+            worst["band"].append(f"{max(row['fit'].band for row in of):.2g} of {name}")
+    if not worst["band"]:
         return []
-    sets = len({row["set"] for row in rows})
+    default, finest, band = (", ".join(parts) for parts in worst.values())
     return [
-        f"The last level of a default run lies from the limit for vanishing elements, at most over {sets} "
-        f"sets: {', '.join(parts)}. e is that by the paper's arms."
+        f"The last level of a default run lies at most {default} from what vanishing elements would give "
+        f"({len({row['set'] for row in rows})} sets, e by the paper's arms); the finest level here {finest}. "
+        f"The bands of these limits are at most {band} wide to either side."
     ]
 
 

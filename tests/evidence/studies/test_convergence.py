@@ -62,7 +62,8 @@ def test_the_study_writes_table_data_and_figure(tmp_path):
         "off the limit." in found.text
     )
     answer = next(line for line in found.text.splitlines() if line.startswith("- "))
-    assert "over 1 sets: e 0.03 (one level more 0.02, band of the limit 0.025)" in answer
+    assert "default run lies at most 0.03 of e," in answer and "finest level here 0.02 of e," in answer
+    assert "limits are at most 0.025 of e," in answer
     assert len((tmp_path / "convergence.csv").read_text().splitlines()) == 1 + len(QUANTITIES)
     assert (tmp_path / "figures" / "convergence.svg").exists()
     assert json.loads((tmp_path / "study.json").read_text())["sheets"][0]["rows"]
