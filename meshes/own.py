@@ -14,6 +14,7 @@ from meshes.gauss import jacobians
 from meshes.halving import across, halved_tetrahedra, straight
 from meshes.hexahedra import as_hexahedra
 from meshes.hexmesh import SYMMETRY, HexMesh, face_keys, from_cells, half_body_tags
+from meshes.masses import LooseMass, loose_masses
 from meshes.moments import cell_moments
 from meshes.oblique import Tip, is_oblique, stood_up
 from meshes.order import in_order
@@ -67,6 +68,7 @@ class OwnBody:
     sets : by name of a set of the file, the mask (m,) of its cells
     faces : by name of a set of faces or nodes of the file, the mask (k,) of the faces of the half in it
     lopsided : names of sets of which one side of y = 0 holds more than the other
+    masses : masses without volume that the file holds
     told : sentences about what the file holds and how it was taken
     """
 
@@ -74,6 +76,7 @@ class OwnBody:
     sets: Mapping[str, BoolArray] = field(default_factory=dict)
     faces: Mapping[str, BoolArray] = field(default_factory=dict)
     lopsided: frozenset[str] = frozenset()
+    masses: tuple[LooseMass, ...] = ()
     told: tuple[str, ...] = ()
 
 
@@ -106,12 +109,9 @@ def read_own(path: str | Path, unit: float = 1.0, stated: Stated | None = None) 
             raise MeshError(f"is damaged: its cells of type {kind} have not {NODES[kind]} nodes each.")
         _require_numbered(stored.points, cells, -1 if NODES[kind] > 8 else 0)
     chosen = _chosen(stored, stated.sets)
-    if stored.masses and not stated.sets:
-        raise MeshError(
-            f"holds {' and '.join(stored.masses)}: mass without volume, which the body would lack. Leave it "
-            f"out.{_set_hint(stored)}"
-        )
     points, blocks = stored.points * unit, _blocks(stored, chosen)
+    used = np.concatenate([cells.ravel() for _, cells in blocks])
+    masses = loose_masses(stored.masses, points, used if stated.sets else None)
     stood = tuple[str, ...]()
     if is_oblique(stated.tip):
         whole = as_hexahedra(points, blocks)
@@ -137,7 +137,7 @@ def read_own(path: str | Path, unit: float = 1.0, stated: Stated | None = None) 
     dropped = np.setdiff1d(np.flatnonzero(chosen), of)
     uneven = lopsided(stored, files, _axes(made.points, stated.tip), dropped)
     present = {name: here for name, here in sets.items() if here.any()}
-    return replace(body, sets=present, faces=faces, lopsided=uneven, told=told)
+    return replace(body, sets=present, faces=faces, lopsided=uneven, masses=masses, told=told)
 
 
 def _corners(cells: IntArray) -> IntArray:

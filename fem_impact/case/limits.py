@@ -15,6 +15,7 @@ from fem_impact.physics.contact import FLAT
 from fem_impact.scene import library
 from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.impact import BESIDE, FIRST
+from fem_impact.scene.own_mesh import OwnMesh
 from fem_impact.scene.shipped import replace as change
 from fem_impact.scene.strikes import Following
 from fem_impact.scene.types import Scene
@@ -48,6 +49,7 @@ def scene_limitations(bodies: Bodies, meshed_through: bool) -> tuple[Limitation,
     ``meshed_through`` says whether a plate that bends is meshed through its thickness.
     """
     scene, active = bodies.scene, bodies.effects
+    mesh = scene.projectile.own_mesh
     speed = round(math.hypot(scene.relative.v_n, scene.relative.v_t), 3)
     unmeasured = limitations(
         "range",
@@ -65,12 +67,19 @@ def scene_limitations(bodies: Bodies, meshed_through: bool) -> tuple[Limitation,
     idealised = limitations(
         "model",
         ELASTIC_SEGMENTS if scene.projectile.segments else "",
-        FACETS if scene.projectile.own_mesh is not None else "",
+        FACETS if mesh is not None else "",
+        *(_masses(mesh) if mesh is not None else ()),
         BONDED_LAYERS if scene.barrier.layers else "",
         thin_plate(bodies, meshed_through),
         _idealised(active),
     )
     return (*unmeasured, *idealised)
+
+
+def _masses(mesh: OwnMesh) -> list[str]:
+    """Return which masses without volume of the file of a mesh the body lacks."""
+    told = [mesh.masses(own)[1] for own in (True, False)]
+    return [f"left out of the body: {one}" for one in told if one]
 
 
 def _sliding(bodies: Bodies) -> str:

@@ -26,6 +26,8 @@ KEYS = (
     *("mesh_materials", "mesh_surfaces"),
 )
 TIPS = ("-z", "+z", "-x", "+x", "-y", "+y", "-axis", "+axis")
+POUND = 4.4482216  # N, of force, in which decks in inches count
+LACKING = 0.01  # of its mass: a body that lacks more is another body
 Tip = str | tuple[float, float, float]
 
 
@@ -90,6 +92,26 @@ class OwnMesh:
         """
         return _body(self)
 
+    def masses(self, own: bool) -> tuple[float, str]:
+        """Return the masses without volume that the file holds, kg, nan if unknown, and what is told of them.
+
+        Those that may be the body's ``own``, or all others. A file's unit of mass is the one that goes with
+        its unit of length, newtons and seconds, or with inches, pounds of force and seconds.
+        """
+        these, force = [one for one in self.body().masses if one.own == own], self.unit == "inch"
+        kg = (POUND if force else 1.0) / _metres(self)
+        told = []
+        for one in these:
+            known = f"{1e3 * kg * one.mass:.4g} g ({one.mass:.4g} in the file)"
+            where = (
+                f", the first at ({', '.join(f'{1e3 * x:.4g}' for x in one.place)}) mm" if one.place else ""
+            )
+            told.append(
+                f"{one.count} {one.what} of {known if one.mass == one.mass else 'unknown mass'}{where}"
+            )
+        system = f", counted in {self.unit}, {'lbf' if force else 'N'} and s" if told else ""
+        return kg * sum(one.mass for one in these), f"{', and '.join(told)}{system}"
+
     def half(self) -> HexMesh:
         """Return the half y >= 0 of the body."""
         return _body(self).half
@@ -137,15 +159,20 @@ def _content(path: str) -> str:
         raise SceneError(f"cannot be read: {reason}.", key="mesh", value=path, remedy=remedy) from None
 
 
+def _metres(mesh: OwnMesh) -> float:
+    """Return the metres in one unit of the file."""
+    unit = DIMENSIONS["length"].unit(mesh.unit)
+    assert unit is not None, "the unit was checked"
+    return unit.to_si("1")
+
+
 @lru_cache(maxsize=8)
 def _body(mesh: OwnMesh) -> OwnBody:
     import meshes
 
-    unit = DIMENSIONS["length"].unit(mesh.unit)
-    assert unit is not None, "the unit was checked"
     stated = meshes.Stated(mesh.symmetry, mesh.tip, mesh.sets)
     try:
-        return meshes.read_own(mesh.path, unit.to_si("1"), stated)
+        return meshes.read_own(mesh.path, _metres(mesh), stated)
     except meshes.MissingReaderError as error:
         raise MissingLibraryError(f"{mesh.path}: {error}") from None
     except meshes.MeshError as error:
@@ -228,7 +255,8 @@ def faceted_body(
     Raises
     ------
     SceneError
-        If a cell lies on both sides of the end of a segment, or as `cell_regions`.
+        If a cell lies on both sides of the end of a segment, the body would lack more than a hundredth of
+        its mass that the file holds without volume, or as `cell_regions`.
     """
     import numpy as np
 
@@ -247,7 +275,19 @@ def faceted_body(
     quads = half.faces_with(meshes.SKIN)
     nodes, facets = np.unique(quads, return_inverse=True)
     parts = np.column_stack([part.low, part.high, *moments])
-    return rigid.Faceted(half.points[nodes], facets.reshape(quads.shape), parts)
+    body = rigid.Faceted(half.points[nodes], facets.reshape(quads.shape), parts)
+    lacking, told = mesh.masses(own=True)
+    if not abs(lacking) <= LACKING * body.mass:
+        problem = (
+            f"holds masses without volume, which the body of {1e3 * body.mass:.4g} g would lack: {told}."
+        )
+        remedy = (
+            "Mesh them as cells of a material of their own (mesh_materials), or leave them out of the file."
+        )
+        if not mesh.sets and mesh.body().sets:
+            remedy += " If they belong to another body, name the cells of this one: mesh_sets."
+        raise SceneError(problem, key="mesh", value=mesh.path, remedy=remedy)
+    return body
 
 
 def _require_joints(low: Array, high: Array, joints: Sequence[float]) -> None:

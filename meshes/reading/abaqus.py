@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from math import nan
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,7 @@ from meshes.arrays import FloatArray
 from meshes.errors import MeshError
 from meshes.reading.abaqus_part import Part, count_of, placed
 from meshes.reading.includes import full_text
-from meshes.reading.stored import Elements, StoredMesh, number_of, numbers_between, whole_number
+from meshes.reading.stored import Elements, PointMass, StoredMesh, number_of, numbers_between, whole_number
 
 __all__ = ["abaqus"]
 
@@ -99,7 +100,7 @@ class _Deck:
         self.level = ""  # what is open: a part, an assembly, an instance
         # kind, name, instance, cell, node or set, side: of the sets and surfaces that the assembly makes
         self.of_assembly: list[tuple[str, str, str, str, str]] = []
-        self.stated, self.more = False, list[str]()
+        self.stated, self.more, self.spread = False, list[str](), list[PointMass]()
 
     def take(self, card: _Card) -> None:
         """Take a keyword."""
@@ -129,6 +130,8 @@ class _Deck:
             "ELSET": self._set,
             "NSET": self._set,
             "SURFACE": self._surface,
+            "MASS": self._mass,
+            "NONSTRUCTURAL MASS": self._spread_mass,
         }.get(name)
         if taken:
             taken(card)
@@ -189,8 +192,8 @@ class _Deck:
         wanted = count_of(kind)
         numbers: list[int] = []
         for line in card.lines:
-            if self.level == "assembly":  # joins nodes of instances, named as ROD-1.5
-                line = [part.rpartition(".")[2] for part in line]
+            if self.level == "assembly":  # joins nodes of instances, named as ROD-1.5: none of its own
+                line = ["-" * ("." in part) + part.rpartition(".")[2] for part in line]
             numbers += [whole_number(part, f"*ELEMENT of type {kind}") for part in line if part]
             if len(numbers) < wanted + 1 if wanted else line[-1] == "":
                 continue  # a line that ends in a comma goes on
@@ -221,6 +224,15 @@ class _Deck:
         rows = [(line[0], (*line, "")[1].upper()) for line in card.lines]
         self._keep("node_sets" if kind == "NODE" else "surfaces", card, "NAME", rows)
 
+    def _mass(self, card: _Card) -> None:
+        number = number_of(card.lines[0][0] if card.lines else "", "*MASS")
+        self.here.masses[card.options.get("ELSET", "").upper()] = number
+
+    def _spread_mass(self, card: _Card) -> None:
+        whole = card.lines and card.options.get("UNITS", "").upper() == "TOTAL MASS"
+        number = number_of(card.lines[0][0], "*NONSTRUCTURAL MASS") if whole else nan
+        self.spread.append(PointMass("NONSTRUCTURAL MASS", number))
+
     def _keep(self, of: str, card: _Card, key: str, rows: list[tuple[str, str]]) -> None:
         name, instance = card.options.get(key, "").upper(), card.options.get("INSTANCE", "").upper()
         if self.level != "assembly":
@@ -232,7 +244,7 @@ class _Deck:
 
     def stored(self) -> StoredMesh:
         """Return the cells of all instances, or those of the deck that has none."""
-        found, points, more = Elements(), list[FloatArray](), list[str]()
+        found, points, more = Elements(masses=self.spread), list[FloatArray](), list[str]()
         bodies: list[tuple[str, Part, list[list[str]]]] = [
             ("", body, []) for body in (self.plain, self.assembly)
         ]

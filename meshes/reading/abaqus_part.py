@@ -2,19 +2,19 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from math import nan
 
 import numpy as np
 
 from meshes.arrays import FloatArray
 from meshes.errors import MeshError
-from meshes.reading.stored import NODES, Elements, number_of
+from meshes.reading.stored import NODES, Elements, PointMass, number_of
 
 __all__ = ["Part", "count_of", "placed"]
 
 # Nodes of a cell by the letters of its type: continuum elements C3D8, C3D8R, C3D8I, CSS8, heat DC3D8, ...
 VOLUME = ("C3D", "DC3D", "DCC3D", "AC3D", "Q3D", "CSS", "SC6", "SC8")
 BY_COUNT = {NODES[kind]: kind for kind in NODES if kind != "pyramid13"}
-MASSES = ("MASS", "ROTARYI")
 UNUSABLE = {
     "CIN3D": "infinite",
     "EC3D": "Eulerian",
@@ -42,6 +42,7 @@ class Part:
     cells : type and nodes by number
     sets, node_sets : numbers of cells, of nodes, by name
     surfaces : by name, pairs of a cell or a set of cells and what of it is meant, such as S3
+    masses : of each of a set of points of mass, by its name
     """
 
     nodes: dict[int, FloatArray] = field(default_factory=dict)
@@ -49,6 +50,7 @@ class Part:
     sets: dict[str, list[int]] = field(default_factory=dict)
     node_sets: dict[str, list[int]] = field(default_factory=dict)
     surfaces: dict[str, list[tuple[str, str]]] = field(default_factory=dict)
+    masses: dict[str, float] = field(default_factory=dict)
 
     def keep(self, of: str, name: str, rows: list[tuple[str, str]]) -> None:
         """Add rows to the set or surface of a name; ``of`` says to which of the three kinds."""
@@ -67,6 +69,7 @@ class Part:
             {name: list(cells) for name, cells in (other.sets | self.sets).items()},
             {name: list(nodes) for name, nodes in (other.node_sets | self.node_sets).items()},
             {name: list(rows) for name, rows in (other.surfaces | self.surfaces).items()},
+            other.masses | self.masses,
         )
 
 
@@ -82,8 +85,9 @@ def placed(body: Part, moves: list[list[str]], found: Elements, first: int, name
         nodes = all_nodes[:8] if kind == "C3D8I" else all_nodes
         told = _volume(kind, len(nodes))
         if told is None:
-            if kind.startswith(MASSES):
-                found.leave(f"cell of type {kind}", mass=True)
+            if kind == "MASS":
+                stated = [body.masses[one] for one in members.get(number, []) if one in body.masses]
+                found.masses.append(PointMass("MASS", (*stated, nan)[0], place.get(nodes[0], -1)))
             else:
                 found.add_face(kind, [place.get(node, -1) for node in nodes], *members.get(number, []))
             continue

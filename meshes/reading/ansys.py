@@ -3,12 +3,13 @@
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from math import nan
 from pathlib import Path
 
 import numpy as np
 
 from meshes.errors import MeshError
-from meshes.reading.stored import Elements, StoredMesh, number_of, numbers_between, whole_number
+from meshes.reading.stored import Elements, PointMass, StoredMesh, number_of, numbers_between, whole_number
 
 __all__ = ["ansys"]
 
@@ -30,6 +31,7 @@ class _Archive:
     nodes : place of each node by number
     types : number of the element's type by its number in the file
     cells : by number: type, nodes
+    real, constants : number of its set of constants by cell, and the first of each set
     components, node_sets : by name: numbers of elements, of nodes
     """
 
@@ -37,6 +39,8 @@ class _Archive:
     nodes: dict[int, int] = field(default_factory=dict)
     types: dict[int, int] = field(default_factory=dict)
     cells: dict[int, tuple[int, list[int]]] = field(default_factory=dict)
+    real: dict[int, int] = field(default_factory=dict)
+    constants: dict[int, float] = field(default_factory=dict)
     components: dict[str, list[int]] = field(default_factory=dict)
     node_sets: dict[str, list[int]] = field(default_factory=dict)
 
@@ -58,6 +62,10 @@ def ansys(path: Path) -> StoredMesh:
                 archive.types[int(words[1])] = whole_number(re.sub(r"\D", "", words[2]), "ET")
         elif name == "ETBLOCK":
             _types(lines, archive)
+        elif name == "R" and words[1].isdigit():
+            archive.constants[int(words[1])] = number_of((*words[2:3], "")[0], "R")
+        elif name == "RLBLOCK":
+            _constants(lines, whole_number(words[1], "RLBLOCK"), archive)
         elif name == "NBLOCK":
             _nodes(lines, archive)
         elif name == "EBLOCK":
@@ -91,6 +99,18 @@ def _nodes(lines: Iterator[str], archive: _Archive) -> None:
         archive.points.append([number_of(text, f"node {number}") for text in texts])
 
 
+def _constants(lines: Iterator[str], count: int, archive: _Archive) -> None:
+    """Read so many sets of constants, each on a line with its number and on lines of seven."""
+    _, width, wide = _widths(next(lines, ""))
+    next(lines, "")
+    for _ in range(count):
+        line = next(lines, "")
+        number, held = (whole_number(line[k * width : (k + 1) * width], "RLBLOCK") for k in (0, 1))
+        archive.constants[number] = number_of(line[2 * width : 2 * width + wide], "RLBLOCK")
+        for _ in range(0, held - 6, 7):
+            next(lines, "")
+
+
 def _types(lines: Iterator[str], archive: _Archive) -> None:
     _widths(next(lines, ""))
     for line in lines:
@@ -116,6 +136,7 @@ def _cells(lines: Iterator[str], archive: _Archive, solid: bool) -> None:
                 (numbers[1], numbers[10], numbers[11:]) if solid else (0, numbers[0], numbers[5:])
             )
             archive.cells[number] = kind, nodes
+            archive.real[number] = numbers[2] if solid else 0
             numbers = []
 
 
@@ -148,13 +169,15 @@ def _stored(archive: _Archive) -> StoredMesh:
         if kind in SOLIDS | TETRA4 | TETRA10 and missing:
             raise MeshError(f"has a cell {number} that names the node {missing[0]}, which is not there.")
         told = _kind(kind, len(nodes))
-        if told is None and kind and kind not in MASSES:
+        if told is None and kind in MASSES:
+            mass = archive.constants.get(archive.real[number], nan)
+            found.masses.append(PointMass(f"MASS{kind}", mass, archive.nodes.get(nodes[0], -1)))
+            continue
+        if told is None and kind:
             found.add_face(str(kind), [archive.nodes.get(node, -1) for node in nodes], *sets.get(number, []))
             continue
         if told is None:
-            found.leave(
-                f"cell of type {kind}" if kind else "cell outside of solid blocks", mass=kind in MASSES
-            )
+            found.leave("cell outside of solid blocks")
             continue
         numbers = tuple(archive.nodes[node] if node else -1 for node in nodes)
         found.add(told, numbers, *sets.get(number, []))

@@ -8,7 +8,7 @@ import numpy as np
 
 from meshes.arrays import IntArray
 from meshes.errors import MeshError
-from meshes.reading.stored import NODES, Elements, StoredMesh, counted
+from meshes.reading.stored import NODES, Elements, PointMass, StoredMesh, counted
 
 __all__ = ["exodus"]
 
@@ -52,7 +52,7 @@ def exodus(path: Path) -> StoredMesh:
         raise MeshError(
             "has no nodes of three coordinates (coordx, coordy, coordz): it is no body in Exodus."
         )
-    blocks, ignored, masses, found = [], [], list[str](), Elements()
+    blocks, ignored, masses, found = [], [], list[PointMass](), Elements()
     sets: dict[str, IntArray] = {}
     every: list[tuple[str | None, IntArray]] = []  # kind and nodes of the cells of each block, of any kind
     first, k = 0, 1
@@ -69,9 +69,10 @@ def exodus(path: Path) -> StoredMesh:
             elif kind.upper().startswith(FLAT):
                 for nodes in cells.tolist():
                     found.add_face(kind, nodes, *_names(kept, "eb", k, "BLOCK"))
+            elif kind.upper().startswith(MASSES):
+                masses += [PointMass(kind, node=int(node)) for node in cells[:, 0]]
             else:
                 ignored.append(counted(len(cells), f"cell of type {kind}"))
-                masses += ignored[-1:] if kind.upper().startswith(MASSES) else []
         k += 1
     _add_sets(kept, every, found)
     return StoredMesh(points, tuple(blocks), sets, tuple(ignored), tuple(masses), found.surfaces())

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from meshes.errors import MeshError
-from meshes.reading.stored import Elements, StoredMesh, number_of, whole_number
+from meshes.reading.stored import Elements, PointMass, StoredMesh, number_of, whole_number
 
 __all__ = ["kratos"]
 
@@ -69,6 +69,9 @@ def kratos(path: Path) -> StoredMesh:
             conditions[numbers[0]] = opened[-1][1], numbers[2:]
     for number, (kind, nodes, properties) in cells.items():
         named = members["Elements"].get(number, [])
+        if kind is None and len(nodes) == 1:
+            found.masses.append(PointMass("element of 1 node", node=place.get(nodes[0], -1)))
+            continue
         if kind is None:
             corners = [place.get(node, -1) for node in nodes]
             found.add_face(f"{len(nodes)} nodes that fills no volume", corners, *named)

@@ -1,6 +1,7 @@
 """Keyword files of LS-DYNA: nodes, solid elements, parts."""
 
 from collections.abc import Iterator
+from math import nan
 from pathlib import Path
 
 import numpy as np
@@ -8,7 +9,7 @@ import numpy as np
 from meshes.errors import MeshError
 from meshes.reading.includes import full_text
 from meshes.reading.sections import fixed_fields, sections
-from meshes.reading.stored import Elements, StoredMesh, number_of, whole_number
+from meshes.reading.stored import Elements, PointMass, StoredMesh, number_of, whole_number
 
 __all__ = ["lsdyna"]
 
@@ -23,7 +24,13 @@ REFUSED = {
 }
 SOLIDS = ("ELEMENT_SOLID", "ELEMENT_SOLID_TITLE", "ELEMENT_TSHELL")
 LINES_MORE = {"ORTHO": 2, "DOF": 1}  # that an option adds to each element
-MASSES = ("ELEMENT_MASS", "ELEMENT_INERTIA")
+# widths of the fields of a line of masses, long ones, and which of them is the mass
+MASSES = {
+    "ELEMENT_MASS": ([8, 8, 16], [20, 20, 20], 2),
+    "ELEMENT_MASS_NODE_SET": ([8, 8, 16], [20, 20, 20], 2),
+    "ELEMENT_MASS_PART": ([8, 16], [20, 20], 1),
+    "ELEMENT_MASS_PART_SET": ([8, 16], [20, 20], 1),
+}
 
 
 def lsdyna(path: Path) -> StoredMesh:
@@ -41,6 +48,7 @@ def lsdyna(path: Path) -> StoredMesh:
     titles: dict[int, str] = {}
     solids: list[tuple[int, list[int]]] = []
     found, flat, sets = Elements(), list[list[int]](), list[tuple[str, bool, list[str]]]()
+    masses: list[tuple[str, bool, str]] = []
     for name, long, lines in _keywords(full_text(path, "lsdyna")):
         for start, problem in REFUSED.items():
             if name.startswith(start):
@@ -60,8 +68,10 @@ def lsdyna(path: Path) -> StoredMesh:
             flat += [_numbers(line, 20 if long else 8, name)[:6] for line in lines]
         elif name.startswith(("SET_SEGMENT", "SET_NODE_LIST")):
             sets.append((name, long, lines))
+        elif name.startswith(("ELEMENT_MASS", "ELEMENT_INERTIA")):
+            masses += [(name, long, line) for line in lines]
         elif name.startswith("ELEMENT_"):
-            found.leave(f"line of *{name}", len(lines), mass=name.startswith(MASSES))
+            found.leave(f"line of *{name}", len(lines))
         elif name.startswith("RIGIDWALL"):
             found.leave(f"wall (*{name})")
     for part, nodes in solids:
@@ -70,6 +80,8 @@ def lsdyna(path: Path) -> StoredMesh:
     for _, part, *nodes in flat:
         names = {f"PART {part}", titles.get(part, "")} - {""}
         found.add_face("SHELL", [place.get(node, -1) for node in nodes], *names)
+    for name, long, line in masses:
+        found.masses.append(_mass(name, long, line, place))
     for name, long, lines in sets:
         _take_set(name, lines, 20 if long else 10, place, found)
     return found.stored(np.array(points, dtype=np.float64).reshape(-1, 3))
@@ -96,6 +108,17 @@ def _split(line: str, widths: list[int]) -> list[str]:
 def _numbers(line: str, width: int, name: str) -> list[int]:
     """Return the whole numbers of a line, those that are left out not."""
     return [whole_number(text, f"*{name}") for text in _split(line, [width] * 10) if text]
+
+
+def _mass(name: str, long: bool, line: str, place: dict[int, int]) -> PointMass:
+    """Return the mass of a line; of a part that is given its final mass, it is not known."""
+    if name not in MASSES:
+        return PointMass(name)
+    short, wide, at = MASSES[name]
+    fields = _split(line, wide if long else short)
+    number = number_of(fields[at], f"*{name}")
+    node = place.get(whole_number(fields[1], name), -1) if name == "ELEMENT_MASS" else -1
+    return PointMass(name, number if number or "PART" not in name else nan, node)
 
 
 def _take_set(name: str, lines: list[str], width: int, place: dict[int, int], found: Elements) -> None:

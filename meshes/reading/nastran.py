@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from math import nan
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +10,7 @@ import numpy as np
 from meshes.arrays import FloatArray
 from meshes.errors import MeshError
 from meshes.reading.includes import full_text
-from meshes.reading.stored import Elements, StoredMesh, number_of, whole_number
+from meshes.reading.stored import Elements, PointMass, StoredMesh, number_of, whole_number
 
 __all__ = ["nastran"]
 
@@ -25,7 +26,14 @@ REORDERED = {
     "hexahedron20": (*range(12), *range(16, 20), *range(12, 16)),
     "wedge15": (*range(9), 12, 13, 14, 9, 10, 11),
 }
-MASSES = ("CONM1", "CONM2", "CMASS1", "CMASS2", "CMASS3", "CMASS4")
+# places of the grid and of the mass among the fields of a card; None: on another card, or in a matrix
+MASSES: dict[str, tuple[int | None, int | None]] = {
+    "CONM2": (1, 3),
+    "CONM1": (1, 3),
+    "CMASS2": (2, 1),
+    "CMASS1": (2, None),
+}
+MASSES |= {"CMASS3": (None, None), "CMASS4": (None, 1)}
 SURFACES = (
     "CSHEAR",
     "CBAR",
@@ -81,7 +89,7 @@ def nastran(path: Path) -> StoredMesh:
         If the file includes others, or names what is not there.
     """
     cards = list(_cards(full_text(path, "nastran")))
-    grids, defined, found = {}, {}, Elements()
+    grids, defined, found, scale = {}, {}, Elements(), 1.0
     default = next((fields[1] for name, fields in cards if name == "GRDSET"), "")
     for name, fields in cards:
         if name == "GRID":
@@ -92,6 +100,8 @@ def nastran(path: Path) -> StoredMesh:
         elif name.startswith(("CORD1", "CORD2")):
             for number, one in _definitions(name, fields):
                 defined[number] = one
+        elif name == "PARAM" and fields[0].upper() == "WTMASS":
+            scale = number_of(fields[1], "PARAM,WTMASS")
     systems = _Systems(defined, grids)
     points = np.array([systems.place(number) for number in grids]).reshape(-1, 3)
     numbered = {number: k for k, number in enumerate(grids)}
@@ -99,13 +109,20 @@ def nastran(path: Path) -> StoredMesh:
         if name in SOLIDS:
             _add(name, fields, numbered, found)
         elif name in MASSES:
-            found.leave(f"mass ({name})", mass=True)
+            found.masses.append(_mass(name, fields, numbered, scale))
         elif corners := 3 * name.startswith("CTRI") + 4 * name.startswith("CQUAD"):
             nodes = [int(text) if text.isdigit() else 0 for text in fields[2 : 2 + corners]]
             found.add_face(name, [numbered.get(node, -1) for node in nodes], f"PID {fields[1] or fields[0]}")
         elif name.startswith(SURFACES):
             found.leave(f"cell of type {name}")
     return found.stored(points)
+
+
+def _mass(name: str, fields: list[str], place: dict[int, int], scale: float) -> PointMass:
+    """Return the mass of a card, whose number counts ``scale`` times."""
+    grid, mass = (fields[at] if at is not None else "" for at in MASSES[name])
+    number = scale * number_of(mass, f"{name} {fields[0]}") if mass else nan
+    return PointMass(name, number, place.get(whole_number(grid, name), -1) if grid else -1)
 
 
 def _cards(text: str) -> Iterator[tuple[str, list[str]]]:

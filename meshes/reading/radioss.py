@@ -1,6 +1,7 @@
 """Starter files of Radioss: nodes and solid elements by part."""
 
 from collections.abc import Iterator
+from math import nan
 from pathlib import Path
 
 import numpy as np
@@ -8,7 +9,7 @@ import numpy as np
 from meshes.errors import MeshError
 from meshes.reading.includes import full_text
 from meshes.reading.sections import fixed_fields, sections
-from meshes.reading.stored import Elements, StoredMesh, number_of, whole_number
+from meshes.reading.stored import Elements, PointMass, StoredMesh, number_of, whole_number
 
 __all__ = ["radioss"]
 
@@ -18,7 +19,8 @@ KINDS = {8: "hexahedron", 4: "tetra", 6: "wedge", 10: "tetra10", 20: "hexahedron
 REORDERED = {20: (*range(12), *range(16, 20), *range(12, 16))}
 FLAT = {"SHELL": 4, "SH3N": 3}
 OTHERS = ("TRUSS", "BEAM", "SPRING", "QUAD", "TRIA")
-MASSES = ("ADMAS",)
+# kinds of /ADMAS of which each line states a mass to add: to a group of nodes, to parts, to a node
+ADDED, EACH, NODE = ("0", "1", "3", "5", "6"), "0", "5"
 REFUSED = {
     "TRANSFORM": "moves nodes by /{0}. Write the deck with the nodes where they are.",
     "SUBMODEL": "holds a submodel by /{0}. Write it as one model.",
@@ -41,6 +43,7 @@ def radioss(path: Path) -> StoredMesh:
     solids: list[tuple[str, list[int]]] = []
     found, flat, segments = Elements(), list[tuple[str, str, list[int]]](), list[tuple[set[str], list[int]]]()
     groups: list[tuple[set[str], list[int]]] = []
+    masses: list[tuple[str, list[str]]] = []
     for name, lines in sections(full_text(path, "radioss"), "/", "#"):
         for start, problem in REFUSED.items():
             if name.removeprefix("/").startswith(start):
@@ -66,8 +69,8 @@ def radioss(path: Path) -> StoredMesh:
                 groups += [(names, row) for row in rows]
         elif kind in OTHERS:
             found.leave(f"line of /{kind}", len(lines))
-        elif kind in MASSES:
-            found.leave(f"mass (/{kind})", mass=True)
+        elif kind == "ADMAS":
+            masses += [(part.split("/")[0], _split(line, [20, 10])) for line in lines[1:]]
         elif kind == "RWALL":
             found.leave("wall (/RWALL)")
     for part, nodes in solids:
@@ -80,6 +83,11 @@ def radioss(path: Path) -> StoredMesh:
     for names, nodes in groups:
         for one in names:
             found.node_sets.setdefault(one, []).extend(place[node] for node in nodes if node in place)
+    for kind, (text, of, *_) in masses:
+        times = len(found.node_sets.get(f"GRNOD {of}", [])) if kind == EACH else 1
+        mass = times * number_of(text, "/ADMAS") if kind in ADDED and times else nan
+        node = place.get(whole_number(of, "/ADMAS"), -1) if kind == NODE else -1
+        found.masses.append(PointMass(f"/ADMAS/{kind}", mass, node))
     return found.stored(np.array(points, dtype=np.float64).reshape(-1, 3))
 
 

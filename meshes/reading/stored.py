@@ -3,7 +3,8 @@
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from math import inf
+from math import inf, nan
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from meshes.errors import MeshError
 __all__ = [
     "NODES",
     "Elements",
+    "PointMass",
     "StoredMesh",
     "Surfaces",
     "counted",
@@ -65,6 +67,17 @@ class Surfaces:
         return tuple(counted(kinds.count(kind), f"cell of type {kind}") for kind in dict.fromkeys(kinds))
 
 
+class PointMass(NamedTuple):
+    """A mass without volume, of a kind of the file: how large in its unit, nan if unknown, at which node.
+
+    The node is -1 where it stands at none of the nodes that are read.
+    """
+
+    what: str
+    mass: float = nan
+    node: int = -1
+
+
 @dataclass(frozen=True, slots=True)
 class StoredMesh:
     """The volume cells of a file.
@@ -76,7 +89,7 @@ class StoredMesh:
         the file leaves it out
     sets : by name, numbers of cells, counted through all blocks
     ignored : what the file holds beside the cells and is left out, one phrase each
-    masses : what of that has a mass
+    masses : masses without volume
     surfaces : cells of surfaces, and sets of faces
     """
 
@@ -84,7 +97,7 @@ class StoredMesh:
     blocks: tuple[tuple[str, IntArray], ...]
     sets: Mapping[str, IntArray] = field(default_factory=dict)
     ignored: tuple[str, ...] = ()
-    masses: tuple[str, ...] = ()
+    masses: tuple[PointMass, ...] = ()
     surfaces: Surfaces = field(default_factory=Surfaces)
 
 
@@ -98,7 +111,7 @@ class Elements:
     nodes : places of its nodes in the list of points
     sets : names of sets, with the places of their cells
     left_out : what is left out, with its count
-    masses : what of that has a mass
+    masses : masses without volume
     faces, face_kinds, face_sets, node_sets : as in `Surfaces`
     """
 
@@ -110,7 +123,7 @@ class Elements:
     face_sets: dict[str, list[int]] = field(default_factory=dict)
     node_sets: dict[str, list[int]] = field(default_factory=dict)
     left_out: dict[str, int] = field(default_factory=dict)
-    masses: dict[str, int] = field(default_factory=dict)
+    masses: list[PointMass] = field(default_factory=list)
 
     def add(self, kind: str, nodes: tuple[int, ...], *names: str) -> int:
         """Add a cell that is in sets of those names; return its place.
@@ -164,10 +177,9 @@ class Elements:
         self.faces.append((*corners, -1)[:4])
         self.face_kinds.append(kind)
 
-    def leave(self, what: str, count: int = 1, mass: bool = False) -> None:
-        """Count what is left out, in one word or more, and whether it has a mass of its own."""
-        counts = self.masses if mass else self.left_out
-        counts[what] = counts.get(what, 0) + count
+    def leave(self, what: str, count: int = 1) -> None:
+        """Count what is left out, in one word or more."""
+        self.left_out[what] = self.left_out.get(what, 0) + count
 
     def stored(self, points: FloatArray, *more: str) -> StoredMesh:
         """Return what was read, cells of one kind together, with ``more`` that is left out."""
@@ -180,11 +192,8 @@ class Elements:
         new = np.empty(len(kinds), dtype=np.int64)
         new[np.concatenate([*order, np.zeros(0, np.int64)])] = np.arange(len(kinds))
         sets = {name: np.unique(new[places]) for name, places in self.sets.items() if places}
-        told, masses = (
-            tuple(counted(count, what) for what, count in counts.items())
-            for counts in (self.left_out, self.masses)
-        )
-        return StoredMesh(points, tuple(blocks), sets, (*told, *masses, *more), masses, self.surfaces())
+        told = (counted(count, what) for what, count in self.left_out.items())
+        return StoredMesh(points, tuple(blocks), sets, (*told, *more), tuple(self.masses), self.surfaces())
 
     def surfaces(self) -> Surfaces:
         """Return the faces and the sets of faces and nodes that were read."""

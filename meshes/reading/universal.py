@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from meshes.errors import MeshError
-from meshes.reading.stored import Elements, StoredMesh, number_of
+from meshes.reading.stored import Elements, PointMass, StoredMesh, number_of
 
 __all__ = ["universal"]
 
@@ -64,8 +64,11 @@ def universal(path: Path) -> StoredMesh:
             corners = nodes[:: FLAT[kind % 10]]
             found.add_face(str(kind), [place.get(node, -1) for node in corners], *named)
             continue
+        if kind in MASSES:
+            found.masses.append(PointMass(f"type {kind}", node=place.get(nodes[0], -1)))
+            continue
         if kind not in KINDS:
-            found.leave(f"cell of type {kind}", mass=kind in MASSES)
+            found.leave(f"cell of type {kind}")
             continue
         missing = [node for node in nodes if node not in place]
         if missing:

@@ -95,18 +95,59 @@ def test_two_instances_are_both_there_and_one_may_be_named(tmp_path):
         read_own(deck, 1e-3, meshes.Stated(sets=("ROD-2",)))
 
 
-def test_reference_points_and_shells_are_told_and_masses_refused(tmp_path):
+def test_reference_points_and_shells_are_told(tmp_path):
     points, cells = square()
     point = "*NODE\n1, 0., 0., -10.\n*NSET, NSET=RP\n1,\n"
     deck = tmp_path / "rp.inp"
     deck.write_text(parts(decks.abaqus(points, cells), assembly=point))
     body = read_own(deck, 1e-3)
     assert body.told[0] == "left out: 1 cell of type S3"
-    mass = "*ELEMENT, TYPE=MASS, ELSET=M\n1, 1\n*MASS, ELSET=M\n0.5,\n"
-    deck.write_text(parts(decks.abaqus(points, cells), assembly=point + mass))
-    with pytest.raises(MeshError, match="holds 1 cell of type MASS: mass without volume"):
-        read_own(deck, 1e-3)
-    assert volume_of(deck, meshes.Stated(sets=("ROD-1",))) == pytest.approx(8640.0)
+
+
+# by ending: what a deck of the bar is told of masses without volume, and where its last line comes after
+MASSES = {
+    ".inp": "*ELEMENT, TYPE=MASS, ELSET=M\n8001, 2\n*mass, elset=m\n0.5,\n",
+    ".bdf": "CONM2,99,2,,0.25\nPARAM,WTMASS,2.\nENDDATA",
+    ".k": f"*ELEMENT_MASS\n{9001:8d}{2:8d}{0.5:16.3f}\n*END",
+    ".rad": f"/ADMAS/5/1\nlead\n{0.5:20.3f}{2:10d}\n",
+    ".cdb": "ET,3,21\nR,7,0.5\nEBLOCK,19,SOLID\n(19i10)\n"
+    + "".join(f"{v:10d}" for v in (1, 3, 7, 1, 0, 0, 0, 0, 1, 0, 9001, 2))
+    + f"\n{-1:10d}\nFINISH\n",
+}
+MORE = {
+    ".inp": "*NONSTRUCTURAL MASS, ELSET=LOW, UNITS=TOTAL MASS\n0.5,\n",
+    ".bdf": "CMASS2,98,0.5,5,1\nENDDATA",
+    ".k": f"*ELEMENT_MASS_PART\n{3:8d}{0.5:16.3f}\n*END",
+    ".rad": f"/GRNOD/NODE/6\nsome\n         1         3\n/ADMAS/0/1\nlead\n{0.25:20.3f}{6:10d}\n",
+    ".cdb": "ET,3,21\nRLBLOCK,1,7,7,7\n(2i8,6g16.9)\n(7g16.9)\n"
+    + f"{7:8d}{7:8d}{0.5:16.9f}\n{0.0:16.9f}\n"
+    + MASSES[".cdb"].partition("R,7,0.5\n")[2],
+}
+
+
+@pytest.mark.parametrize("ending", MASSES)
+def test_masses_without_volume_are_known_with_their_place(tmp_path, ending):
+    points, cells = square()
+    path = decks.write(tmp_path / f"m{ending}", points, cells)
+    text = re.split("ENDDATA|[*]END|FINISH", path.read_text())[0]
+    path.write_text(text + MASSES[ending])
+    (mass,) = read_own(path, 1e-3).masses
+    assert (mass.count, mass.mass, mass.own) == (1, pytest.approx(0.5), True)
+    assert mass.place == pytest.approx(points[1] / 1e3)
+    path.write_text(text + MORE[ending])
+    (mass,) = read_own(path, 1e-3).masses
+    assert (mass.count, mass.mass, mass.own) == (1, pytest.approx(0.5), True)
+
+
+def test_a_mass_at_a_node_of_another_body_is_not_the_bodys_own(tmp_path):
+    points, cells = square()
+    mass = "*NODE\n1, 0., 0., -10.\n*ELEMENT, TYPE=MASS, ELSET=M\n1, 1\n2, ROD-1.1\n*MASS, ELSET=M\n0.5,\n"
+    deck = tmp_path / "m.inp"
+    deck.write_text(parts(decks.abaqus(points, cells), assembly=mass))
+    (both,) = read_own(deck, 1e-3).masses
+    assert (both.count, both.mass, both.place, both.own) == (2, 1.0, pytest.approx((0, 0, -0.01)), True)
+    other, own = read_own(deck, 1e-3, meshes.Stated(sets=("ROD-1",))).masses
+    assert (other.own, own.own, own.place) == (False, True, None)
 
 
 @pytest.mark.parametrize(
@@ -165,7 +206,7 @@ def test_nastran_coordinates_are_those_of_their_system(tmp_path, card, place, de
     assert list(body.sets) == ["PID 7"]
 
 
-def test_nastran_fields_of_eight_characters_and_masses(tmp_path):
+def test_nastran_fields_of_eight_characters(tmp_path):
     points, cells = square()
     lines = [f"GRID    {n:8d}        {x:8.3f}{y:8.3f}{z:8.3f}" for n, (x, y, z) in decks.numbered(points)]
     lines[0] = lines[0].replace("  -6.000", "  -6.0+0")
@@ -174,9 +215,6 @@ def test_nastran_fields_of_eight_characters_and_masses(tmp_path):
         lines += [f"CHEXA   {n:8d}{3:8d}{six}+E{n}", f"+E{n}".ljust(8) + two]
     (tmp_path / "f.nas").write_text("\n".join(lines))
     assert volume_of(tmp_path / "f.nas") == pytest.approx(8640.0)
-    (tmp_path / "f.nas").write_text("\n".join([*lines, "CONM2,99,1,,2.5"]))
-    with pytest.raises(MeshError, match=r"holds 1 mass \(CONM2\)"):
-        read_own(tmp_path / "f.nas", 1e-3)
 
 
 def test_archives_keep_components_and_lsdyna_titles(tmp_path):

@@ -142,6 +142,28 @@ def test_only_what_the_model_holds_is_planned(scene):
     assert any("flat facets" in sentence for sentence in texts(Case.of(scene).limitations, "model"))
 
 
+def test_masses_without_volume_are_told_in_grams_or_refused(tmp_path):
+    points, cells = taper(width=10.0, length=100.0, end=1.0, cells=(2, 1, 6))  # 27 g of aluminium
+    lines = [f"GRID,{n},,{x!r},{y!r},{z!r}" for n, (x, y, z) in enumerate(points.tolist(), 1)]
+    for n, cell in enumerate((cells + 1).astype(str).tolist(), 1):
+        lines += [f"CHEXA,{n},7,{','.join(cell[:6])}", f",{','.join(cell[6:])}"]
+
+    def deck(mass):
+        (tmp_path / "m.bdf").write_text("\n".join([*lines, f"CONM2,99,2,,{mass}"]))
+        return stated(tmp_path / "m.bdf", mesh_unit="mm", mesh_symmetry="half")
+
+    told = texts(Case.of(deck("2.-7")).limitations, "model")  # in t, mm, N and s
+    where = ", ".join(f"{x:.4g}" for x in points[1])
+    assert any(
+        f"left out of the body: 1 CONM2 of 0.2 g (2e-07 in the file), the first at ({where}) mm" in one
+        for one in told
+    )
+    with pytest.raises(
+        SceneError, match=r"the body of 27 g would lack: 1 CONM2 of 0.3 g .* \(mesh_materials\)"
+    ):
+        deck("3.-7")
+
+
 def test_a_thin_cell_is_told_with_its_place(tmp_path):
     points, cells = box(4, 2, 20, (-5e-3, 0, 0), (5e-3, 5e-3, 80e-3))
     layer = np.isclose(points[:, 2], 40e-3)
