@@ -11,9 +11,32 @@ from meshes.hexmesh import SKIN, HexMesh, outer_faces
 from meshes.reading.stored import StoredMesh
 from meshes.topology import FACES
 
-__all__ = ["FileFaces", "face_at", "file_faces", "lopsided", "named_faces"]
+__all__ = ["FileFaces", "face_at", "file_faces", "filling", "lopsided", "named_faces"]
 
 APART = 0.3  # of a set: so much more of it may lie on one side of the plane of symmetry than on the other
+
+
+def filling(points: FloatArray, corners: IntArray) -> str:
+    """Return how to make a body of a surface of ``corners`` (k, 4) of ``points``, and whether it is closed.
+
+    The last corner is -1 where there are three. Points in one place are one.
+    """
+    if not len(corners):
+        return "Give hexahedra, wedges or tetrahedra."
+    node = np.unique(points, axis=0, return_inverse=True)[1].reshape(-1)
+    around = node[np.where(corners < 0, corners[:, :1], corners)]
+    ends = np.sort(np.stack([around, np.roll(around, -1, axis=1)], axis=-1).reshape(-1, 2), axis=1)
+    count = np.unique(ends[ends[:, 0] < ends[:, 1]], axis=0, return_counts=True)[1]
+    gaps, crossings = int((count == 1).sum()), int((count > 2).sum())
+    if gaps or crossings:
+        return (
+            f"The surface is open: {gaps} of {len(count)} edges bound one face, {crossings} more than two. "
+            "Close it, or mesh it with TetWild, which closes gaps, and save the tetrahedra as .msh."
+        )
+    return (
+        "The surface is closed: fill it with tetrahedra, with Gmsh (Merge, Surface Loop, Volume, Mesh 3) or "
+        "TetWild for example, and save them as .msh."
+    )
 
 
 @dataclass(frozen=True, slots=True)

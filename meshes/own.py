@@ -9,7 +9,7 @@ import scipy.sparse as sp
 
 from meshes.arrays import BoolArray, FloatArray, IntArray
 from meshes.errors import MeshError
-from meshes.faces import file_faces, lopsided, named_faces
+from meshes.faces import file_faces, filling, lopsided, named_faces
 from meshes.gauss import jacobians
 from meshes.halving import across, halved_tetrahedra, straight
 from meshes.hexahedra import as_hexahedra
@@ -101,7 +101,7 @@ def read_own(path: str | Path, unit: float = 1.0, stated: Stated | None = None) 
     if not stored.blocks:
         other = (*stored.surfaces.counts(np.ones(len(stored.surfaces.kinds), bool)), *stored.ignored)
         left = f": {', '.join(other)} alone" if other else ""
-        raise MeshError(f"holds no volume cells{left}. Give hexahedra, wedges or tetrahedra.")
+        raise MeshError(f"holds no volume cells{left}. {filling(stored.points, stored.surfaces.corners)}")
     if stored.points.shape[1:] != (3,):
         raise MeshError(f"has points of {stored.points.shape[1]} coordinates: a body needs three.")
     for kind, cells in stored.blocks:

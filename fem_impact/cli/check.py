@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterable, Iterator
-from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,20 +11,18 @@ from fem_impact.cli.options import Options
 from fem_impact.cli.parser import CommandParser
 from fem_impact.cli.paths import shown_path
 from fem_impact.cli.scene_options import add_scene, changed_scene, say_kept
+from fem_impact.cli.statement import statement_of
 from fem_impact.cli.terminal import headed, limitation_lines, print_json, size_text
 from fem_impact.errors import UsageError
 from fem_impact.outcome.limitation import texts
 from fem_impact.progress import clock_text
-from fem_impact.scene.fields import DEFAULTS
-from fem_impact.scene.inputs import STATED, inputs, materials_of
-from fem_impact.scene.library import intervals_of
+from fem_impact.scene.inputs import STATED, inputs
 from fem_impact.scene.types import Scene
-from fem_impact.scene.write import digest, to_dict, to_toml
+from fem_impact.scene.write import to_dict, to_toml
 from fem_impact.tables.table import Table
 from fem_impact.tables.text import plain, wrapped
 
 if TYPE_CHECKING:
-    from fem_impact.case.bodies import Bodies
     from fem_impact.case.case import Case
     from fem_impact.case.size import RunSize
     from fem_impact.outcome.groups import EffectChoice
@@ -58,8 +55,9 @@ def check(options: Options) -> int:
     """Print what a scene states and calls for, and run nothing; return the exit code.
 
     That is the projectile's mass, arms and periods, the estimated contact, the effects with the numbers that
-    decide on them, size and time of a run with finite elements, limitations. ``--long`` prints every value
-    with its source instead, ``--json`` all of it in SI units, ``--drawing`` draws the projectile into a file.
+    decide on them, size and time of a run with finite elements, the fidelities that answer,
+    limitations. ``--long`` prints every value with its source instead, ``--json`` all of it in SI units,
+    ``--drawing`` draws the projectile into a file.
 
     Raises
     ------
@@ -81,7 +79,7 @@ def check(options: Options) -> int:
         from fem_impact.pages.drawing import draw_projectile
 
         draw_projectile(case, drawing)
-    statement = _statement(case)
+    statement = statement_of(case)
     if options.json:
         print_json(statement)
     else:
@@ -103,65 +101,11 @@ def _tests_lines(scene: Scene) -> list[str]:
     return lines + [line for one in doubtful_tests(scene) for line in wrapped(f"warning: {one}")]
 
 
-def _statement(case: Case) -> dict[str, Any]:
-    """Return the document of ``--json``, from which the texts are made; SI units."""
-    from fem_impact.case.laws import laws
-    from fem_impact.outcome.groups import EffectChoice
-    from fem_impact.outcome.keys import keys_of
-
-    scene = case.scene
-    return {
-        "scene": to_dict(scene),
-        "digest": digest(scene),
-        "mesh": _mesh_entry(scene),
-        "body": _body_entry(case.bodies),
-        "sources": {row[0]: row[2] for row in inputs(scene).rows if row[2] != STATED},
-        "intervals": {
-            f"{place}.{key}": interval
-            for place, metal in materials_of(scene).items()
-            for key, interval in intervals_of(metal.name).items()
-        },
-        "laws": laws(case.bodies),
-        "flow_stress_Pa": _flow_stresses(case),
-        "defaults": [{"key": d.key, "value": d.value, "source": d.source} for d in DEFAULTS],
-        "effects": [{key.name: key.of(choice) for key in keys_of(EffectChoice)} for choice in case.choices],
-        "limitations": [asdict(one) for one in case.limitations],
-        "size": None if scene.accuracy.target else _size_entry(case.size),
-    }
-
-
-def _mesh_entry(scene: Scene) -> list[str]:
-    """Return how the file of a mesh was taken, a sentence each."""
-    mesh = scene.projectile.own_mesh
-    if mesh is None:
-        return []
-    body = mesh.body()
-    return [f"mesh {shown_path(mesh.path)}: {len(body.half.cells)} hexahedra in the half y >= 0", *body.told]
-
-
-def _body_entry(bodies: Bodies) -> dict[str, float]:
-    """Return what the theories need of the projectile, SI."""
-    body, (d_c, d_d), (rho, z) = bodies.body, bodies.contact.arms, bodies.contact.touch_point
-    R1, R2 = bodies.contact.principal_radii
-    return {
-        "mass_kg": body.mass,
-        "centre_m": body.z_c,
-        "inertia_kg_m2": body.mass * body.k2,
-        "k2_m2": body.k2,
-        "length_m": body.length,
-        "diameter_m": body.diameter,
-        "gamma": body.gamma,
-        "touch_z_m": z,
-        "touch_rho_m": rho,
-        "touch_length_m": bodies.contact.touch.length,
-        "R1_m": R1,
-        "R2_m": R2,
-        "d_c_m": d_c,
-        "d_d_m": d_d,
-        "bending_period_s": bodies.bending_period,
-        "stretching_period_s": bodies.stretching_period,
-        "ovalling_period_s": bodies.ovalling_period,
-    }
+def _fidelity_lines(statement: dict[str, Any]) -> list[str]:
+    refused = {name: reason for name, reason in statement["fidelities"].items() if reason}
+    answer = [f"--fidelity {name}" for name in statement["fidelities"] if name not in refused]
+    told = [f"not by {name}: {reason}" for name, reason in refused.items()]
+    return ["", "Answered by", *_wrapped([", ".join(answer), *told])]
 
 
 def _body_lines(body: dict[str, float], bends_as: str) -> Iterable[str]:
@@ -193,29 +137,6 @@ def _drawing(case: Case) -> list[str]:
 
     joints = [part.to for part in case.scene.projectile.segments[:-1]]
     return drawn(case.bodies.body, case.contact.touch_point, joints)
-
-
-def _size_entry(size: RunSize) -> dict[str, float]:
-    return {
-        "elements_rod": size.rod,
-        "elements_barrier": size.barrier,
-        "elements_yielding": size.yielding,
-        "step_s": size.step,
-        "steps": size.steps,
-        "most_steps": size.most_steps,
-        "memory_MB": round(size.memory / 1e6),
-        "cpu_s": size.time,
-        "most_cpu_s": size.most_time,
-    }
-
-
-def _flow_stresses(case: Case) -> dict[str, dict[str, float]]:
-    """Return the flow stress, Pa, of each body that yields, at rest and at strain rates, 1/s."""
-    from fem_impact.case.metals import RATES, flow_stresses
-
-    by_body = flow_stresses(case.bodies)
-    rates = ["0", *(f"{rate:g}" for rate in RATES)]
-    return {body: dict(zip(rates, stresses, strict=True)) for body, stresses in by_body.items()}
 
 
 def _flow_lines(statement: dict[str, Any]) -> list[str]:
@@ -252,7 +173,15 @@ def _end_lines(case: Case, statement: dict[str, Any]) -> list[str]:
     limited = limitation_lines(case.limitations, "  ")
     if not texts(case.limitations, "range", "model"):
         limited = [*_wrapped([INSIDE]), *limited]
-    return ["", "Limitations", *limited, "", "The scene is valid; its digest:", statement["digest"]]
+    return [
+        *_fidelity_lines(statement),
+        "",
+        "Limitations",
+        *limited,
+        "",
+        "The scene is valid; its digest:",
+        statement["digest"],
+    ]
 
 
 def _short(case: Case, statement: dict[str, Any]) -> str:

@@ -1,4 +1,4 @@
-"""Formats that VTK reads right: CGNS, EnSight, and those of its own that are structured or in pieces."""
+"""Formats that VTK reads right: CGNS, EnSight, surfaces, and its own that are structured or in pieces."""
 
 from pathlib import Path
 
@@ -6,17 +6,19 @@ import numpy as np
 
 from meshes.arrays import IntArray
 from meshes.errors import MeshError
-from meshes.reading.stored import StoredMesh, counted
+from meshes.reading.stored import Elements, StoredMesh, counted
 
 __all__ = ["ENDINGS", "by_vtk"]
 
-ENDINGS = (".cgns", ".case", ".vts", ".vtr", ".vti", ".pvtu", ".pvts", ".pvtr", ".vtm", ".vtkhdf")
+SURFACES = (".stl", ".obj", ".ply")
+ENDINGS = (".cgns", ".case", ".vts", ".vtr", ".vti", ".pvtu", ".pvts", ".pvtr", ".vtm", ".vtkhdf", *SURFACES)
 # kinds of cells by VTK's numbers
 KINDS = {10: "tetra", 12: "hexahedron", 13: "wedge", 14: "pyramid", 24: "tetra10", 25: "hexahedron20"}
 KINDS |= {26: "wedge15", 27: "pyramid13", 29: "hexahedron27"}
 VOXEL, VOXEL_CORNERS = 11, (0, 1, 3, 2, 4, 5, 7, 6)
-FLAT = {1: "vertex", 2: "vertex", 3: "line", 4: "line", 5: "triangle", 7: "polygon", 8: "pixel", 9: "quad"}
-FLAT |= {21: "line3", 22: "triangle6", 23: "quad8", 28: "quad9"}
+FACES = {5: "triangle", 9: "quad"}
+FLAT = {1: "vertex", 2: "vertex", 3: "line", 4: "line", 7: "polygon", 8: "pixel", 21: "line3"}
+FLAT |= {22: "triangle6", 23: "quad8", 28: "quad9"}
 
 
 def by_vtk(path: Path) -> StoredMesh:
@@ -38,15 +40,19 @@ def by_vtk(path: Path) -> StoredMesh:
             raise MeshError(f"holds a {type(found).__name__}, which is no mesh of cells.")
         found = found.cast_to_unstructured_grid()
     blocks: list[tuple[str, IntArray]] = []
-    ignored = []
+    ignored, faces = [], Elements()
     for number, cells in found.cells_dict.items():
         kind, nodes = int(number), np.asarray(cells, np.int64)
         if kind == VOXEL:
             blocks.append(("hexahedron", nodes[:, VOXEL_CORNERS]))
         elif kind in KINDS:
             blocks.append((KINDS[kind], nodes))
+        elif kind in FACES:
+            for around in nodes.tolist():
+                faces.add_face(FACES[kind], around)
         elif kind in FLAT:
             ignored.append(counted(len(nodes), f"cell of type {FLAT[kind]}"))
         else:
             raise MeshError(f"holds {counted(len(nodes), f'cell of VTK type {kind}')}, which are not read.")
-    return StoredMesh(np.asarray(found.points, np.float64), tuple(blocks), {}, tuple(ignored))
+    points = np.asarray(found.points, np.float64)
+    return StoredMesh(points, tuple(blocks), {}, tuple(ignored), surfaces=faces.surfaces())

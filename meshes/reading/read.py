@@ -47,8 +47,7 @@ READERS: dict[str, Reader] = {
 CONVERTED = {
     (".step", ".stp", ".iges", ".igs", ".brep", ".sat", ".x_t"): "is a drawing without a mesh. Mesh it, with "
     "Gmsh or Salome for example, and save the mesh as .msh or .med.",
-    (".stl", ".obj", ".ply", ".off", ".wrl", ".3mf"): "is a surface without cells inside. Mesh its inside, "
-    "with Gmsh for example (Merge, Surface Loop, Volume), and save the mesh as .msh.",
+    (".wrl", ".3mf"): "is a surface without cells inside. Save it as .stl, which is checked for gaps.",
     (".gz", ".zip", ".bz2", ".xz", ".7z"): "is packed. Unpack it first.",
     (".odb", ".cae", ".frd", ".op2", ".rst", ".d3plot", ".mph", ".sldprt", ".wbpj", ".hm", ".cas"): "holds a "
     "model or results of a program in its own form. Export the mesh there, as an input deck (.inp, .bdf, .k, "

@@ -113,6 +113,13 @@ def test_check_as_json_gives_a_scene_that_reads_back(cli):
     assert {effect["name"] for effect in statement["effects"] if effect["on"]} == set(Case(scene).active)
 
 
+def test_check_tells_which_fidelities_answer(cli):
+    assert "--fidelity solid, --fidelity modal, --fidelity rigid" in " ".join(cli("check", "t5b")[1].split())
+    told = json.loads(cli("check", "t5b", "--set", "accuracy=5 %", "--json")[1])["fidelities"]
+    assert told["solid"] is None
+    assert "is asked of the modal model, which has no mesh to refine" in told["modal"]
+
+
 def test_check_refuses_a_bad_file_by_name(cli, tmp_path):
     (tmp_path / "mine.toml").write_text("id = 3")
     code, out, err = cli("check", "mine.toml")

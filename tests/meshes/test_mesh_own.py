@@ -146,10 +146,18 @@ def test_half_at_negative_y_is_mirrored():
     assert meshes.volume(half) == pytest.approx(meshes.volume(own_body(points, cells).half), rel=1e-12)
 
 
-def test_surfaces_alone_are_no_body(tmp_path):
-    points, cells = taper()
-    with pytest.raises(MeshError, match="holds no volume cells: 80 cells of type quad alone"):
-        read_own(write(tmp_path / "d.vtu", points, cells[:, :4], "quad"))
+@pytest.mark.parametrize("ending", [".stl", ".ply", ".vtu"])
+def test_of_surfaces_alone_it_is_told_whether_they_are_closed(tmp_path, ending):
+    half = own_body(*taper()).half
+    triangles = half.faces[:, [[0, 1, 2], [0, 2, 3]]].reshape(-1, 3)
+    path = write(tmp_path / f"skin{ending}", half.points, triangles, "triangle")
+    told = f"no volume cells: {len(triangles)} cells of type triangle alone. The surface is closed: fill it"
+    with pytest.raises(MeshError, match=told):
+        read_own(path)
+    write(path, half.points, triangles[1:], "triangle")
+    told = f"The surface is open: 3 of {len(triangles) * 3 // 2} edges bound one face, 0 more than two"
+    with pytest.raises(MeshError, match=told):
+        read_own(path)
 
 
 @pytest.mark.parametrize("ending", [".msh", ".inp", ".vtu", ".vtk", ".bdf", ".med"])

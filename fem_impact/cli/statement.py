@@ -1,0 +1,121 @@
+"""What a scene states and calls for, as the document of which the command ``check`` makes its texts."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
+
+from fem_impact.cli.paths import shown_path
+from fem_impact.errors import SceneError
+from fem_impact.scene.fields import DEFAULTS
+from fem_impact.scene.inputs import STATED, inputs, materials_of
+from fem_impact.scene.library import intervals_of
+from fem_impact.scene.types import Scene
+from fem_impact.scene.write import digest, to_dict
+
+if TYPE_CHECKING:
+    from fem_impact.case.bodies import Bodies
+    from fem_impact.case.case import Case
+    from fem_impact.case.size import RunSize
+
+__all__ = ["statement_of"]
+
+
+def statement_of(case: Case) -> dict[str, Any]:
+    """Return the document of ``--json``, from which the texts are made; SI units."""
+    from fem_impact.case.laws import laws
+    from fem_impact.outcome.groups import EffectChoice
+    from fem_impact.outcome.keys import keys_of
+
+    scene = case.scene
+    return {
+        "scene": to_dict(scene),
+        "digest": digest(scene),
+        "mesh": _mesh_entry(scene),
+        "body": _body_entry(case.bodies),
+        "sources": {row[0]: row[2] for row in inputs(scene).rows if row[2] != STATED},
+        "intervals": {
+            f"{place}.{key}": interval
+            for place, metal in materials_of(scene).items()
+            for key, interval in intervals_of(metal.name).items()
+        },
+        "laws": laws(case.bodies),
+        "flow_stress_Pa": _flow_stresses(case),
+        "defaults": [{"key": d.key, "value": d.value, "source": d.source} for d in DEFAULTS],
+        "effects": [{key.name: key.of(choice) for key in keys_of(EffectChoice)} for choice in case.choices],
+        "limitations": [asdict(one) for one in case.limitations],
+        "fidelities": _fidelities(scene),
+        "size": None if scene.accuracy.target else _size_entry(case.size),
+    }
+
+
+def _fidelities(scene: Scene) -> dict[str, str | None]:
+    """Return why a fidelity refuses the scene, None where it answers it; finite elements do."""
+    from fem_impact.answers.simulate import compiled
+
+    found: dict[str, str | None] = {"solid": None}
+    for fidelity in ("modal", "rigid"):
+        try:
+            compiled(scene, fidelity)
+        except SceneError as error:
+            found[fidelity] = str(error)
+        else:
+            found[fidelity] = None
+    return found
+
+
+def _mesh_entry(scene: Scene) -> list[str]:
+    """Return how the file of a mesh was taken, a sentence each."""
+    mesh = scene.projectile.own_mesh
+    if mesh is None:
+        return []
+    body = mesh.body()
+    return [f"mesh {shown_path(mesh.path)}: {len(body.half.cells)} hexahedra in the half y >= 0", *body.told]
+
+
+def _body_entry(bodies: Bodies) -> dict[str, float]:
+    """Return what the theories need of the projectile, SI."""
+    body, (d_c, d_d), (rho, z) = bodies.body, bodies.contact.arms, bodies.contact.touch_point
+    R1, R2 = bodies.contact.principal_radii
+    return {
+        "mass_kg": body.mass,
+        "centre_m": body.z_c,
+        "inertia_kg_m2": body.mass * body.k2,
+        "k2_m2": body.k2,
+        "length_m": body.length,
+        "diameter_m": body.diameter,
+        "gamma": body.gamma,
+        "touch_z_m": z,
+        "touch_rho_m": rho,
+        "touch_length_m": bodies.contact.touch.length,
+        "R1_m": R1,
+        "R2_m": R2,
+        "d_c_m": d_c,
+        "d_d_m": d_d,
+        "bending_period_s": bodies.bending_period,
+        "stretching_period_s": bodies.stretching_period,
+        "ovalling_period_s": bodies.ovalling_period,
+    }
+
+
+def _size_entry(size: RunSize) -> dict[str, float]:
+    return {
+        "elements_rod": size.rod,
+        "elements_barrier": size.barrier,
+        "elements_yielding": size.yielding,
+        "step_s": size.step,
+        "steps": size.steps,
+        "most_steps": size.most_steps,
+        "memory_MB": round(size.memory / 1e6),
+        "cpu_s": size.time,
+        "most_cpu_s": size.most_time,
+    }
+
+
+def _flow_stresses(case: Case) -> dict[str, dict[str, float]]:
+    """Return the flow stress, Pa, of each body that yields, at rest and at strain rates, 1/s."""
+    from fem_impact.case.metals import RATES, flow_stresses
+
+    by_body = flow_stresses(case.bodies)
+    rates = ["0", *(f"{rate:g}" for rate in RATES)]
+    return {body: dict(zip(rates, stresses, strict=True)) for body, stresses in by_body.items()}
