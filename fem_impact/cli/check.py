@@ -101,13 +101,6 @@ def _tests_lines(scene: Scene) -> list[str]:
     return lines + [line for one in doubtful_tests(scene) for line in wrapped(f"warning: {one}")]
 
 
-def _fidelity_lines(statement: dict[str, Any]) -> list[str]:
-    refused = {name: reason for name, reason in statement["fidelities"].items() if reason}
-    answer = [f"--fidelity {name}" for name in statement["fidelities"] if name not in refused]
-    told = [f"not by {name}: {reason}" for name, reason in refused.items()]
-    return ["", "Answered by", *_wrapped([", ".join(answer), *told])]
-
-
 def _body_lines(body: dict[str, float], bends_as: str) -> Iterable[str]:
     """Return the projectile's numbers in words; ``bends_as`` is what the period of bending is that of."""
     mm = {key: 1e3 * value for key, value in body.items() if key.endswith("_m")}
@@ -173,15 +166,11 @@ def _end_lines(case: Case, statement: dict[str, Any]) -> list[str]:
     limited = limitation_lines(case.limitations, "  ")
     if not texts(case.limitations, "range", "model"):
         limited = [*_wrapped([INSIDE]), *limited]
-    return [
-        *_fidelity_lines(statement),
-        "",
-        "Limitations",
-        *limited,
-        "",
-        "The scene is valid; its digest:",
-        statement["digest"],
-    ]
+    refused = {name: reason for name, reason in statement["fidelities"].items() if reason}
+    limited += _wrapped(f"not by --fidelity {name}: {reason}" for name, reason in refused.items())
+    answer = ", ".join(name for name in statement["fidelities"] if name not in refused)
+    valid = f"The scene is valid for --fidelity {answer}; its digest:"
+    return ["", "Limitations", *limited, "", valid, statement["digest"]]
 
 
 def _short(case: Case, statement: dict[str, Any]) -> str:

@@ -114,10 +114,10 @@ def test_check_as_json_gives_a_scene_that_reads_back(cli):
 
 
 def test_check_tells_which_fidelities_answer(cli):
-    assert "--fidelity solid, --fidelity modal, --fidelity rigid" in " ".join(cli("check", "t5b")[1].split())
-    told = json.loads(cli("check", "t5b", "--set", "accuracy=5 %", "--json")[1])["fidelities"]
-    assert told["solid"] is None
-    assert "is asked of the modal model, which has no mesh to refine" in told["modal"]
+    assert "The scene is valid for --fidelity solid, modal, rigid; its digest:" in cli("check", "t5b")[1]
+    said = " ".join(cli("check", "t5b", "--set", "accuracy=5 %")[1].split())
+    assert 'not by --fidelity modal: accuracy = "5 %": is asked of the modal model' in said
+    assert "valid for --fidelity solid; its digest:" in said
 
 
 def test_check_refuses_a_bad_file_by_name(cli, tmp_path):
