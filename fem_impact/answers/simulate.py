@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from fem_impact.answers.refine.chain import BUDGET, LevelChain
+from fem_impact.answers.refine.forecast import OverBudgetError
 from fem_impact.answers.refine.level_meshes import LevelMeshes
 from fem_impact.case.case import Case
-from fem_impact.errors import SceneError
+from fem_impact.errors import FemImpactError, SceneError
 from fem_impact.options import RunOptions
+from fem_impact.outcome.keys import Unknown, or_none
 from fem_impact.outcome.record import Outcome
 from fem_impact.run import simulate as run
 from fem_impact.scene.types import Scene
+from fem_impact.tables.text import plain, with_band
+
+TOLD = {"e": "e_edge", "mu": "mu", "E_vib/E_0": "E_vib_over_E_0"}
+"""Numbers, by the key of an outcome, that are told without a mesh where a budget holds none."""
 
 
 def compiled(scene: Scene, fidelity: str) -> Case:
@@ -65,11 +73,33 @@ def simulate(
     Raises
     ------
     UsageError, SceneError, OutputPathError, ResultError, RunError
-        As `fem_impact.run.simulate.simulate`; or a wanted error is asked of a model without a mesh.
+        As `fem_impact.run.simulate.simulate`; or a wanted error is asked of a model without a mesh; or the
+        budget does not hold the first level, with what the models without a mesh say.
     """
     fidelity = fidelity or scene.strikes.first
     if on_levels(scene, fidelity):
         budget = BUDGET if budget_s is None else budget_s
-        return LevelChain(case or Case(scene), options, budget, workers).run()
+        try:
+            return LevelChain(case or Case(scene), options, budget, workers).run()
+        except OverBudgetError as late:
+            raise OverBudgetError(f"{late} {_without_mesh(scene)}") from None
     _require_mesh(scene, fidelity)
     return run.simulate(scene, fidelity, options, case)
+
+
+def _without_mesh(scene: Scene) -> str:
+    """Return what the reduced model says of a scene, of one that has none the rigid theory."""
+    scene = replace(scene, accuracy=replace(scene.accuracy, target=None)).first_impact
+    for fidelity, model in (("modal", "the reduced model"), ("rigid", "rigid theory")):
+        try:
+            outcome = run.simulate(scene, fidelity)
+        except FemImpactError:
+            continue
+        told = []
+        for name, key in TOLD.items():
+            value, half = outcome.estimate(key)
+            if not isinstance(value, Unknown):
+                told.append(f"{name} = {plain(value) if half is None else with_band(value, half)}")
+        error = "" if or_none(outcome.half_widths) else ", of unknown error"
+        return f"Without a mesh, {model} says{error}: {', '.join(told)} (--fidelity {fidelity})."
+    return "No model without a mesh holds the scene."

@@ -8,17 +8,16 @@ from fem_impact.arrays import Array
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.effects.barrier import compliance_share
 from fem_impact.errors import SceneError
-from fem_impact.physics.plate import contact_time, least_span, zener_number
-from fem_impact.scene.fields import ACCURACY
+from fem_impact.physics.plate import contact_time, least_span, plate_waves, zener_number
 
 # of e, by a half-space under the contact: above it that is told, and finite elements mesh the plate through
 THIN = 0.02
 ROWS = 2  # of cells through a plate at least: their lumped masses turn with 1.5 times the plate's inertia
 FLATTEST = 0.5  # least height of the rows of a plate over their width
 MOST_ZENER = 2.0  # up to it `contact_time` is no shorter than Zener's contact, see there
-MOST_CELLS = 3e5  # of a plate before refinement: about 1 GB
-LEAST_ACROSS = next(key.low for key in ACCURACY if key.key == "across")
-NONE = "No accuracy.across does: give a thicker plate or a blunter projectile."
+# of a plate before refinement: above the first its cells are twice as large and split once more at the
+# contact, as long as `ROWS` of them are no flatter than `FLATTEST`; the second takes about 1 GB
+MANY_CELLS, MOST_CELLS = 5e4, 3e5
 
 
 def half_space_error(bodies: Bodies) -> float:
@@ -52,8 +51,7 @@ def is_thin(bodies: Bodies) -> bool:
 
 def is_wider(bodies: Bodies) -> bool:
     """Return whether the contact is wider than a plate that bends is thick, so that it is no local one."""
-    barrier, size = bodies.barrier, bodies.estimate
-    return barrier.bends and 2 * max(size.a_t, size.a_b) > (barrier.thickness or math.inf)
+    return bodies.barrier.bends and contact_width(bodies) > (bodies.barrier.thickness or math.inf)
 
 
 def thin_plate(bodies: Bodies, meshed_through: bool) -> str:
@@ -93,17 +91,33 @@ def rows_through(bodies: Bodies, base: float) -> int:
     return max(ROWS, round(bodies.barrier.thickness / base))
 
 
+def doublings(bodies: Bodies, edge: float) -> int:
+    """Return how often cells of an ``edge``, m, are made twice as large away from the contact with a plate.
+
+    It is 0 but for a plate that is meshed through and reaches so far that it would have too many cells.
+    """
+    thickness, count = bodies.barrier.thickness, 0
+    if thickness is None or not is_thin(bodies):
+        return 0
+    reach = plate_waves(bodies.contact)[1]
+    while True:
+        base = edge * 2**count
+        cells = 2 * (reach / base) ** 2 * rows_through(bodies, base)
+        if cells <= MANY_CELLS or thickness < FLATTEST * ROWS * 2 * base:
+            return count
+        count += 1
+
+
 def require_plate(bodies: Bodies, meshed_through: bool) -> None:
     """Refuse a plate too thin for a local contact, or too narrow for its bending waves (SceneError)."""
     barrier, estimate = bodies.barrier, bodies.estimate
     if not barrier.bends or barrier.thickness is None:
         return
     if is_wider(bodies) and not meshed_through:
-        width = 2 * max(estimate.a_t, estimate.a_b)
         by_mesh = ", or use --fidelity solid, which meshes the plate through its thickness"
         raise SceneError(
-            f"is less than the width of the contact, {width * 1e3:.2g} mm: it is no local one, and the plate "
-            "would bulge under it.",
+            f"is less than the width of the contact, {contact_width(bodies) * 1e3:.2g} mm: it is no local "
+            "one, and the plate would bulge under it.",
             key="barrier.thickness",
             value=f"{barrier.thickness * 1e3:.3g} mm",
             remedy=f"Give a thicker plate or a lower speed{by_mesh * is_thin(bodies)}.",
@@ -126,23 +140,22 @@ def require_plate_mesh(bodies: Bodies, base: float, block: tuple[Array, Array]) 
     """
     h, across = bodies.barrier.thickness, bodies.scene.across
     assert h is not None, "a plate that bends has a thickness"
-    flat = h / (ROWS * base)
-    least = 2 * math.ceil(0.5 * across * FLATTEST / flat)
+    flat, value = h / (ROWS * base), f"{h * 1e3:.3g} mm"
     if flat < FLATTEST:
         raise SceneError(
             f"leaves {ROWS} rows of cells, {base * 1e3:.3g} mm wide, only {flat:.2g} as high as wide.",
             key="barrier.thickness",
-            value=f"{h * 1e3:.3g} mm",
-            remedy=f"Give accuracy.across = {least} or more, or a thicker plate.",
+            value=value,
+            remedy=f"Give accuracy.across = {2 * math.ceil(0.5 * across * FLATTEST / flat)} or more, or a "
+            "thicker plate.",
         )
     low, high = block
     cells = math.prod((high - low) / base)
     if cells > MOST_CELLS:
-        most = 2 * math.floor(0.5 * across * (MOST_CELLS / cells) ** (1 / 3))
         raise SceneError(
             f"needs a mesh of {cells:.2g} cells: to {-low[0] * 1e3:.3g} mm beside the contact, from where "
-            f"bending waves are back after it, with cells {base * 1e3:.3g} mm wide.",
+            f"bending waves are back after it, with cells {base * 1e3:.3g} mm wide, as the plate is thick.",
             key="barrier.thickness",
-            value=f"{h * 1e3:.3g} mm",
-            remedy=f"Give accuracy.across = {most} or less." if most >= max(least, LEAST_ACROSS) else NONE,
+            value=value,
+            remedy="Give a thicker plate, or a projectile that touches it for a shorter time.",
         )

@@ -9,10 +9,9 @@ import numpy as np
 
 from fem_impact.arrays import Array, Bools
 from fem_impact.case.bodies import Bodies
-from fem_impact.case.cells import body_cell, levels_of, rod_cell
 from fem_impact.case.plates import is_thin
 from fem_impact.case.record import BodyRecord, ContactRecord
-from fem_impact.case.zones import Corners, Zones, skin_rows
+from fem_impact.case.zones import Corners, Zones, base_cells, skin_rows
 from fem_impact.physics.plate import plate_waves
 from meshes import Cloud, HexMesh, thin_skin_rise
 
@@ -132,12 +131,12 @@ AnyZones = Zones | RecordedZones
 
 def recorded_zones(bodies: Bodies, record: ContactRecord) -> RecordedZones:
     """Return the fine zones of two bodies around the places of a record."""
-    (levels, below), base = levels_of(bodies), body_cell(bodies)
+    base, rod_base, levels, below = base_cells(bodies)
     conforming = bodies.contact.barrier_conforms
     rows = skin_rows(bodies, base / 2**below) if conforming and bodies.contact.f > 0 else 0
     edges = plate_waves(bodies.contact)[1] if is_thin(bodies) else 0.0
     rod_rows = ROD_ROWS if levels and bodies.contact.rod_yields else 0
-    return RecordedZones(base, rod_cell(bodies), levels, below, record, conforming, rows, rod_rows, edges)
+    return RecordedZones(base, rod_base, levels, below, record, conforming, rows, rod_rows, edges)
 
 
 def patch_radius(record: BodyRecord) -> float:

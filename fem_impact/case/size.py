@@ -18,6 +18,7 @@ import numpy as np
 
 from fem_impact.arrays import Array
 from fem_impact.case.bodies import Bodies
+from fem_impact.case.cells import body_cell
 from fem_impact.case.effects.slots import ModelSpec
 from fem_impact.case.layers import block_of, moved_rows
 from fem_impact.case.zones import BUFFER, Ways, Zones, zones_of
@@ -266,14 +267,14 @@ def _coarse_elements(bodies: Bodies, end: float) -> float:
 
 def _body_start(bodies: Bodies, zones: Zones, boxes: list[tuple[Array, Array]]) -> float:
     """Return about the height, m, at which the slices begin: a cell above all that is split."""
-    alpha, foot = bodies.mesh_inclination, float(bodies.lowest_point[2])
+    alpha, foot, edge = bodies.mesh_inclination, float(bodies.lowest_point[2]), body_cell(bodies)
     tops = (
         high[2] * cos(alpha)
         + max(-low[0], high[0]) * abs(sin(alpha))
-        + float(reach(1.4 * zones.base, 1, level, BUFFER))
+        + float(reach(1.4 * edge, 1, level, BUFFER))
         for level, (low, high) in enumerate(boxes, 1)
     )
-    return max(foot + max(tops, default=0.0) + 1.5 * zones.base, bodies.rod.diameter / 3)
+    return max(foot + max(tops, default=0.0) + 1.5 * edge, bodies.rod.diameter / 3)
 
 
 def _grid(low: Array, high: Array) -> Array:

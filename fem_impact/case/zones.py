@@ -10,7 +10,7 @@ import numpy as np
 from fem_impact.arrays import Array, Bools
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.cells import body_cell, contact_radius, levels_of, rod_cell
-from fem_impact.case.plates import is_thin
+from fem_impact.case.plates import doublings, is_thin
 from fem_impact.errors import SceneError
 from fem_impact.physics.contact import FLAT, ContactEstimate, ContactPair
 from fem_impact.physics.hardening import Skin
@@ -176,8 +176,7 @@ def _round(mesh: HexMesh, points: Array, along: Ways, radii: tuple[float, float,
 def zones_of(bodies: Bodies) -> Zones:
     """Return the fine zones of two bodies that touch, wide enough for each material of a layered barrier."""
     size, pair = widest_contact(bodies.contact, bodies.barrier), bodies.contact
-    base, rod_base = body_cell(bodies), rod_cell(bodies)
-    levels, below = levels_of(bodies)
+    base, rod_base, levels, below = base_cells(bodies)
     reach, wide = face_reach(bodies)
     conforming = pair.barrier_conforms
     rows = skin_rows(bodies, base / 2**below) if conforming and pair.f > 0 else 0
@@ -199,6 +198,16 @@ def zones_of(bodies: Bodies) -> Zones:
         skin_rows=rows,
         edges=plate_waves(pair)[1] if is_thin(bodies) else 0.0,
     )
+
+
+def base_cells(bodies: Bodies) -> tuple[float, float, int, int]:
+    """Return the edges, m, of the cells of barrier and rod, and how often those of rod and barrier are split.
+
+    The cells of a plate that is meshed through may be larger than those at its contact, see `doublings`.
+    """
+    (levels, below), edge = levels_of(bodies), body_cell(bodies)
+    larger = doublings(bodies, edge)
+    return edge * 2**larger, rod_cell(bodies), levels, below + larger
 
 
 def widest_contact(pair: ContactPair, barrier: Barrier) -> ContactEstimate:

@@ -11,6 +11,7 @@ import numpy as np
 import meshes
 from fem_impact.arrays import Array, Bools
 from fem_impact.case.bodies import Bodies
+from fem_impact.case.cells import body_cell
 from fem_impact.case.layers import block_of, moved_rows
 from fem_impact.case.recorded import AnyZones, RecordedZones
 from fem_impact.case.size import no_rest
@@ -83,7 +84,7 @@ def build_geometry(
     rod = rod or _mesh(bodies, zones, vibrating)
     points = (rod.mesh.points - lowest) @ turn.T
     if isinstance(zones, Zones) and bodies.mesh_inclination:  # an upright body has no side that could strike
-        _require_tip_first(points, zones.base, bodies.rod.own_mesh is not None)
+        _require_tip_first(points, body_cell(bodies), bodies.rod.own_mesh is not None)
     points[:, 2] += gap if zones.conforming else gap - points[:, 2].min()
     touching, flows = zones.touching(rod.mesh, points), zones.rod_flow(rod.mesh, points)
     for cells in (touching, flows):

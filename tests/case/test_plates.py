@@ -5,9 +5,10 @@ import re
 import pytest
 
 from fem_impact.case.case import Case
+from fem_impact.case.cells import body_cell
 from fem_impact.case.layers import block_of
 from fem_impact.case.limits import not_reduced
-from fem_impact.case.plates import half_space_error
+from fem_impact.case.plates import contact_width, half_space_error
 from fem_impact.errors import SceneError
 from fem_impact.outcome.limitation import texts
 from fem_impact.physics.plate import least_span
@@ -54,9 +55,13 @@ def test_its_edges_are_so_far_that_the_fastest_waves_do_not_come_back():
 
 
 def test_a_contact_wider_than_the_plate_is_one_for_finite_elements():
-    scene = stated("3 mm")
-    assert Case.of(scene).slots.bending > 0
-    with pytest.raises(SceneError, match=r"less than the width of the contact.*or use --fidelity solid"):
+    """One width is told of it, whatever says so."""
+    scene = stated("2 mm", **{"accuracy.across": 10})
+    width = f"{contact_width(Case(scene).bodies) * 1e3:.2g} mm"
+    planned = Case.of(scene)
+    assert planned.slots.bending > 0
+    assert about(texts(planned.limitations, "model"), f"the contact is {width} wide")
+    with pytest.raises(SceneError, match=rf"less than the width of the contact, {width}.*or use --fidelity"):
         Case.of(scene, "modal")
     assert not_reduced(Case(scene).bodies) == "a plate thinner than its contact is wide"
     assert not_reduced(Case(stated("5 mm")).bodies) == ""
@@ -65,27 +70,25 @@ def test_a_contact_wider_than_the_plate_is_one_for_finite_elements():
 FINE = {"accuracy.across": 40, "accuracy.tip_size": "0.3 mm"}
 
 
-def remedied(scene, words):
-    """Return the plan with the number of cells across that the refusal names."""
-    with pytest.raises(SceneError, match=words) as refused:
+def test_rows_too_flat_are_refused_with_the_cells_that_take_it():
+    scene = stated("2 mm")
+    with pytest.raises(SceneError, match=r"barrier.thickness = .2 mm.: leaves 2 rows") as refused:
         Case.of(scene)
     across = int(re.search(r"accuracy.across = (\d+) or", str(refused.value))[1])
-    assert abs(across - scene.across) > 1
-    return Case.of(replace_all(scene, {"accuracy.across": across}))
+    assert Case.of(replace_all(scene, {"accuracy.across": across})).slots.bending > 0
 
 
-def test_rows_too_flat_are_refused_with_the_cells_that_take_it():
-    planned = remedied(stated("2 mm"), r"barrier.thickness = .2 mm.: leaves 2 rows")
-    assert planned.slots.bending > 0
+def test_a_plate_of_many_cells_has_larger_ones_away_from_the_contact():
+    """As fine as asked for at the contact, and no flatter than half as high as wide."""
+    coarse, fine = Case.of(stated("5 mm")), Case.of(stated("5 mm", **FINE))
+    assert coarse.zones.base == body_cell(coarse.bodies)
+    assert fine.zones.base == 4 * body_cell(fine.bodies) <= 5e-3
+    assert fine.zones.barrier_size == pytest.approx(fine.scene.accuracy.tip_size, rel=0.5)
+    assert fine.size.barrier < 1e5
 
 
-def test_too_many_cells_are_refused_with_the_finest_possibility():
-    planned = remedied(stated("5 mm", **FINE), r"needs a mesh of .* cells: to 1\d\d mm")
-    assert planned.size.barrier > 1e5
-
-
-def test_no_cells_across_are_named_where_none_does():
-    with pytest.raises(SceneError, match=r"No accuracy\.across does: give a thicker plate"):
+def test_a_plate_of_too_many_cells_is_refused():
+    with pytest.raises(SceneError, match=r"needs a mesh of .* cells: to \d+ mm.* Give a thicker plate"):
         Case.of(stated("0.3 mm", **{"accuracy.across": 64, "accuracy.tip_size": "0.1 mm"}))
 
 

@@ -21,7 +21,7 @@ from pathlib import Path
 
 from fem_impact.answers.refine.budget import LONGER, about_s, in_turns, longest_s
 from fem_impact.answers.refine.extrapolate import UNRESOLVED, level_limits, quantity_limits
-from fem_impact.answers.refine.forecast import MIDDLE, LevelProgress
+from fem_impact.answers.refine.forecast import MIDDLE, LevelProgress, now, require_pilot
 from fem_impact.answers.refine.level import STAMP, LevelRun, simulate_level
 from fem_impact.answers.refine.level_meshes import LevelMeshes, steps_between
 from fem_impact.answers.refine.quantities import TARGETED
@@ -53,6 +53,7 @@ MOST_REPEATS = 2  # of a level, each with twice the room
 MORE = 1
 BUDGET = 600.0  # s of wall time for all levels, unless stated
 LATE = 1.3  # of the budget, beyond which a level that has begun is given up
+LEAST_BUDGET = 5.0  # s: a smaller budget still gives a quick scene its first level
 MOST_FINER = 3  # splits beyond those that resolve the contact, where a band decides
 Decides = Callable[[Sequence[LevelRun]], bool]
 """Says whether levels from coarse to fine are enough for an answer."""
@@ -71,7 +72,6 @@ class LevelChain:
     decides : levels go on until it is content; without it, until the contact is resolved or, where the scene
         states a wanted error, until that is reached
     twin : a scene that runs on the meshes of this one; it states no place of the grid
-    least : levels that run whatever the budget
     done : levels so far
     failed : why the level after them has no outcome, empty where none failed
     """
@@ -82,7 +82,6 @@ class LevelChain:
     workers: int = 1
     decides: Decides | None = None
     twin: Scene | None = None
-    least: int = 1
     done: list[LevelRun] = field(default_factory=list)
     failed: str = ""
 
@@ -96,7 +95,8 @@ class LevelChain:
         Raises
         ------
         SceneError, RunError
-            As of `fem_impact.run.simulate.simulate`, of the first level.
+            As of `fem_impact.run.simulate.simulate`, of the first level; OverBudgetError where the budget
+            does not hold that.
         ResultError, OutputPathError
             As there, of any level.
         """
@@ -122,6 +122,8 @@ class LevelChain:
         SceneError, RunError, ResultError, OutputPathError
             As `run`.
         """
+        if not self.done:
+            require_pilot(self.meshes.pilot().size.time, self._limit_s)
         splits = self._next if self.done else self.meshes.first
         while splits is not None:
             try:
@@ -147,6 +149,11 @@ class LevelChain:
     def meshes(self) -> LevelMeshes:
         """The meshes of the levels."""
         return LevelMeshes(self.case)
+
+    @property
+    def _limit_s(self) -> float:
+        """Wall time, s, after which the next level is given up."""
+        return LATE * max(self.budget_s, LEAST_BUDGET) - self.spent_s
 
     @property
     def finest(self) -> int:
@@ -196,18 +203,19 @@ class LevelChain:
     def _next(self) -> int | None:
         """Splits of the next level; None after the last, or where the budget does not hold another."""
         then = self.following
-        if then is None or len(self.done) < self.least or self.holds(then):
-            return then
-        self._tell(
-            f"Level {len(self.done) + 1} would take about {about_s(self.forecast_s(then))}; "
-            f"{about_s(self.spent_s)} of the budget of {about_s(self.budget_s)} are used up: the run ends "
-            f"with level {len(self.done)}."
-        )
+        if then is None:
+            return None
+        for splits in (
+            then,
+            self.done[-1].splits + 1,
+        ):  # a smaller step where the budget does not hold the larger
+            if self.spent_s + self.forecast_s(splits) <= self.budget_s:
+                return splits
+        if self.options.progress is not None:
+            told = f"Level {len(self.done) + 1} would take about {about_s(self.forecast_s(splits))}"
+            used = f"{about_s(self.spent_s)} of the budget of {about_s(self.budget_s)} are used up"
+            self.options.progress(Notice(f"{told}; {used}: the run ends with level {len(self.done)}."))
         return None
-
-    def holds(self, splits: int) -> bool:
-        """Say whether the budget holds a level of so many splits."""
-        return self.spent_s + self.forecast_s(splits) <= self.budget_s
 
     @property
     def counted(self) -> int:
@@ -269,12 +277,12 @@ class LevelChain:
         scene = replace(scene, accuracy=replace(scene.accuracy, unresolved="report"))
         if not last:
             scene = replace(scene, save=replace(scene.save, frames=0, strain_samples=0))
-        scenes = self._sharing(scene)
+        scenes, begun = self._sharing(scene), now()
         for repeats in range(MOST_REPEATS + 1):
             cases = [Case.of(one, "solid", before) for one in scenes]
             runs = in_turns(
                 [
-                    partial(simulate_level, case, self._options(splits, repeats, number))
+                    partial(simulate_level, case, self._options(splits, repeats, number, begun))
                     for number, case in enumerate(cases)
                 ],
                 self.workers,
@@ -297,31 +305,23 @@ class LevelChain:
         name = f"level-{number}" + f"-wider-{repeats}" * bool(repeats) + f"-run-{run + 1}" * bool(run)
         return self.options.out / name
 
-    def _options(self, splits: int, repeats: int, run: int) -> RunOptions:
-        """Return the options of a run of the next level.
+    def _options(self, splits: int, repeats: int, run: int, begun: float) -> RunOptions:
+        """Return the options of a run of the next level, which ``begun`` at that `now`.
 
-        The progress of the first names the level, knows about later ones, and gives the level up where it
-        takes so long that the budget cannot be kept.
+        Its progress gives the level up where it takes so long that the budget cannot be kept; that of the
+        first run names the level and knows about later ones. Another process may do the others.
         """
-        number = len(self.done) + 1
+        number, show = len(self.done) + 1, None if run else self.options.progress
         out = self.options.out and self._place(number, repeats, run)
-        if run:  # it may be another process that does it
-            return replace(self.options, out=out, progress=None)
         later = steps_between(splits, max(self.finest, splits))
         name = f"{self.scene.id}, level {number}" + f" of {number + len(later)}" * bool(self.done)
-        progress = LevelProgress(self.options.progress, name)
-        if len(self.done) >= self.least:
-            progress.limit_s = LATE * self.budget_s - self.spent_s
+        progress = LevelProgress(show, name, limit_s=self._limit_s, begun=begun)
         if self.done:
             before = self.done[-1].outcome.cost
             progress.duration_s = known(before.steps) * known(before.min_step)
             progress.halvings = [fine - coarse for coarse, fine in pairwise([splits, *later])]
             progress.turns = self._turns(self._runs)
         return replace(self.options, out=out, progress=progress)
-
-    def _tell(self, sentence: str) -> None:
-        if self.options.progress is not None:
-            self.options.progress(Notice(sentence))
 
     def _stated(self) -> Outcome:
         """Return the outcome of the level that counts, of the scene as stated, with limits and bands."""

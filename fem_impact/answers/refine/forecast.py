@@ -11,8 +11,9 @@ from dataclasses import dataclass, field, replace
 from math import inf
 from time import perf_counter
 
-from fem_impact.answers.refine.budget import about_s
+from fem_impact.answers.refine.budget import LONGER, about_s
 from fem_impact.errors import RunError
+from fem_impact.fem.kernels import COMPILING
 from fem_impact.progress import Notice, Progress, left_text
 
 # Least, middle and most of 84 levels of 35 runs of drawn scenes: what a level took over its forecast when its
@@ -22,7 +23,19 @@ from fem_impact.progress import Notice, Progress, left_text
 OWN = (0.6, 1.0, 1.6)
 GROWTH = (1.2, 2.4, 4.5)
 MIDDLE = GROWTH[1]
+# least of what a pilot takes over its forecast, by its mesh or before there is one: the contact that it finds
+# may be much shorter than the estimate
+PILOT = 0.33
 WORTH = 10.0  # s: a time left that is told in a sentence of its own
+
+
+def now() -> float:
+    """Return the time, s, on a clock that stands still while kernels are compiled, once on a machine."""
+    return perf_counter() - COMPILING.wall
+
+
+class OverBudgetError(RunError):
+    """A level that takes longer than its budget allows."""
 
 
 def later_s(own_s: float, halvings: Sequence[int]) -> list[float]:
@@ -44,9 +57,22 @@ def later_s(own_s: float, halvings: Sequence[int]) -> list[float]:
     return spans
 
 
+def require_pilot(time: float, limit_s: float) -> None:
+    """Refuse a pilot that takes about ``time``, s, and surely more than ``limit_s`` (OverBudgetError)."""
+    if PILOT * time > limit_s:
+        told = f"The coarsest level would take about {about_s(time)}: it is not begun."
+        raise OverBudgetError(f"{told} {_for_two(time)}")
+
+
+def _for_two(pilot_s: float) -> str:
+    """Say which budget holds two levels, by the time of the first, s."""
+    enough = about_s(pilot_s * (1 + LONGER * MIDDLE))
+    return f'For it and a finer one, which tell the error of each number, give --budget "{enough}".'
+
+
 @dataclass
 class LevelProgress:
-    """Shows the progress of a level's first run with the time left of all levels.
+    """Shows the progress of a level's run with the time left of all levels; ends it where it takes too long.
 
     Attributes
     ----------
@@ -54,9 +80,10 @@ class LevelProgress:
     name : of the level
     halvings : of each later level, as far as known; None on the pilot, which tells no time
     turns : runs of the level one after the other
-    duration_s : of the impact on the level before, s, from which the steps are forecast
+    duration_s : of the impact on the level before, s, from which the steps are forecast; 0 on the pilot
     limit_s : wall time, s, after which the level is given up
     own_s : forecast of one run on the mesh that stands, s
+    begun : when the level began, by `now`
     """
 
     show: Callable[[Progress | Notice], None] | None
@@ -66,26 +93,42 @@ class LevelProgress:
     duration_s: float = 0.0
     limit_s: float = inf
     own_s: float = 0.0
-    begun: float = field(default_factory=lambda: perf_counter())
+    begun: float = field(default_factory=lambda: now())
 
     def __call__(self, progress: Progress | Notice) -> None:
-        """Take one report; raise RunError where the level takes too long."""
-        if perf_counter() - self.begun > self.limit_s:
-            raise RunError(f"It was given up after {about_s(self.limit_s)}, as the budget was used up.")
-        if self.show is None:
-            return
+        """Take one report; raise OverBudgetError where the level takes too long, or surely will."""
         if isinstance(progress, Notice):
-            return self.show(progress)
-        if self.halvings is None or progress.eta_s is None:
-            return self.show(replace(progress, note=self.name, eta_s=None))
-        if progress.step == 0:  # the mesh stands, and no step has shown the pace
-            self.own_s = progress.eta_s * self.duration_s / progress.end_time_s
-            own = [share * self.turns * self.own_s for share in OWN]
+            return self._tell(progress)
+        left_s = progress.eta_s
+        if progress.step == 0 and left_s is not None:  # the mesh stands, and no step has shown the pace
+            self.own_s = left_s * (self.duration_s / progress.end_time_s if self.duration_s else 1.0)
+            self._require_time(self.own_s, (OWN[0] if self.duration_s else PILOT) * self.own_s)
         else:
-            own = [progress.eta_s + (self.turns - 1) * self.own_s] * len(OWN)
+            self._require_time(left_s)
+        if self.halvings is None or left_s is None:
+            return self._tell(replace(progress, note=self.name, eta_s=None))
+        own = [left_s + (self.turns - 1) * self.own_s] * len(OWN)
+        if progress.step == 0:
+            own = [share * self.turns * self.own_s for share in OWN]
         later = later_s(self.turns * self.own_s, self.halvings)
         least, about, most = (of + after for of, after in zip(own, later, strict=True))
         told = replace(progress, note=self.name, eta_s=about, eta_range_s=(least, most))
-        self.show(told)
+        self._tell(told)
         if progress.step == 0 and about > WORTH:
-            self.show(Notice(f"{self.name}: {left_text(told)}."))
+            self._tell(Notice(f"{self.name}: {left_text(told)}."))
+
+    def _tell(self, progress: Progress | Notice) -> None:
+        if self.show is not None:
+            self.show(progress)
+
+    def _require_time(self, left_s: float | None, least_s: float = 0.0) -> None:
+        """Raise OverBudgetError where the limit does not hold what is spent and ``least_s``, s, more."""
+        spent_s = now() - self.begun
+        if spent_s + least_s <= self.limit_s:
+            return
+        told = f"It was given up after {about_s(spent_s)}, as the budget does not hold it"
+        if left_s is None:
+            raise OverBudgetError(f"{told}.")
+        whole_s = spent_s + left_s
+        pilot = "" if self.duration_s else f" The coarsest level gave no number. {_for_two(whole_s)}"
+        raise OverBudgetError(f"{told}: it takes about {about_s(whole_s)}.{pilot}")

@@ -45,7 +45,7 @@ FIDELITIES = ("auto", "modal", "solid")
 ANGLES = tuple(np.radians(np.arange(5.0, 81.0, 5.0)))
 """Inclinations among which the worst one is looked for, rad."""
 LEAST_LEVELS = 2
-"""Levels that ``solid`` runs whatever the budget: one alone cannot estimate its own error."""
+"""Levels that an answer needs: one alone cannot estimate its own error."""
 
 LACKING = "There is no reduced model of {}: finite elements alone answer."
 Tell = Callable[[str], object]
@@ -158,14 +158,13 @@ def assess(
     unlike = quick is not None and not known_error(scene).alike
     open_still = quick is None or unlike or quick.answer(tolerance) == "undecided"
     if fidelity == "solid" or (fidelity == "auto" and open_still):
-        least = LEAST_LEVELS if fidelity == "solid" else 1
-        allowed = of, tolerance
-        solid, told, more = _solid(scene, least, allowed, budget_s, workers, quick is not None, tell, steps)
+        allowed, falls_back = (of, tolerance), fidelity == "auto" and quick is not None
+        solid, told, more = _solid(scene, allowed, budget_s, workers, falls_back, tell, steps)
         here, used = (solid, "solid") if solid else (quick, "modal")
         notes += told
         more = f"--fidelity solid {more}" if more and fidelity == "solid" else more
     if here is None:
-        raise RunError(" ".join(notes))
+        raise RunError(" ".join([*notes, f"Without them, {steps[0]}."]))
     off = 0.0 if quick is None else abs(quick.value - here.value)
     others, not_known = _over_angles(scene, of, off) if reduced else (None, ((), ""))
     return Verdict(
@@ -216,19 +215,18 @@ def _check(fidelity: str, tolerance: float, budget_s: float, of: str) -> None:
 
 def _solid(
     scene: Scene,
-    least: int,
     allowed: tuple[str, float],
     budget_s: float,
     workers: int,
-    has_quick: bool,
+    falls_back: bool,
     tell: Tell,
     steps: list[str],
 ) -> tuple[VibrationEffect | None, list[str], str]:
     """Return what finite elements say, None where the budget allows too few levels or no run gives an e.
 
-    Notes on it follow, and the options with which another level would run. ``least`` levels run whatever the
-    budget. ``has_quick``: the reduced model has an answer, which counts where finite elements have none. A
-    sentence on each level is added to ``steps``; ``allowed`` is the change of what that may be neglected.
+    Notes on it follow, and the options with which another level would run. ``falls_back``: the reduced model
+    has an answer, which counts where finite elements have none. A sentence on each level is added to
+    ``steps``; ``allowed`` is the change of what that may be neglected.
     """
     (of, tolerance), begun = allowed, set[str]()
 
@@ -242,11 +240,11 @@ def _solid(
             tell(f"finite elements, {progress.note} ...")
 
     free, stiff = twins(untargeted(scene))
-    levels = LevelChain(Case(free), RunOptions(progress=announce), budget_s, workers, decides, stiff, least)
+    levels = LevelChain(Case(free), RunOptions(progress=announce), budget_s, workers, decides, stiff)
     try:
         levels.refine()
     except (SceneError, RunError) as refused:
-        if least == LEAST_LEVELS or not has_quick:
+        if not falls_back:
             raise
         return None, [f"Finite elements have no answer here: {refused}"], ""
     for number, level in enumerate(levels.done, 1):

@@ -24,8 +24,8 @@ FREE = replace(QUICK, accuracy=replace(QUICK.accuracy, tip_size=None, barrier_si
 @pytest.fixture(scope="module")
 def level():
     """Return the first level of a scene, which does not resolve its contact."""
-    levels = LevelChain(Case(QUICK), budget_s=1e-3)
-    levels.run()
+    levels = LevelChain(Case(QUICK))
+    levels._run_level(levels.meshes.first)
     return levels.done[0]
 
 
@@ -44,6 +44,18 @@ def test_one_more_level_runs_where_the_last_resolved_nothing(level):
     assert LevelChain(Case(FREE), done=[*levels.done[:2], resolved])._next is None
     levels.done.append(replace(level, splits=finest + 1))
     assert levels._next is None
+
+
+def test_a_smaller_step_follows_where_the_budget_does_not_hold_the_larger(level):
+    """More levels asked for give no fewer and no coarser ones."""
+    steps = {}
+    for levels in (3, 4):
+        scene = replace(QUICK, accuracy=replace(QUICK.accuracy, levels=levels))
+        chain = LevelChain(Case(scene), done=[replace(level, wall_s=10.0)], budget_s=40.0)
+        steps[levels] = chain._next
+        chain.budget_s = 80.0
+        assert chain._next == level.splits + (1 if levels == 3 else 2)
+    assert steps == {3: level.splits + 1, 4: level.splits + 1}
 
 
 def test_smaller_cells_do_not_follow_crushed_ones(level):

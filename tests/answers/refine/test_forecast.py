@@ -3,8 +3,10 @@
 import pytest
 
 from fem_impact.answers.refine import forecast
+from fem_impact.answers.refine import level as level_module
 from fem_impact.answers.refine.chain import LevelChain
-from fem_impact.answers.refine.forecast import OWN, LevelProgress, later_s
+from fem_impact.answers.refine.forecast import OWN, LevelProgress, OverBudgetError, later_s
+from fem_impact.answers.simulate import simulate
 from fem_impact.case.case import Case
 from fem_impact.errors import RunError
 from fem_impact.options import RunOptions
@@ -64,12 +66,34 @@ def test_a_pilot_tells_no_time_and_notices_pass():
 
 def test_a_level_is_given_up_at_its_limit(monkeypatch):
     clock = [0.0]
-    monkeypatch.setattr(forecast, "perf_counter", lambda: clock[0])
+    monkeypatch.setattr(forecast, "now", lambda: clock[0])
     level = LevelProgress(None, "level 2", [], limit_s=10.0)
     level(at(0, 3.0))
     clock[0] = 10.5
     with pytest.raises(RunError, match="given up after 10 s"):
         level(at(200, 3.0))
+
+
+def test_a_level_whose_mesh_shows_that_it_takes_too_long_is_given_up_at_once():
+    """A pilot only where even a third of its forecast is too much; it tells what budget holds two levels."""
+    level = LevelProgress(None, "level 2", [], duration_s=1e-4, limit_s=10.0)
+    with pytest.raises(OverBudgetError, match=r"it takes about 18 s\.$"):
+        level(at(0, 18.0))
+    pilot = LevelProgress(None, "pilot", limit_s=10.0)
+    pilot(at(0, 18.0))
+    with pytest.raises(OverBudgetError, match=r'gave no number\. .* give --budget "190 s"'):
+        pilot(at(0, 40.0))
+
+
+def test_a_pilot_that_no_budget_holds_is_not_begun(monkeypatch):
+    """The models without a mesh answer in its place, with their error."""
+    begun = []
+    monkeypatch.setattr(level_module, "simulate_recorded", lambda *_: begun.append(1))
+    slow = replace_all(load("t5b"), {"projectile.length": "3 m", "impact.height": "0.2 m"})
+    words = r"would take about \d+ s: it is not begun\. .* reduced model says: e = .* \+- .*--fidelity modal"
+    with pytest.raises(OverBudgetError, match=words):
+        simulate(slow, budget_s=1.0)
+    assert not begun
 
 
 def test_a_run_tells_its_range_when_the_second_mesh_stands():

@@ -18,6 +18,7 @@ from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import Unknown, known
 from fem_impact.outcome.limitation import texts
 from fem_impact.outcome.record import Outcome
+from fem_impact.progress import Notice, Progress
 from fem_impact.run.resolution import without_end
 from fem_impact.scene.shipped import load, replace, replace_all
 
@@ -38,7 +39,8 @@ def ran(monkeypatch):
         return outcome, pressed(case.record) if len(seen) > 1 else case.record
 
     monkeypatch.setattr(level_module, "simulate_recorded", fake)
-    monkeypatch.setattr(forecast, "perf_counter", lambda: clock[0])
+    for module in (chain, forecast):
+        monkeypatch.setattr(module, "now", lambda: clock[0])
     return seen
 
 
@@ -103,11 +105,13 @@ def test_a_level_that_cannot_keep_the_budget_is_given_up(monkeypatch):
     def slow(scene, fidelity, options, case):
         outcome = run(scene)
         clock[0] += outcome.cost.whole_wall * (50 if clock[0] else 1)
-        options.progress(None)
+        options.progress(Notice("a step"))
+        options.progress(Progress(0.0, 1e-4, 200, 0.0, ""))
         return outcome, pressed(case.record)
 
     monkeypatch.setattr(level_module, "simulate_recorded", slow)
-    monkeypatch.setattr(forecast, "perf_counter", lambda: clock[0])
+    for module in (chain, forecast):
+        monkeypatch.setattr(module, "now", lambda: clock[0])
     levels = LevelChain(Case(replace(ASKED, "accuracy", FINEST)), budget_s=100.0)
     outcome = levels.run()
     assert len(levels.done) == 1
