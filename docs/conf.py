@@ -7,7 +7,7 @@ HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE / "extensions"))
 
 project = "fem-impact"
-author = "the fem-impact authors"
+author = "the fem-impact developers"
 extensions = [
     "myst_parser",
     "sphinx.ext.autodoc",

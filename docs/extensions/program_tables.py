@@ -79,6 +79,7 @@ def scene_choices() -> str:
         "accuracy.yielding_element": fields.YieldingElement,
         "accuracy.fine_zone": fields.FineZone,
         "accuracy.unresolved": fields.Unresolved,
+        "save.fields": fields.Fields,
     }
     rows = [(f"`{key}`", ", ".join(f"`{word}`" for word in get_args(kind))) for key, kind in choices.items()]
     rows += [("`family of a material`", ", ".join(f"`{word}`" for word in FAMILIES))]

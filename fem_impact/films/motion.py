@@ -242,7 +242,7 @@ def prepare(movement: Movement, field: str, times: Sequence[float] | np.ndarray)
 def _colours(movement: Movement, field: str, time: float) -> np.ndarray:
     style = FIELDS[field]
     if field == "velocity":
-        speed: np.ndarray = style.scale * np.linalg.norm(movement.point_data("velocity", time), axis=1)
+        speed: np.ndarray = style.scale * np.linalg.norm(movement.velocities(time), axis=1)
         return speed
     if field == "strain":
         return style.scale * _strain(movement, time)

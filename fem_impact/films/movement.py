@@ -62,8 +62,20 @@ class Movement:
         """Return the velocity ``(3,)``, m/s, of the centre of points with ``weights``; b is 0 by symmetry."""
         if self.ringing is not None and time >= self.ringing.start:
             return self.ringing.velocity
-        mean: np.ndarray = weights @ self.point_data("velocity", time) / weights.sum()
+        mean: np.ndarray = weights @ self.velocities(time) / weights.sum()
         return mean * [1.0, 0.0, 1.0]
+
+    def velocities(self, time: float) -> np.ndarray:
+        """Return the velocities ``(n, 3)``, m/s, of all points: those of a parabola through three frames."""
+        times, read = self.fields.times, self.fields.point_data
+        first = int(np.clip(np.searchsorted(times, time) - 1, 0, max(len(times) - 3, 0)))
+        near = times[first : first + 3]
+        if len(near) == 1:
+            return np.zeros_like(self.fields.points)
+        places = np.stack([read("displacement", first + at).astype(float) for at in range(len(near))])
+        rates = np.gradient(places, near, axis=0, edge_order=2 if len(near) == 3 else 1)
+        share = min((time - near[0]) / (near[-1] - near[0]), 1.0)
+        return np.asarray(rates[0] + share * (rates[-1] - rates[0]))
 
     def point_data(self, name: str, time: float) -> np.ndarray:
         """Return stored point data at a time, the last ones after the last frame."""

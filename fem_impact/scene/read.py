@@ -151,7 +151,7 @@ def read_scene(data: Table) -> Scene:
         "surface": lambda: within(data, "surface", read_surface) if "surface" in data else None,
         "impact": lambda: within(data, "impact", _impact),
         "accuracy": lambda: within(data, "accuracy", _accuracy, {}),
-        "save": lambda: within(data, "save", lambda t: Save(**numbers_of(t, fields.SAVE)), {}),
+        "save": lambda: within(data, "save", _save, {}),
         "heating": lambda: within(data, "heating", lambda t: Heating(**numbers_of(t, fields.HEATING)), {}),
         "strikes": lambda: within(data, "strikes", _strikes, {}),
     }
@@ -358,6 +358,11 @@ def _impact(table: Table) -> Impact:
     made = Impact.dropped if way == WAYS[0] else Impact.thrown
     stated = (fields.ANGLE, fields.OMEGA, fields.SLOPE, *(p for p in known if p.key in way))
     return made(**numbers_of(table, stated, words), **words)
+
+
+def _save(table: Table) -> Save:
+    words = {key: table[key] for key in ("fields",) if key in table}
+    return Save(**numbers_of(table, fields.SAVE, ("fields",)), **words)
 
 
 def _accuracy(table: Table | str) -> Accuracy:

@@ -13,6 +13,7 @@ from fem_impact.errors import SceneError
 from fem_impact.scene import fields
 from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.checks import check_choice, check_id, check_names, check_numbers, check_text
+from fem_impact.scene.fields import Fields
 from fem_impact.scene.impact import FIRST, WAYS, Impact
 from fem_impact.scene.material import Material
 from fem_impact.scene.projectile import ProjectileSpec
@@ -93,14 +94,20 @@ class Heating:
 
 @dataclass(frozen=True, slots=True)
 class Save:
-    """What is kept of a run: frames of the fields, rows of the histories, samples of the axial strain."""
+    """What is kept of a run: frames of the fields, rows of the histories, samples of the axial strain.
+
+    ``fields``: ``shown`` holds what films and pages show, displacement, von Mises stress and plastic strain;
+    ``all`` velocity and the stress tensor too.
+    """
 
     frames: int = 120
     history_every: int = 20
     strain_samples: int = 1
+    fields: Fields = "shown"
 
     def __post_init__(self) -> None:
         check_numbers(self, fields.SAVE)
+        check_choice(self.fields, get_args(fields.Fields), "fields")
 
 
 @dataclass(frozen=True, slots=True)

@@ -42,7 +42,7 @@ def to_dict(scene: Scene) -> dict[str, Any]:
         "surface": _surface(scene.surface),
         "impact": _impact(scene.impact),
         "accuracy": _accuracy(scene.accuracy),
-        "save": _written(scene.save, fields.SAVE),
+        "save": _written(scene.save, fields.SAVE) | ({"fields": "all"} if scene.save.fields == "all" else {}),
         "heating": _written(scene.heating, fields.HEATING),
     }
 

@@ -109,37 +109,38 @@ def centre_gradients(points: Array, cells: Ints) -> Array:
     return np.asarray(np.einsum("ai,mji->maj", centre, np.linalg.inv(J)))
 
 
-def cell_shear(bodies: Bodies, mesh: HexMesh, depth: Array) -> Array:
-    """Return the shear moduli, Pa, of the cells of the rod's mesh, then of the barrier's at ``depth``, m."""
+def cell_lame(bodies: Bodies, mesh: HexMesh, depth: Array) -> Array:
+    """Return Lame's (m, 2) lambda and G, Pa, of the rod's cells, then of the barrier's at ``depth``, m."""
     rod, strata = bodies.rod, bodies.barrier.strata
     z, metals = mesh.points[mesh.cells, 2].mean(axis=1), rod.materials
     if mesh.region is not None:
-        own = np.array([lame_constants(m.E, m.nu)[1] for m in metals])[rod.cell_materials()[mesh.region]]
+        own = np.array([lame_constants(m.E, m.nu) for m in metals])[rod.cell_materials()[mesh.region]]
     else:
-        own = _shear([part.to for part in rod.segments[:-1]], metals, z)
-    return np.concatenate(
-        [
-            own,
-            _shear([end for end, _ in strata[:-1]], [material for _, material in strata], depth),
-        ]
-    )
+        own = _lame([part.to for part in rod.segments[:-1]], metals, z)
+    below = _lame([end for end, _ in strata[:-1]], [material for _, material in strata], depth)
+    return np.concatenate([own, below])
 
 
-def _shear(ends: Sequence[float], materials: Sequence[Material], place: Array) -> Array:
-    """Return the shear moduli, Pa, at places, m, among materials that end at ``ends``, m, the last open."""
-    moduli = np.array([lame_constants(m.E, m.nu)[1] for m in materials])
-    return np.asarray(moduli[np.searchsorted(np.array(ends), place)])
+def _lame(ends: Sequence[float], materials: Sequence[Material], place: Array) -> Array:
+    """Return (k, 2) lambda and G, Pa, at places, m, among materials that end at ``ends``, the last open."""
+    constants = np.array([lame_constants(m.E, m.nu) for m in materials])
+    return np.asarray(constants[np.searchsorted(np.array(ends), place)])
 
 
-def mises(gradient: Array, u: Array, shear: Array) -> Array:
-    """Return von Mises stress (m,), Pa, of element displacements u (m, 8, 3) at the centres.
+def elastic_stress(gradient: Array, u: Array, lame: Array) -> Array:
+    """Return the stress (m, 3, 3), Pa, of element displacements u (m, 8, 3) at the centres, small strains.
 
-    ``shear`` (m,), Pa, is the shear modulus.
+    ``lame`` (m, 2), Pa, are lambda and G.
     """
     H = np.einsum("mai,maj->mij", u, gradient)
-    strain = 0.5 * (H + H.transpose(0, 2, 1))
-    deviator = strain - np.trace(strain, axis1=1, axis2=2)[:, None, None] / 3 * np.eye(3)
-    return np.asarray(2 * shear * np.sqrt(1.5 * (deviator**2).sum(axis=(1, 2))))
+    mean = np.trace(H, axis1=1, axis2=2)[:, None, None] * np.eye(3)
+    return np.asarray(lame[:, :1, None] * mean + lame[:, 1:, None] * (H + H.transpose(0, 2, 1)))
+
+
+def mises(stress: Array) -> Array:
+    """Return the von Mises stress (m,), Pa, of stresses (m, 3, 3), Pa."""
+    deviator = stress - np.trace(stress, axis1=1, axis2=2)[:, None, None] / 3 * np.eye(3)
+    return np.asarray(np.sqrt(1.5 * (deviator**2).sum(axis=(1, 2))))
 
 
 @dataclass(slots=True)
@@ -149,17 +150,19 @@ class FieldSampler:
     Attributes
     ----------
     points : (n, 3) reference positions, m; cells : (m, 8); body : (m,) 0 rod, 1 barrier
-    shear : (m,) shear modulus, Pa
+    lame : (m, 2) Lame's lambda and G, Pa
+    whole : whether to give velocities and the stress tensor too
     """
 
     model: Model
     view: RodState
-    shear: Array
+    lame: Array
     points: Array
     cells: Ints
     body: NDArray[np.int8]
     places: Ints
     gradient: Array
+    whole: bool
 
     @classmethod
     def of(cls, model: Model, view: RodState, bodies: Bodies) -> FieldSampler:
@@ -173,29 +176,31 @@ class FieldSampler:
             points = np.concatenate([points, g.barrier.points])
             places = np.concatenate([places, model.layout.barrier])
         body = (np.arange(len(cells)) >= len(g.rod.mesh.cells)).astype(np.int8)
-        shear = cell_shear(bodies, g.rod.mesh, depth)
-        return cls(model, view, shear, points, cells, body, places, centre_gradients(points, cells))
+        lame, gradient = cell_lame(bodies, g.rod.mesh, depth), centre_gradients(points, cells)
+        whole = bodies.scene.save.fields == "all"
+        return cls(model, view, lame, points, cells, body, places, gradient, whole)
 
     def sample(self, state: State) -> tuple[dict[str, Array], dict[str, Array]]:
         """Return point data and cell data of the present state."""
         u = self.model.nodes(state.x - self.model.start[0])[self.places]
         if self.model.in_plate_frame:
             u[len(self.model.geometry.rod_points) :, 2] += self.model.ground.risen(state.x)
-        v = self.model.nodes(state.v)[self.places]
-        return {"displacement": u, "velocity": v}, self._cells(state, self.points + u)
+        velocity = {"velocity": self.model.nodes(state.v)[self.places]} if self.whole else {}
+        return {"displacement": u, **velocity}, self._cells(state, self.points + u)
 
     def _cells(self, state: State, x: Array) -> dict[str, Array]:
-        n = len(self.model.geometry.rod_points)
-        local = x - self.points
-        local[:n] = self._turned_back(state, x[:n]) - self.points[:n]
+        n, rods = len(self.model.geometry.rod_points), len(self.model.geometry.rod.mesh.cells)
+        angle, local = self.view.angle(state, self.model), x - self.points
+        c, s = cos(angle), sin(angle)
+        turn = np.array([[c, 0, -s], [0, 1, 0], [s, 0, c]])  # of the rod, from t towards n
+        local[:n] = x[:n] @ turn - self.points[:n]
         local[n:] = self.model.ground.as_before(x[n:], state.x) - self.points[n:]
-        stress, strain = mises(self.gradient, local[self.cells], self.shear), np.zeros(len(self.cells))
+        stress = elastic_stress(self.gradient, local[self.cells], self.lame)
+        size, strain = mises(stress), np.zeros(len(self.cells))
+        stress[:rods] = turn @ stress[:rods] @ turn.T
         for zone in self.model.zones:
-            rows = zone.cells + (0 if zone.body == "rod" else len(self.model.geometry.rod.mesh.cells))
-            stress[rows], strain[rows] = zone.mises(), zone.plastic_strain()
-        return {"mises": stress, "plastic_strain": strain}
-
-    def _turned_back(self, state: State, x: Array) -> Array:
-        angle = self.view.angle(state, self.model)
-        c, s = np.cos(angle), np.sin(angle)
-        return np.stack([c * x[:, 0] + s * x[:, 2], x[:, 1], c * x[:, 2] - s * x[:, 0]], axis=1)
+            rows = zone.cells + (0 if zone.body == "rod" else rods)
+            size[rows], strain[rows], stress[rows] = zone.mises(), zone.plastic_strain(), zone.tensor()
+        shown = {"mises": size, "plastic_strain": strain}
+        # VTK's order of a symmetric tensor: tt, bb, nn, tb, bn, tn
+        return {**shown, "stress": stress[:, [0, 1, 2, 0, 1, 0], [0, 1, 2, 1, 2, 2]]} if self.whole else shown

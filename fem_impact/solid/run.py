@@ -165,6 +165,8 @@ def solve(
         march(model, state, observers)
     finally:
         watchers.flush()
+    for one in watchers.frames:
+        one.writer.pack()
     loop, marched = clock.read(), marching.read()
     watchers.watch.observe(state)
     free = watchers.stop.finished and model.rod_stiffness is not None

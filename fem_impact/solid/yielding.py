@@ -128,6 +128,13 @@ class YieldingZone:
         square = 1.5 * (s[:, :, :3] ** 2).sum(axis=2) + 3.0 * (s[:, :, 3:] ** 2).sum(axis=2)
         return np.asarray(np.sqrt(square).mean(axis=1).ravel()[: self.count])
 
+    def tensor(self) -> Array:
+        """Return the mean Kirchhoff stress (count, 3, 3), Pa, of each element, in the barrier frame."""
+        s = self.blocks.stress.reshape(-1, 8, 6, LANES).mean(axis=1)
+        s[:, :3] += self.blocks.pressure[:, None]
+        flat = s.transpose(0, 2, 1).reshape(-1, 6)[: self.count]
+        return np.asarray(flat[:, [[0, 3, 5], [3, 1, 4], [5, 4, 2]]])
+
 
 def _in_blocks(blocks: int, values: Array | float) -> Array:
     """Return values (m, 8) at Gauss points, or one for all, as (blocks, 8, LANES); the dummies have 1."""

@@ -61,6 +61,10 @@ def test_vtk_reader_gives_right_data_at_every_time_while_frames_are_added(tmp_pa
     fields.append(1e-5, *frame(1))  # VTK tells no times before the second
     for count in range(2, 5):
         fields.append(1e-5 * count, *frame(count))
+        if count == 4:
+            fields.pack()
+            with h5py.File(fields.path) as file:
+                assert {file["VTKHDF"][name].compression for name in ("Points", "CellData/mises")} == {"gzip"}
         times, steps = vtk_steps(fields.path)
         assert np.allclose(times, 1e-5 * np.arange(1, count + 1))
         for number, grid in enumerate(steps, start=1):

@@ -20,6 +20,7 @@ from fem_impact.outcome.groups import ARMS, Energy, Heat
 from fem_impact.outcome.keys import Unknown, known, markdown_table, or_none, unknown
 from fem_impact.outcome.record import KEY_TABLE, KEYS, Outcome, installed_versions
 from fem_impact.outcome.shares import SHARES, shares
+from fem_impact.pages.bibliography import references
 
 OUTCOME = Outcome.from_dict(values())
 TEXT = OUTCOME.to_json()
@@ -294,7 +295,10 @@ def test_the_own_version_is_told_where_the_package_is_not_installed(monkeypatch)
     monkeypatch.setattr(metadata, "version", installed)
     root = Path(__file__).parents[2]
     assert installed_versions()["fem-impact"] == fem_impact.__version__
-    assert f"version: {fem_impact.__version__}\n" in (root / "CITATION.cff").read_text(encoding="utf-8")
+    citation = (root / "CITATION.cff").read_text(encoding="utf-8")
+    assert f"\nversion: {fem_impact.__version__}\ndate-released: 20" in citation
+    cited = references()[0].fields
+    assert cited["version"] == fem_impact.__version__ and f"name: {cited['author'].strip('{}')}\n" in citation
     project = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))
     assert "version" in project["project"]["dynamic"]
     assert project["tool"]["hatch"]["version"]["path"] == "fem_impact/version.py"

@@ -6,6 +6,7 @@ import sys
 import numpy as np
 import pytest
 
+from fem_impact.fem.elements import lame_constants
 from fem_impact.files.fields import read_fields
 from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import Unknown
@@ -14,7 +15,7 @@ from fem_impact.outcome.record import Outcome
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.write import digest
-from fem_impact.solid.rodview import centre_gradients, mises
+from fem_impact.solid.rodview import centre_gradients, elastic_stress, mises
 from fem_impact.tables.history import HISTORY
 from fem_impact.tables.table import read_csv
 
@@ -31,6 +32,7 @@ def run(tmp_path_factory):
         "accuracy.max_time": "0.1 ms",
         "accuracy.unresolved": "report",
         "save.frames": 60,
+        "save.fields": "all",
     }
     told = []
     outcome = simulate(replace_all(load("t5b"), changes), options=RunOptions(out, told.append))
@@ -149,9 +151,27 @@ def test_mises_of_a_uniform_strain():
     E, nu, e = 200e9, 0.3, 1e-4
     u = np.zeros((1, 8, 3))
     u[0, :, 1] = e * x[:, 1] + 7.0
-    assert mises(centre_gradients(x, cells), u, np.array([E / (2 * (1 + nu))])) == pytest.approx(
-        [E / (1 + nu) * e]
-    )
+    stress = elastic_stress(centre_gradients(x, cells), u, np.array([lame_constants(E, nu)]))
+    assert mises(stress) == pytest.approx([E / (1 + nu) * e])
+    c = E * e / ((1 + nu) * (1 - 2 * nu))
+    assert np.diag(stress[0]) == pytest.approx([c * nu, c * (1 - nu), c * nu])
+
+
+def test_stress_tensors_are_those_of_the_displacements_where_nothing_has_yielded(run):
+    """The zone that may yield keeps its own stresses; both bodies."""
+    out, _, _ = run
+    fields = read_fields(out / "fields.vtkhdf")
+    last = len(fields.times) - 1
+    still = (fields.cell_data("plastic_strain", last) == 0) & (fields.cell_data("mises", last) > 50e6)
+    gradient = centre_gradients(fields.points, fields.cells)
+    u = fields.point_data("displacement", last).astype(float)[fields.cells]
+    moduli = [lame_constants(E, 0.29) for E in (219e9, 206e9)]
+    wanted = elastic_stress(gradient, u, np.array(moduli)[fields.static["body"]])[still]
+    found = fields.cell_data("stress", last)[still]
+    assert len(found) > 30
+    for at, (i, j) in enumerate([(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)]):
+        assert np.median(np.abs(found[:, at] - wanted[:, i, j])) < 5e6, (i, j)
+        assert np.abs(found[:, at]).max() > 3e7, (i, j)
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="the other count is that of Linux")
