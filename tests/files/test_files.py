@@ -6,7 +6,7 @@ import time
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from fem_impact.errors import OutputPathError, ResultError
@@ -70,6 +70,7 @@ def test_write_that_runs_out_of_room_leaves_nothing_half_written(tmp_path):
     assert len(read_csv(tmp_path / "table.csv")) % 10 == 0 < len(read_csv(tmp_path / "table.csv"))
 
 
+@settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(
     st.lists(
         st.tuples(
