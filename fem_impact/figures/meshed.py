@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fem_impact.figures.outline import FILLS, mark
-from fem_impact.figures.style import INK, PALETTE, QUIET, figure
+from fem_impact.figures.style import INK, PALETTE, QUIET, WIDTH, figure
 from meshes import SKIN, SYMMETRY, owners
 
 if TYPE_CHECKING:
@@ -29,6 +29,7 @@ def draw_mesh(
     of: Ints,
     names: Sequence[str],
     path: Path,
+    width: float = WIDTH,
 ) -> None:
     """Draw the half of a mesh from the side, tip to the left, and its whole from the tip.
 
@@ -38,7 +39,7 @@ def draw_mesh(
     centre : (x, z), m, of its mass
     touch : (x, z), m, of the point that touches first; it lies on the lower side
     of, names : which of the materials ``names`` each cell (m,) is of
-    path : PNG or SVG file
+    path, width : PNG or SVG file, and how wide it is, inches
 
     Raises
     ------
@@ -49,7 +50,7 @@ def draw_mesh(
     """
     mm = 1e3 * half.points
     side, front = _faces(half, SYMMETRY), _faces(half, SKIN)
-    with figure(path, HEIGHT) as drawn:
+    with figure(path, HEIGHT, width) as drawn:
         wide = max(1.0, float(np.ptp(mm[:, 2]) / max(np.ptp(mm[:, 0]), 2 * mm[:, 1].max())))
         left, right = drawn.subplots(1, 2, width_ratios=(min(wide, 4.0), 1.0))
         _fill(left, mm[side[0]][:, :, [2, 0]] * [1, -1], of[side[1]], names)
@@ -64,7 +65,7 @@ def draw_mesh(
         right.axvline(0.0, color=QUIET, linewidth=0.7, dashes=(12, 3, 2, 3))
         right.autoscale_view()
         right.set(aspect="equal", xlabel="y, mm")
-        drawn.legend(loc="outside upper center", ncols=4)
+        drawn.legend(loc="outside upper center", ncols=int(width / 2))
 
 
 def _faces(half: HexMesh, tag: int) -> tuple[Ints, Ints]:

@@ -7,17 +7,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fem_impact.figures.style import INK, PALETTE, QUIET, figure
+from fem_impact.figures.style import INK, PALETTE, QUIET, WIDTH, figure
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from matplotlib.axes import Axes
 
+    from fem_impact.arrays import Array
     from rigid import Body
 
 
-WIDTH, MOST_ROWS = 68, 11  # characters
+COLUMNS, MOST_ROWS = 68, 11  # characters
 TALL = 2.0  # height of a character over its width
 HOLLOW, TOUCH = " ", "o"
 SHADES = "#=+%"  # one segment after the other
@@ -29,34 +30,40 @@ def drawn(body: Body, touch: tuple[float, float], joints: Sequence[float] = ()) 
     Thin bodies are drawn three rows high at least, not to scale. Segments, between ``joints``, m from the
     tip, have different signs.
     """
-    rows = min(MOST_ROWS, max(3, round(body.diameter / body.length * WIDTH / TALL)))
+    rows = min(MOST_ROWS, max(3, round(body.diameter / body.length * COLUMNS / TALL)))
     rows += 1 - rows % 2  # one of them on the axis
-    z = (np.arange(WIDTH) + 0.5) / WIDTH * body.length
+    z = (np.arange(COLUMNS) + 0.5) / COLUMNS * body.length
     x = np.linspace(1.0, -1.0, rows) * 0.5 * body.diameter * (1 - 0.5 / rows)
     inside = body.holds(np.abs(x)[:, None] + 0.0 * z, z + 0.0 * x[:, None])
     sign = [SHADES[number % len(SHADES)] for number in np.searchsorted(joints, z)]
     cells = [[sign[k] if cell else HOLLOW for k, cell in enumerate(row)] for row in inside]
     row = int(np.argmin(np.abs(x + touch[0])))  # at an angle above 0 the lower side comes down first
-    cells[row][min(WIDTH - 1, int(touch[1] / body.length * WIDTH))] = TOUCH
+    cells[row][min(COLUMNS - 1, int(touch[1] / body.length * COLUMNS))] = TOUCH
     return ["  " + "".join(line).rstrip() for line in cells]
 
 
 HEIGHT = 3.2  # inches
 POINTS = 400
+LONG, SHOWN = 15.0, 5.0
+"""Lengths in diameters: of a body drawn with a break, and of each of its ends then."""
 FILLS = ("sky", "orange", "green", "purple", "yellow", "sand")  # one material after the other
 Part = tuple[float, str]
 """End of a segment, m from the tip, and the name of its material."""
 
 
-def draw(body: Body, touch: tuple[float, float], parts: Sequence[Part], path: Path) -> None:
+def draw(
+    body: Body, touch: tuple[float, float], parts: Sequence[Part], path: Path, width: float = WIDTH
+) -> None:
     """Draw a projectile to scale: axis, bore, segments by material, first contact and mass centre.
+
+    Of a long one with the same section all along its middle both ends are drawn, and a break between them.
 
     Parameters
     ----------
     body : rigid projectile
     touch : (x, z), m, of the point that touches first, on the lower side at an angle above 0
     parts : segments from the tip to the tail
-    path : PNG or SVG file
+    path, width : PNG or SVG file, and how wide it is, inches
 
     Raises
     ------
@@ -65,36 +72,48 @@ def draw(body: Body, touch: tuple[float, float], parts: Sequence[Part], path: Pa
     OutputPathError
         The place cannot be written.
     """
-    with figure(path, HEIGHT) as drawn:
-        axes = drawn.add_subplot()
-        # fill the wall of each segment above and below the axis in the colour of its material
-        from rigid import Turned
+    from rigid import Turned
 
+    def wall(z: Array) -> tuple[Array, Array]:
+        inside = np.clip(z, 1e-6 * body.length, (1 - 1e-6) * body.length)  # at the ends those just inside
+        bore = body.inner_radius(inside) if isinstance(body, Turned) else np.zeros_like(z)
+        return 1e3 * np.asarray(bore), 1e3 * np.asarray(body.radius(inside))
+
+    end = SHOWN * body.diameter
+    middle = np.linspace(end, body.length - end, POINTS)
+    alike = all(np.ptp(radius) < 1e-6 for radius in wall(middle))
+    joined = any(end < to < body.length - end for to, _ in parts)
+    broken = body.length > LONG * body.diameter and alike and not joined
+    length = 2 * end if broken else body.length
+    with figure(path, min(HEIGHT, 1.2 + width * body.diameter / length), width) as drawn:
+        views = np.atleast_1d(drawn.subplots(1, 1 + broken, sharey=True))
         names = list(dict.fromkeys(name for _, name in parts))
-        begin = 0.0
-        for end, name in parts:
-            z = np.linspace(begin, end, POINTS)
-            inside = np.clip(z, 1e-6 * body.length, (1 - 1e-6) * body.length)  # at the ends those just inside
-            bore = body.inner_radius(inside) if isinstance(body, Turned) else np.zeros_like(z)
-            inner, outer = 1e3 * np.asarray(bore), 1e3 * np.asarray(body.radius(inside))
-            for side, label in ((1.0, name), (-1.0, "")):
-                axes.fill_between(
-                    1e3 * z,
-                    side * inner,
-                    side * outer,
-                    label=label,
-                    linewidth=0.8,
-                    facecolor=PALETTE[FILLS[names.index(name) % len(FILLS)]],
-                    edgecolor=INK,
-                )
-            begin = end
-        mark(axes, touch, (0.0, body.z_c))
-        axes.set(aspect="equal", xlabel="from the tip, mm", ylabel="from the axis, mm")
-        drawn.legend(loc="outside upper center", ncols=4)
+        for axes in views:
+            begin = 0.0
+            for to, name in parts:
+                z = np.linspace(begin, to, POINTS)
+                inner, outer = wall(z)
+                colour = PALETTE[FILLS[names.index(name) % len(FILLS)]]
+                for side, label in ((1.0, name), (-1.0, "")):
+                    words = {"label": label, "facecolor": colour, "edgecolor": INK, "linewidth": 0.8}
+                    axes.fill_between(1e3 * z, side * inner, side * outer, **words)
+                begin = to
+            mark(axes, touch, (0.0, body.z_c), f", {1e3 * body.z_c:.4g} mm from the tip" if broken else "")
+            axes.set(aspect="equal", xlabel="from the tip, mm")
+        views[0].set(ylabel="from the axis, mm")
+        if broken:
+            views[0].set(xlim=(-100 * body.diameter, 1e3 * end))
+            views[1].set(xlim=(1e3 * (body.length - end), 1e3 * body.length + 100 * body.diameter))
+            views[1].spines["left"].set_visible(False)
+            views[1].tick_params(left=False)
+            cut = {"marker": [(-0.5, -1.5), (0.5, 1.5)], "markersize": 12, "color": INK, "clip_on": False}
+            for axes, at in zip(views, (1.0, 0.0), strict=True):
+                axes.plot([at, at], [0.35, 0.65], linestyle="", transform=axes.transAxes, **cut)
+        drawn.legend(*views[0].get_legend_handles_labels(), loc="outside upper center", ncols=int(width / 2))
 
 
-def mark(axes: Axes, touch: tuple[float, float], centre: tuple[float, float]) -> None:
+def mark(axes: Axes, touch: tuple[float, float], centre: tuple[float, float], where: str = "") -> None:
     """Draw the axis, the point that touches first and the mass centre, both (x, z), m; x points down."""
     axes.axhline(0.0, color=QUIET, linewidth=0.7, dashes=(12, 3, 2, 3), label="axis")
     axes.plot(1e3 * touch[1], -1e3 * touch[0], "v", color=PALETTE["vermilion"], label="touches first")
-    axes.plot(1e3 * centre[1], -1e3 * centre[0], "P", color=INK, label="mass centre")
+    axes.plot(1e3 * centre[1], -1e3 * centre[0], "P", color=INK, label=f"mass centre{where}")

@@ -69,7 +69,7 @@ _STYLE: dict[Any, Any] = {
 
 
 @contextmanager
-def figure(path: Path, height: float) -> Iterator[Figure]:
+def figure(path: Path, height: float, width: float = WIDTH) -> Iterator[Figure]:
     """Yield an empty figure in the style of the project; it is saved to ``path`` at the end.
 
     Raises
@@ -84,16 +84,16 @@ def figure(path: Path, height: float) -> Iterator[Figure]:
     except ImportError as error:
         raise MissingLibraryError("Figures need matplotlib: pip install matplotlib.") from error
     with matplotlib.rc_context(_STYLE):
-        drawn = new_figure(height)
+        drawn = new_figure(height, width)
         yield drawn
         save(drawn, path)
 
 
-def new_figure(height: float) -> Figure:
-    """Return an empty figure, ``height`` in inches, that is not registered with pyplot."""
+def new_figure(height: float, width: float = WIDTH) -> Figure:
+    """Return an empty figure, in inches, that is not registered with pyplot."""
     from matplotlib.figure import Figure
 
-    return Figure(figsize=(WIDTH, height), layout="constrained")
+    return Figure(figsize=(width, height), layout="constrained")
 
 
 def save(drawn: Figure, path: Path) -> None:

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from functools import partial
 from itertools import chain
 from pathlib import Path
-from textwrap import fill
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -85,8 +84,9 @@ def render(
     motion = prepare(movement, field, times)
     require_libraries()
     path, notes = target(folder, out)
-    title, curve, missing = context(folder)
-    film = encode(_frames(motion, layout, times, title, curve), path, FPS)
+    title, made, curve, missing = context(folder)
+    background = frame.FilmBackground.make(layout, motion, title, made, curve, times)
+    film = encode(_frames(motion, background, times), path, FPS)
     return RenderResult(film, (*notes, *left_out, *missing), len(times))
 
 
@@ -109,11 +109,13 @@ def target(folder: Path, out: str | Path | None, stem: str = "film") -> tuple[Pa
     return folder / f"{stem}{suffix}", [] if suffix == ".mp4" else [other]
 
 
-def context(folder: Path) -> tuple[str, tuple[np.ndarray, np.ndarray], list[str]]:
-    """Return title, force curve, and a note on each of them that is missing."""
-    title, curve, missing = folder.resolve().name, (np.zeros(0), np.zeros(0)), []
+def context(folder: Path) -> tuple[str, str, tuple[np.ndarray, np.ndarray], list[str]]:
+    """Return title, program with the scene's digest, force curve, and a note on each that is missing."""
+    title, made, curve, missing = folder.resolve().name, "", (np.zeros(0), np.zeros(0)), []
     try:
-        title = Outcome.read(folder / "outcome.json").provenance.scene_title
+        origin = Outcome.read(folder / "outcome.json").provenance
+        title, version = origin.scene_title, origin.versions.get("fem-impact", "")
+        made = f"fem-impact {version} · scene {origin.scene_digest[:12]}"
     except ResultError as error:
         missing.append(f"The film is named after its folder: {error}")
     try:
@@ -121,17 +123,11 @@ def context(folder: Path) -> tuple[str, tuple[np.ndarray, np.ndarray], list[str]
         curve = (history.numbers("time_s"), history.numbers("force_n_N"))
     except ResultError as error:
         missing.append(f"The film has no force curve: {error}")
-    return title, curve, missing
+    return title, made, curve, missing
 
 
-def _frames(
-    motion: FilmData,
-    layout: frame.FrameLayout,
-    times: np.ndarray,
-    title: str,
-    curve: tuple[np.ndarray, np.ndarray],
-) -> Iterator[np.ndarray]:
-    background = frame.FilmBackground.make(layout, motion, title, curve, times)
+def _frames(motion: FilmData, background: frame.FilmBackground, times: np.ndarray) -> Iterator[np.ndarray]:
+    layout = background.layout
     size = layout.rod.size
     whole = RodPicture(motion, size, needed_height(motion, size))
     near = None if background.profile else CloseView(motion, layout.close.size)
@@ -184,11 +180,10 @@ def render_side_by_side(
     motions = _on_one_scale([prepare(m, "strain", film_times(m, "strain", WHOLE)) for m in movements])
     require_libraries()
     path, notes = target(folders[0], out, "film-side-by-side")
-    titles, curves, missing = zip(*map(context, folders), strict=True)
+    titles, made, curves, missing = zip(*map(context, folders), strict=True)
     times = film_times(max(movements, key=lambda movement: movement.end), "strain", span)
-    background = PairBackground.make(
-        frame.SideBySideLayout(*size, len(folders)), motions, titles, curves, times
-    )
+    layout = frame.SideBySideLayout(*size, len(folders))
+    background = PairBackground.make(layout, motions, titles, made, curves)
     film = encode(_side_by_side_frames(background, motions, times), path, FPS)
     left_out = [left_out for _, left_out in read]
     return RenderResult(film, (*notes, *chain(*left_out, *missing)), len(times))
@@ -226,13 +221,14 @@ class PairBackground:
         layout: frame.SideBySideLayout,
         motions: Sequence[FilmData],
         titles: Sequence[str],
+        made: Sequence[str],
         curves: Sequence[frame.Curve],
-        times: np.ndarray,
     ) -> PairBackground:
         """Draw the still parts once, with title and force curve of each run."""
         drawn = frame.blank(layout)
         frame.heading(drawn, layout, TITLE)
-        limits = frame.limits_of(curves, times)
+        frame.origin(drawn, layout, made)
+        limits = frame.limits_of(curves)
         strips = []
         for title, curve, view, place in zip(titles, curves, layout.views, layout.strips, strict=True):
             _title(drawn, layout, view, title)
@@ -263,8 +259,8 @@ class PairBackground:
 
 def _title(drawn: Figure, layout: frame.SideBySideLayout, view: frame.Rectangle, title: str) -> None:
     place = (view.left / layout.width, 1 - (view.top - 2) / layout.height)
-    lines = fill(title, view.width // 8, max_lines=2, placeholder=" …")
-    drawn.text(*place, lines, fontsize=9.5, color=INK, va="bottom", linespacing=1.1, parse_math=False)
+    lines, points = frame.fitted(title, view.width, 9.5, 7.0)
+    drawn.text(*place, lines, fontsize=points, color=INK, va="bottom", linespacing=1.1, parse_math=False)
 
 
 def _side_by_side_frames(

@@ -6,7 +6,7 @@ import functools
 import io
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from textwrap import shorten
+from textwrap import fill
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -129,8 +129,8 @@ class SideBySideLayout(Frame):
 CLOSE_WIDTH = 0.45
 """Width of the close-up in diameters of the rod."""
 
-CLOCK, LETTER = 220, 11
-"""Widths of clock and margins, and of a letter of the title, px."""
+CLOCK, LETTER = 220, 0.82
+"""Width of clock and margins, px, and of a letter of a title, px for a point of its size."""
 
 CLOSE_UP = "section at the contact (n up, t right), true scale, {:.1f} mm wide"
 ALONG = "strain along the axis"
@@ -163,11 +163,18 @@ class FilmBackground:
 
     @classmethod
     def make(
-        cls, layout: FrameLayout, motion: FilmData, title: str, curve: Curve, times: np.ndarray
+        cls,
+        layout: FrameLayout,
+        motion: FilmData,
+        title: str,
+        made: str,
+        curve: Curve,
+        times: np.ndarray,
     ) -> FilmBackground:
         """Draw the still parts once."""
         drawn, waves = blank(layout), motion.movement.waves if motion.field == "strain" else None
         heading(drawn, layout, title)
+        origin(drawn, layout, [made])
         fade = ", fading to × 1 at the contact" if motion.peak > 1.0 else ""
         _caption(drawn, layout, layout.rod, f"whole rod, deformation × {motion.peak:g}{fade}")
         _caption(
@@ -180,7 +187,7 @@ class FilmBackground:
         if waves is None:
             colour_bar(drawn, layout, layout.close, motion.field, motion.near)
         profile = None if waves is None else StrainProfile.draw(drawn, layout, layout.beside, waves, times)
-        strip = Strip.draw(drawn, layout, layout.strip, curve, limits_of([curve], times))
+        strip = Strip.draw(drawn, layout, layout.strip, curve, limits_of([curve]))
         return cls(layout, picture(drawn), strip, profile)
 
     def compose(
@@ -220,15 +227,29 @@ def blank(frame: Frame) -> Figure:
 
 
 def heading(drawn: Figure, frame: Frame, title: str) -> None:
-    """Write the title of the film, shortened to fit beside the clock."""
+    """Write the title of the film beside the clock."""
     place = (24 / frame.width, 1 - 27 / frame.height)
-    shown = shorten(title, (frame.width - CLOCK) // LETTER, placeholder=" …")
-    drawn.text(*place, shown, fontsize=14, weight="bold", color=INK, va="center", parse_math=False)
+    shown, points = fitted(title, frame.width - CLOCK, 14.0, 8.5)
+    drawn.text(*place, shown, fontsize=points, weight="bold", color=INK, va="center", parse_math=False)
+
+
+def fitted(text: str, width: int, points: float, least: float) -> tuple[str, float]:
+    """Return a text in one line of ``points`` or two of ``least`` that fit ``width`` px, and its size."""
+    if len(text) <= width / (LETTER * points):
+        return text, points
+    return fill(text, int(width / (LETTER * least)), max_lines=2, placeholder=" …"), least
+
+
+def origin(drawn: Figure, frame: Frame, made: Sequence[str]) -> None:
+    """Write into the lower left corner which program made the runs, of which scenes."""
+    text = "; ".join(dict.fromkeys(one for one in made if one))
+    drawn.text(24 / frame.width, 9 / frame.height, text, fontsize=7, color=QUIET, va="center")
 
 
 def _caption(drawn: Figure, layout: FrameLayout, view: Rectangle, text: str) -> None:
     place = (view.left / layout.width, 1 - (view.top - 10) / layout.height)
-    drawn.text(*place, text, fontsize=9.5, color=QUIET, va="center")
+    shown, points = fitted(text, view.width, 9.5, 7.0)
+    drawn.text(*place, shown, fontsize=points, color=QUIET, va="center")
 
 
 def colour_bar(drawn: Figure, frame: Frame, view: Rectangle, field: str, span: tuple[float, float]) -> None:
@@ -314,9 +335,11 @@ class Strip:
         return cls(curve, limits, track)
 
     def mark(self, pen: Any, time: float) -> None:
-        """Draw the marker at a time, s; none where the curve has ended."""
+        """Draw the marker at a time, s; none beyond the axis, no dot where the curve has ended."""
         left, right, zero, top = self.track
         first, last, largest = self.limits
+        if time > last:
+            return
         x = left + (right - left) * (time - first) / (last - first)
         pen.line([(x, top), (x, zero)], fill=QUIET, width=1)
         if len(self.curve[0]) and time <= self.curve[0][-1]:
@@ -324,10 +347,10 @@ class Strip:
             pen.ellipse([x - 6, y - 6, x + 6, y + 6], fill=PALETTE["vermilion"], outline="white", width=2)
 
 
-def limits_of(curves: Sequence[Curve], times: np.ndarray) -> Limits:
-    """Return limits that contain several curves over the times of a film."""
-    first, last = float(times[0]), float(max(times[-1], times[0] + 1e-9))
-    return first, last, max(1.0, *(float(force.max(initial=0.0)) for _, force in curves))
+def limits_of(curves: Sequence[Curve]) -> Limits:
+    """Return limits that contain all contacts of several curves: the free flight after them is left out."""
+    ends = [float(times[force > 0.0].max(initial=0.0)) for times, force in curves]
+    return 0.0, 1.1 * max(1e-9, *ends), max(1.0, *(float(force.max(initial=0.0)) for _, force in curves))
 
 
 CURVES = (("stretch: mean of the section", "blue"), ("bending: side facing the barrier", "vermilion"))

@@ -7,11 +7,14 @@ from pathlib import Path
 from fem_impact.case.case import Case
 from fem_impact.figures.meshed import draw_mesh
 from fem_impact.figures.outline import draw
+from fem_impact.figures.style import WIDTH
 from rigid import Faceted
 
 
-def draw_projectile(case: Case, path: Path) -> None:
+def draw_projectile(case: Case, path: Path, width: float = WIDTH) -> None:
     """Draw a projectile with its materials, first contact and mass centre into a .png or .svg file.
+
+    ``width`` is that of the picture, inches.
 
     A mesh is drawn with its cells, and its tip as the barrier sees it.
 
@@ -26,7 +29,7 @@ def draw_projectile(case: Case, path: Path) -> None:
     if rod.own_mesh is not None:
         names = [material.name for material in rod.materials]
         assert isinstance(body, Faceted), "a mesh has facets"
-        draw_mesh(rod.own_mesh.half(), (body.x_c, body.z_c), touch, rod.cell_materials(), names, path)
+        draw_mesh(rod.own_mesh.half(), (body.x_c, body.z_c), touch, rod.cell_materials(), names, path, width)
         return
     parts = [(part.to, part.material.name) for part in rod.segments]
-    draw(body, touch, parts or [(body.length, rod.material.name)], path)
+    draw(body, touch, parts or [(body.length, rod.material.name)], path, width)

@@ -86,6 +86,8 @@ def _safe(content: str | Markup) -> str:
 
 
 TYPES = {
+    ".svg": "image/svg+xml",
+    ".png": "image/png",
     ".gif": "image/gif",
     ".webp": "image/webp",
     ".mp4": "video/mp4",
@@ -221,9 +223,9 @@ def data_link(content: bytes, name: str, label: str) -> str:
 
 
 def image(path: Path, alt: str) -> Markup:
-    """Return an SVG file embedded as a picture."""
+    """Return a picture embedded."""
     data = base64.b64encode(_bytes(path)).decode("ascii")
-    return Markup(f'<figure><img src="data:image/svg+xml;base64,{data}" alt="{escape(alt)}"></figure>')
+    return Markup(f'<figure><img src="data:{TYPES[path.suffix]};base64,{data}" alt="{escape(alt)}"></figure>')
 
 
 def film(folder: Path, caption: str) -> Markup:

@@ -9,9 +9,10 @@ from fem_impact.answers.friction_spread import friction_spread
 from fem_impact.answers.verdict.screening import screening
 from fem_impact.answers.verdict.sentences import FIRST_ONLY, Line, screening_lines
 from fem_impact.case.case import Case
-from fem_impact.errors import ResultError
+from fem_impact.errors import MissingLibraryError, ResultError
 from fem_impact.files.atomic import make_directory, read_text, write_text
 from fem_impact.files.digests import checksum, read_signed
+from fem_impact.files.run_directory import FIELDS
 from fem_impact.outcome.keys import Key, Unknown, or_none
 from fem_impact.outcome.limitation import HEAVIEST_FIRST, WRONG_NUMBERS, texts
 from fem_impact.outcome.record import KEY_TABLE, Outcome
@@ -26,6 +27,7 @@ from fem_impact.scene.write import digest
 from fem_impact.tables.table import Table
 
 SHEET = "sheet.html"
+NARROW = 4.5  # inches, of the drawing
 BLANK = "____________"
 ROLES = ("prepared by", "checked by", "approved by")
 NUMBERS = (
@@ -66,7 +68,7 @@ def write_sheet(folder: Path, document: str = "", revision: str = "") -> Path:
         raise ResultError(f"{folder / 'scene.toml'}: was changed after the run: run it again to sign it.")
     case = Case(scene)
     drawing = make_directory(folder / "figures") / "projectile.svg"
-    draw_projectile(case, drawing)
+    draw_projectile(case, drawing, NARROW)
     criterion, lines = _verdict(folder, case)
     spread = friction_spread(scene, origin.fidelity)
     rows = [
@@ -80,7 +82,10 @@ def write_sheet(folder: Path, document: str = "", revision: str = "") -> Path:
     state = "" if outcome.validity.finished else f"The run did not finish: {outcome.validity.stopped_because}"
     body = (
         html.paragraph(state, "notice"),
-        html.image(drawing, "the projectile in its plane of motion"),
+        html.place(
+            "pictures",
+            html.join((html.image(drawing, "the projectile in its plane of motion"), _still(folder))),
+        ),
         html.section("Verdict", html.paragraph(criterion), verdict_box(lines)),
         html.section(
             "Numbers of the first impact, with their errors",
@@ -119,6 +124,22 @@ def _verdict(folder: Path, case: Case) -> tuple[str, Sequence[Line]]:
     of, change = within["of"], within["change"]
     criterion = f"Criterion: vibration changes {of} by at most {change:g}. Answer: {answer}."
     return criterion, [(title, sentence) for title, sentence in told["box"]]
+
+
+def _still(folder: Path) -> Markup:
+    """Return the frame of the film at the greatest force, nothing where none can be drawn."""
+    if not (folder / FIELDS).is_file():
+        return Markup("")
+    from fem_impact.films.film import context, render
+    from fem_impact.films.movement import Span
+
+    _, _, (times, force), _ = context(folder)
+    at = float(times[force.argmax()]) if len(times) else 0.0
+    try:
+        still = render(folder, folder / "figures" / "still.png", Span(at, frames=1), size=(800, 560)).path
+    except MissingLibraryError:
+        return Markup("")
+    return html.image(still / "frame_0000.png", "the body when the force is greatest")
 
 
 def _listed(outcome: Outcome) -> list[tuple[str, Key, str]]:

@@ -59,14 +59,14 @@ def write_view(folder: Path, out: Path, span: Span, field: str) -> RenderResult:
             "are too many moments for a page.", key="--frames", value=len(times), remedy=f"Up to {MOST}."
         )
     motion = prepare(movement, field, times)
-    (title, _, _), style = context(folder), FIELDS[field]
+    (title, made, _, _), style = context(folder), FIELDS[field]
     lead = (
         f"The whole rod, its deformation magnified {motion.peak:g} times, fading to true size at the "
         f"contact; colours: {style.name}, {style.unit}. Drag to turn, turn the wheel or pinch to come "
         "nearer, drag the slider to move in time."
     )
     body = (live_figure(_shown(motion, times)), sources(["film"]))
-    text = page(title, "Run in three dimensions", lead, f"Fields of {folder.name}.", body)
+    text = page(title, "Run in three dimensions", lead, f"Fields of {folder.name}. {made}", body)
     return RenderResult(write_text(out, text), tuple(notes), len(times))
 
 

@@ -16,7 +16,7 @@ def drawn(monkeypatch, tmp_path, name):
     """Return the axes of a scene's drawing."""
     kept = []
     monkeypatch.setattr(
-        "fem_impact.figures.style.new_figure", lambda height: kept.append(new_figure(height)) or kept[0]
+        "fem_impact.figures.style.new_figure", lambda *size: kept.append(new_figure(*size)) or kept[0]
     )
     scene = load(name)
     body, rod = scene.projectile.rigid_body, scene.projectile
@@ -45,6 +45,18 @@ def test_a_tube_is_drawn_with_its_bore_contact_and_mass_centre(monkeypatch, tmp_
     assert marks["touches first"] == pytest.approx([1e3 * place, -1e3 * rho])
     assert marks["mass centre"] == pytest.approx([1e3 * body.z_c, 0.0])
     assert axes.get_aspect() == 1.0
+
+
+def test_a_long_rod_is_drawn_with_a_break_that_hides_nothing(monkeypatch, tmp_path):
+    axes, body, _ = drawn(monkeypatch, tmp_path, "tungsten-rod")
+    tip, tail = axes.figure.axes
+    assert tip.get_xlim()[1] == pytest.approx(5e3 * body.diameter)
+    assert tail.get_xlim()[0] == pytest.approx(1e3 * body.length - 5e3 * body.diameter)
+    assert f"mass centre, {1e3 * body.z_c:.4g} mm from the tip" in (tmp_path / "a.svg").read_text(
+        encoding="utf-8"
+    )
+    whole, _, _ = drawn(monkeypatch, tmp_path, "heavy-tail")  # 6 diameters
+    assert len(whole.figure.axes) == 1
 
 
 def test_each_material_has_its_colour(monkeypatch, tmp_path):
