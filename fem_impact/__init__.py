@@ -27,7 +27,9 @@ if TYPE_CHECKING:
     from fem_impact.answers.verdict.assess import Verdict, assess
     from fem_impact.case.case import Case
     from fem_impact.fem.exchange import to_meshio, to_pyvista, to_skfem
+    from fem_impact.figures.runs import draw_waves
     from fem_impact.files.fields import read_fields
+    from fem_impact.files.waves import read_waves
     from fem_impact.films.film import render
     from fem_impact.modal.rod import modes
     from fem_impact.options import RunOptions
@@ -50,6 +52,7 @@ __all__ = [
     "Validation",
     "Verdict",
     "assess",
+    "draw_waves",
     "format_quantity",
     "known",
     "load",
@@ -57,6 +60,7 @@ __all__ = [
     "parse_quantity",
     "read_fields",
     "read_history",
+    "read_waves",
     "render",
     "replace",
     "replace_all",
@@ -80,6 +84,7 @@ _PLACES = {
     "Validation": "answers.validate:Validation",
     "Verdict": "answers.verdict.assess:Verdict",
     "assess": "answers.verdict.assess:assess",
+    "draw_waves": "figures.runs:draw_waves",
     "format_quantity": "scene.units:format_quantity",
     "known": "outcome.keys:known",
     "load": "scene.shipped:load",
@@ -87,6 +92,7 @@ _PLACES = {
     "parse_quantity": "scene.units:parse_quantity",
     "read_fields": "files.fields:read_fields",
     "read_history": "tables.history:read_history",
+    "read_waves": "files.waves:read_waves",
     "render": "films.film:render",
     "replace": "scene.shipped:replace",
     "replace_all": "scene.shipped:replace_all",

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from fem_impact.figures.panels import Look, Mark, Panel, Picture, Series, ShadedInterval, ShadedMap
+from fem_impact.figures.still import draw
 from fem_impact.figures.style import percent
-from fem_impact.files.waves import Waves
+from fem_impact.files.waves import Waves, read_waves
 from fem_impact.outcome.groups import ContactInterval
 from fem_impact.outcome.keys import Unknown, known, or_none
 from fem_impact.outcome.record import Outcome
@@ -130,6 +132,25 @@ def waves_picture(waves: Waves) -> Picture:
         x_range, y_range = (0.0, 1e3 * waves.length), (0.0, 1e6 * float(times[-1]))
         panels.append(replace(panel, x_range=x_range, y_range=y_range))
     return Picture("waves", CAPTION, tuple(panels), 2, _numbers(times, waves.position, *parts))
+
+
+def draw_waves(result_dir: str | Path, out: str | Path | None = None) -> Path:
+    """Draw the x-t picture of a run, `waves_picture`, and write its numbers beside it as CSV.
+
+    Parameters
+    ----------
+    result_dir : folder of a run with waves.h5 (finite elements, ``save.strain_samples`` 1 or more)
+    out : .png or .svg file; ``waves.svg`` in the folder unless given
+
+    Raises
+    ------
+    ResultError
+        The folder holds no waves.h5, or a damaged one.
+    MissingLibraryError, OutputPathError
+        matplotlib is not installed; the place cannot be written.
+    """
+    folder = Path(result_dir)
+    return draw(waves_picture(read_waves(folder / "waves.h5")), folder / "waves.svg" if out is None else out)
 
 
 def _front(waves: Waves, words: str, speed: float, passes: int) -> Series:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 import time as clock
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
@@ -17,6 +18,18 @@ from fem_impact.files.digests import check_digest
 if TYPE_CHECKING:
     import h5py
     import pyvista
+
+
+_CORNERS = np.array(
+    [[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]],
+    float,
+)
+
+
+def jacobian(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
+    """Return ``(m, 3, 3)``, m: the change of the place along each edge direction at the centres of cells."""
+    result: np.ndarray = np.einsum("ki,mkj->mij", _CORNERS / 8.0, points[cells])
+    return result
 
 
 def check_mesh(points: np.ndarray, cells: np.ndarray) -> None:
@@ -96,6 +109,30 @@ class FieldFile:
     def cell_data(self, name: str, frame: int) -> np.ndarray:
         """Return ``(m,)`` or ``(m, k) float32`` cell data of one frame. Raises ResultError."""
         return self._rows("CellData", name, frame, self.cell_names)
+
+    def strain(self, frame: int) -> np.ndarray:
+        """Return the strain tensors ``(m, 3, 3)`` at the cell centres, Green's: free of the rigid motion.
+
+        Their axes are those of the barrier (t, b, n) at the start and turn with the body. Raises ResultError.
+        """
+        moved = self.points + self.point_data("displacement", frame)
+        F = np.linalg.solve(jacobian(self.points, self.cells), jacobian(moved, self.cells))  # transposed
+        tensors: np.ndarray = 0.5 * (F @ F.transpose(0, 2, 1) - np.eye(3))
+        return tensors
+
+    def probe(self, name: str, point: Sequence[float]) -> np.ndarray:
+        """Return a field over `times`, ``(n_frames,)`` or ``(n_frames, k)``, at a point of the start, m.
+
+        It is that of the nearest node, of the nearest cell's centre where the field is one of cells; the name
+        "strain" gives the tensors ``(n_frames, 3, 3)`` of `strain`. Raises ResultError.
+        """
+        nodal = name in self.point_names
+        places = self.points if nodal else self.points[self.cells].mean(axis=1)
+        at = int(np.linalg.norm(places - np.asarray(point, float), axis=1).argmin())
+        read = (
+            self.strain if name == "strain" else partial(self.point_data if nodal else self.cell_data, name)
+        )
+        return np.array([read(frame)[at] for frame in range(len(self.times))])
 
     def grid(self, frame: int) -> pyvista.UnstructuredGrid:
         """Return the mesh of one frame as a PyVista grid, all stored fields on it.

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fem_impact.errors import ResultError
+from fem_impact.errors import ResultError, UsageError
 from fem_impact.files.atomic import atomic_path
 from fem_impact.files.digests import check_digest
 from fem_impact.files.fields import check_finite, check_times
@@ -120,6 +120,21 @@ class Waves:
                 rows[after] = free
         return within[0], within[1]
 
+    def gauge(self, position: float, across: float = 1.0) -> np.ndarray:
+        """Return the strain ``(k,)`` over `times` that a gauge along the axis shows.
+
+        ``position``, m from the tip; ``across``, radii from the axis: 1 on the side that faces the barrier,
+        -1 on the other, 0 the mean of both. Raises UsageError for a place off the cylinder.
+        """
+        places, strain = self.position, self.stretch + across * self.bending
+        if not places[0] <= position <= places[-1] or abs(across) > 1:
+            remedy = f"Give {places[0]:.4g} to {places[-1]:.4g} m, and -1 to 1 across."
+            raise UsageError("lies off the cylinder.", key="gauge", value=(position, across), remedy=remedy)
+        after = int(np.clip(np.searchsorted(places, position), 1, len(places) - 1))
+        share = (position - places[after - 1]) / (places[after] - places[after - 1])
+        shown: np.ndarray = (1 - share) * strain[:, after - 1] + share * strain[:, after]
+        return shown
+
 
 def write_waves(path: Path, waves: Waves) -> None:
     """Write the file in one step; strains and shapes in single precision. Raises OutputPathError."""
@@ -140,8 +155,8 @@ def _put(group: h5py.Group, record: Waves | Ringing) -> None:
             group.create_dataset(entry.name, data=value.astype("f4" if value.ndim > 1 else "f8"))
 
 
-def read_waves(path: Path) -> Waves:
-    """Read the file.
+def read_waves(path: str | Path) -> Waves:
+    """Read the file ``waves.h5`` of a run.
 
     Raises
     ------
@@ -150,6 +165,7 @@ def read_waves(path: Path) -> Waves:
     """
     import h5py
 
+    path = Path(path)
     if not path.is_file():
         raise ResultError(f"{path}: there is no such file; run the scene with save.strain_samples = 1.")
     check_digest(path)

@@ -9,24 +9,14 @@ from typing import NamedTuple
 import numpy as np
 
 from fem_impact.errors import ResultError
-from fem_impact.files.fields import FieldFile
+from fem_impact.files.fields import FieldFile, jacobian
 from fem_impact.films.movement import Movement
-
-_CORNERS = np.array(
-    [[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]],
-    float,
-)
 
 
 def hex_volumes(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
     """Return ``(m,) m3`` volumes by the Jacobian at the centre of ``(m, 8)`` hexahedra (one-point rule)."""
-    volumes: np.ndarray = 8.0 * np.linalg.det(_jacobian(points, cells))
+    volumes: np.ndarray = 8.0 * np.linalg.det(jacobian(points, cells))
     return volumes
-
-
-def _jacobian(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
-    jacobian: np.ndarray = np.einsum("ki,mkj->mij", _CORNERS / 8.0, points[cells])
-    return jacobian
 
 
 def stretch(points: np.ndarray, moved: np.ndarray, cells: np.ndarray, axis: np.ndarray) -> np.ndarray:
@@ -42,8 +32,8 @@ def stretch(points: np.ndarray, moved: np.ndarray, cells: np.ndarray, axis: np.n
     axis : (3,) float64
         Unit vector in the reference positions.
     """
-    along = np.linalg.solve(_jacobian(points, cells).transpose(0, 2, 1), axis[:, None])
-    lengths: np.ndarray = np.linalg.norm(_jacobian(moved, cells).transpose(0, 2, 1) @ along, axis=(1, 2))
+    along = np.linalg.solve(jacobian(points, cells).transpose(0, 2, 1), axis[:, None])
+    lengths: np.ndarray = np.linalg.norm(jacobian(moved, cells).transpose(0, 2, 1) @ along, axis=(1, 2))
     return lengths
 
 

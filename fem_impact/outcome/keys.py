@@ -5,9 +5,9 @@ The table of keys, the checks of a file, its text and the attributes in docstrin
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, fields, is_dataclass
-from functools import reduce
+from operator import attrgetter
 from types import UnionType
 from typing import Any, Literal, NoReturn, TypeVar, dataclass_transform, get_args, get_origin, get_type_hints
 
@@ -71,9 +71,9 @@ def or_none(value: T | Unknown) -> T | None:
     return None if isinstance(value, Unknown) else value
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Key:
-    """One key of the record.
+    """One key of the record, equal to itself alone: records are checked by the keys, often.
 
     Parameters
     ----------
@@ -95,6 +95,8 @@ class Key:
         Keys of each entry, where the value is a list of entries.
     entry : type
         Class of such an entry.
+    of : callable
+        Returns the value in an outcome, or in an entry.
     choices : tuple of str
         The words that a text may be; empty where it is free.
     """
@@ -109,10 +111,10 @@ class Key:
     entries: tuple[Key, ...] = ()
     entry: type = object
     choices: tuple[str, ...] = ()
+    of: Callable[[object], Any] = field(init=False, repr=False)
 
-    def of(self, outcome: object) -> Any:
-        """Return the value in an outcome."""
-        return reduce(getattr, self.path, outcome)
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "of", attrgetter(".".join(self.path)) if self.path else None)
 
 
 def key(name: str, unit: str, meaning: str, banded: bool = False) -> Any:

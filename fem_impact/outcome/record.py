@@ -245,6 +245,8 @@ def installed_versions() -> dict[str, str]:
 
 def _plain(key: Key, value: Any) -> Any:
     """Return a value as plain JSON; NumPy's scalars are unpacked."""
+    if type(value) in (float, str, bool, int):
+        return value
     if isinstance(value, Unknown):
         return None
     if key.kind == "entries":

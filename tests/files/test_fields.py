@@ -298,3 +298,26 @@ def test_every_frame_is_a_pyvista_grid_at_its_time(tmp_path):
     assert np.array_equal(grid.cell_data["mises"], fields.cell_data("mises", 2))
     with pytest.raises(ResultError, match="frame 3 is asked for"):
         fields.grid(3)
+
+
+def test_strains_are_those_of_the_deformation_and_probes_take_the_nearest_place(tmp_path):
+    """A stretch of 10 %, a shear of 6 %, then a turn by a right angle, of which strains are free."""
+    fields = writer(tmp_path / "fields.vtkhdf")
+    F = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]) @ [
+        [1.1, 0.06, 0.0],
+        [0.0, 1.0, 0.0],
+        [0.0, 0.0, 1.0],
+    ]
+    for number, moved in enumerate((POINTS, POINTS @ F.T)):
+        fields.append(
+            float(number), {"displacement": moved - POINTS}, {"mises": np.array([3.0, 4.0 + number])}
+        )
+    read = read_fields(fields.path)
+    wanted = [[0.105, 0.033, 0.0], [0.033, 0.0018, 0.0], [0.0, 0.0, 0.0]]
+    assert read.strain(1) == pytest.approx(np.array([wanted] * 2), abs=1e-6)
+    far = POINTS.max(axis=0) * 1.01
+    assert read.probe("mises", far).tolist() == [4.0, 5.0]
+    assert read.probe("strain", far)[1] == pytest.approx(np.array(wanted), abs=1e-6)
+    assert read.probe("displacement", far)[1] == pytest.approx((F - np.eye(3)) @ POINTS.max(axis=0))
+    with pytest.raises(ResultError, match='"speed"'):
+        read.probe("speed", far)
