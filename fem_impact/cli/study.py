@@ -132,6 +132,16 @@ STUDIES = {
         19,
         draws=True,
     ),
+    "others": Study(
+        "tests of other people beside the solver: rods on anvils, spheres on glass",
+        "Four published series of aluminium and steel rods that were shot at an anvil, their final lengths "
+        "and feet, and one of spheres of alumina that slide on glass, their tangential restitution and spin: "
+        "each number beside the solver with all uncertainties (ASME V&V 20), and each series as a whole.",
+        "15 runs and 44 rods, some 3 min",
+        "one angle and three rods: 1 runs, under 1 min",
+        15,
+        1,
+    ),
     "joint": Study(
         "whether e, mu and Omega of a measured set agree with the tests together",
         "The errors of e, mu and Omega by the study validation, taken together with the correlations of "

@@ -93,7 +93,7 @@ def _model(p: Values, slices: float) -> Model:
     return replace(model, steps={"rod": CAUTION * model.step})
 
 
-def _strike(p: Values, slices: float) -> tuple[Array, float, State, int]:
+def strike(p: Values, slices: float) -> tuple[Array, float, State, int]:
     """Return length and foot radius, m, the ledger's residual over E_0, the end's state and number of cells.
 
     The section is a polygon of the round one's area.
@@ -150,8 +150,8 @@ def solve(p: Values) -> Solved:
         "m/s",
         f"cells are crushed where rho v^2 is over {HARDEST:g} yield stresses.",
     )
-    shape, missed, state, cells = _strike(p, p["slices"])
-    coarse, *_ = _strike(p, p["slices"] // 2)
+    shape, missed, state, cells = strike(p, p["slices"])
+    coarse, *_ = strike(p, p["slices"] // 2)
     exact = _reference(p, CELLS)
     near = abs(shape - coarse) + abs(exact - _reference(p, CELLS // 2))
     checks = [

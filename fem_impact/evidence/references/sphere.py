@@ -34,24 +34,6 @@ def oblique_sphere(
     return _rebound(row, lambda approach: (approach, 0.0), mass, v_n, v_t, impact.duration)
 
 
-def pair_nu(sphere: tuple[float, float], barrier: tuple[float, float]) -> float:
-    """Return Poisson's ratio of two equal bodies with the stiffness ratio of a pair, (E, nu) each.
-
-    The ratio of tangential to normal stiffness is 4 G*/E* with 1/G* = (2 - nu_1)/G_1 + (2 - nu_2)/G_2
-    (Mindlin 1949; Johnson, Contact Mechanics, 1985, section 7.3); that pressing shifts unequal skins
-    sideways is left out.
-
-    Examples
-    --------
-    >>> round(pair_nu((70e9, 0.3), (70e9, 0.3)), 12)
-    0.3
-    """
-    shear = 1 / sum((2 - nu) * 2 * (1 + nu) / E for E, nu in (sphere, barrier))
-    normal = 1 / sum((1 - nu**2) / E for E, nu in (sphere, barrier))
-    ratio = 4 * shear / normal
-    return (2 - 2 * ratio) / (2 - ratio)
-
-
 def oblique_ball(
     E_star: float, E_ball: float, nu: float, radius: float, mass: float, f: float, v_n: float, v_t: float
 ) -> SphereRebound:
