@@ -31,8 +31,10 @@ from rigid.experiments import Statistic
 
 SAMPLES = 64  # of each of the two samples that Sobol's indices are made of
 SEED = 20260101
-FOLLOWS = ("V_n", "V_t", "E_ln_over_E_0", "E_lt_over_E_0", "E_r_over_E_0")
-"""Quantities that follow from e, mu and Omega, and are no further evidence in the joint statement."""
+FOLLOWS = ("E_ln_over_E_0", "E_lt_over_E_0", "E_r_over_E_0")
+MOVES = ("V_n", "V_t")
+"""Quantities that follow from e, mu and Omega, and are no further evidence in the joint statement; velocities
+are where neither e nor mu is measured."""
 FRICTION = "surface.friction"
 Ends = tuple[Any, Any]
 
@@ -162,7 +164,8 @@ def validate(
         _comparison(scene.id, names[i], found[i], statistics[names[i]], float(np.sqrt(np.mean(change**2))))
         for i, change in zip(seen, moved, strict=True)
     )
-    free = [at for at, i in enumerate(seen) if names[i] not in FOLLOWS] or list(range(len(seen)))
+    follow = {*FOLLOWS, *(MOVES if {"e", "mu"} & set(names) else ())}
+    free = [at for at, i in enumerate(seen) if names[i] not in follow] or list(range(len(seen)))
     C = moved[free] @ moved[free].T / moved.shape[1]
     C += np.diag([comparisons[j].u_num ** 2 for j in free])
     C += tests.covariance([names[seen[j]] for j in free])

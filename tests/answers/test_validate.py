@@ -96,6 +96,13 @@ def test_any_number_of_an_outcome_may_be_measured(tmp_path):
     assert all(rows[name]["verdict"] for name in ("peak_force_N", "contact_time_s", "depth_m"))
 
 
+def test_velocities_are_evidence_where_neither_e_nor_mu_is_measured(tmp_path):
+    means = "quantity,mean,sd,n\nV_t_m_per_s,-8.5,0.2,4\nOmega_rad_per_s,20,5,4\n"
+    assert validate(scene_with(tmp_path, means), UNCERTAIN, "rigid", samples=2).joined == ("V_t", "Omega")
+    found = validate(scene_with(tmp_path, means + "mu,0.3,0.04,4\n"), UNCERTAIN, "rigid", samples=2)
+    assert found.joined == ("Omega", "mu")
+
+
 @pytest.mark.parametrize(
     ("means", "words"),
     [

@@ -112,6 +112,19 @@ def test_the_example_of_own_tests_is_compared(cli, tmp_path):
     page = "docs/how-to/own-tests.md"
     for name in ("my_tests.csv", "my_means.csv", "my-tested-rod.toml"):
         (tmp_path / name).write_text(marked(f"file: {name}", page) + "\n")
+    for name in ("sphere.csv", "sphere.toml"):
+        (tmp_path / name).write_text(marked(f"file: {name}", page) + "\n")
+    code, out, _ = cli(
+        "validate",
+        "sphere.toml",
+        "--fidelity",
+        "rigid",
+        "--samples",
+        "2",
+        "--uncertain",
+        "surface.friction=0.08,0.1",
+    )
+    assert (code, out.startswith("Measure better: surface.friction")) == (0, True)
     scene = (tmp_path / "my-tested-rod.toml").read_text()
     (tmp_path / "single.toml").write_text(scene.replace("my_means.csv", "my_tests.csv"))
     lines = [line.split()[1:] for line in marked_lines(page)]
