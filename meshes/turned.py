@@ -24,6 +24,9 @@ __all__ = ["cells_across", "contact_radius", "turned"]
 
 STEEPEST = np.tan(np.deg2rad(75.0))  # of the radius over z between two sections
 WORST = 0.12  # least scaled Jacobian of a cell
+# A body of more than ROWS rows of cells as high as wide has higher ones behind what its contact may reach, up
+# to HIGHEST times as high as wide, with a change over GROWTH of its diameters
+ROWS, HIGHEST, GROWTH = 500, 6.0, 6.0
 SLIVER = 0.02  # of a cell: fixed heights that lie nearer to each other are one
 
 
@@ -72,7 +75,7 @@ def turned(
         tail = end_of(_mirrored(body.line), body.half, across, closed=body.length - body.bored_from_to[1])
     start = tip.start if tip else 0.0
     low, high = _reached(body, start, zones, buffer)
-    heights = _heights(body, start, body.length - (tail.start if tail else 0.0), planes)
+    heights = _heights(body, start, body.length - (tail.start if tail else 0.0), planes, high)
     tail_start = body.length - tail.start if tail else np.inf
     exact = ((-np.inf, start), (low, high), (tail_start, np.inf))
     points, cells, layer_of = _sections(body, heights, exact)
@@ -136,8 +139,11 @@ def _reached(body: Revolved, start: float, zones: Sequence[Zone | Cloud], buffer
     return float(low), max(float(high), start)
 
 
-def _heights(body: Revolved, start: float, end: float, planes: Sequence[float]) -> FloatArray:
-    """(n + 1,) heights of the sections, m: as far apart as cells are wide, the planes among them."""
+def _heights(body: Revolved, start: float, end: float, planes: Sequence[float], reached: float) -> FloatArray:
+    """(n + 1,) heights of the sections, m: as far apart as cells are wide, the planes among them.
+
+    Above the height, m, ``reached`` by cells that may be split, those of a long body are farther apart.
+    """
     if not body.is_stack and end < start + 0.3 * float(body.pitch(np.array(start))):
         raise MeshError(
             f"length {body.length:.6g} m leaves no body between its ends, which need {start:.6g} m and "
@@ -149,7 +155,7 @@ def _heights(body: Revolved, start: float, end: float, planes: Sequence[float]) 
     least = max(1e-6 * body.length, SLIVER * float(body.pitch(np.array(start))))
     fixed = fixed[(fixed > start + least) & (fixed < end - least)]
     ends = [start, *fixed[np.diff(fixed, prepend=start) > least], end]
-    heights = np.concatenate([[start], *(_rows(body, low, high) for low, high in pairwise(ends))])
+    heights = np.concatenate([[start], *(_rows(body, low, high, reached) for low, high in pairwise(ends))])
     if body.is_stack:  # with a row alone it would not bend
         for low, high in body.plates:
             inside = heights[(heights > low - least) & (heights < high + least)]
@@ -158,12 +164,12 @@ def _heights(body: Revolved, start: float, end: float, planes: Sequence[float]) 
     return heights
 
 
-def _rows(body: Revolved, low: float, high: float) -> FloatArray:
-    """(k,) heights, m, behind ``low`` up to ``high`` of sections as far apart as their cells are wide."""
-    z = np.linspace(low, high, 41)
-    count = np.concatenate(
-        [[0.0], np.cumsum(0.5 * (1 / body.pitch(z[1:]) + 1 / body.pitch(z[:-1])) * (z[1] - z[0]))]
-    )
+def _rows(body: Revolved, low: float, high: float, reached: float) -> FloatArray:
+    """(k,) heights, m, behind ``low`` up to ``high`` of sections, see `_heights`."""
+    z, width = np.linspace(low, high, 41), 2.0 * float(body.line[:, 0].max())
+    most = np.clip(body.length * body.across / width / ROWS, 1.0, HIGHEST)
+    pitch = body.pitch(z) * (1.0 + (most - 1.0) * np.clip((z - reached) / (GROWTH * width), 0.0, 1.0))
+    count = np.concatenate([[0.0], np.cumsum(0.5 * (1 / pitch[1:] + 1 / pitch[:-1]) * (z[1] - z[0]))])
     cells = max(1, round(count[-1]))
     return np.asarray(np.interp(np.arange(1, cells + 1) * count[-1] / cells, count, z))
 

@@ -39,6 +39,7 @@ def scene_numbers() -> str:
 
 _PLACES = {"material": "`[projectile.material]` and `[barrier.material]`", "top": "Before the first table"}
 _PLACES |= {
+    "tube": "`[projectile]`, of a tube",
     "skin": "`[surface]`, for the effect machined-skin",
     "motion": "`[impact]` on a barrier that moves",
 }

@@ -13,6 +13,16 @@ PROJECTILE = (
     Parameter("diameter", "diameter of the rod", "length", 1e-4, 1.0),
     Parameter("tip_radius", "radius of the nose (tip A) or of the edge (tip B)", "length", 0.0, 0.5),
 )
+TUBE = (
+    Parameter(
+        "inner_diameter",
+        "diameter of a straight bore from tip to tail",
+        "length",
+        1e-5,
+        1.0,
+        derived="none: it is solid, or has a bore",
+    ),
+)
 SURFACE = (
     Parameter("friction", "Coulomb coefficient f", "", 0.0, 10.0),
     Parameter("friction_low", "lower end of the interval of f", "", 0.0, 10.0),

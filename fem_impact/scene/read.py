@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import partial
 from math import inf, isclose
 from pathlib import Path
@@ -213,6 +214,8 @@ def _check_measured(scene: Scene) -> None:
 
 def _projectile(table: Table) -> ProjectileSpec:
     """Read a rod with a tip, a named shape, a profile or a mesh, with a bore and segments or without."""
+    if tube := {key: table[key] for key in ("inner_diameter", "inner_diameter_m") if key in table}:
+        return _tube({key: value for key, value in table.items() if key not in tube}, tube)
     own = {
         "bore": stated_points(table.get("bore", ()), "bore"),
         "segments": listed(table["segments"], "segments", _segment, SEGMENT) if "segments" in table else (),
@@ -232,6 +235,16 @@ def _projectile(table: Table) -> ProjectileSpec:
         shape = Profile(points, known.get("profile_smooth", False))
         return ProjectileSpec.turned(shape, within(known, "material", read_material), **own)
     return _named_shape(known, own) if "shape" in known else _rod(known, own)
+
+
+def _tube(table: Table, inner: Table) -> ProjectileSpec:
+    """Read a projectile with a straight bore from tip to tail, which is stated by its diameter."""
+    if other := next((key for key in ("bore", "mesh") if key in table), ""):
+        problem = f"stands beside a {other}, which has its own."
+        raise SceneError(problem, key="inner_diameter", remedy="Keep one of the two.")
+    radius = numbers_of(inner, fields.TUBE)["inner_diameter"] / 2
+    solid = _projectile(table)
+    return replace(solid, bore=((0.0, radius), (solid.length, radius)))
 
 
 LENGTH_OF = {
@@ -257,10 +270,8 @@ def _refuse_hollow(table: Table) -> None:
     """Refuse other words for a bore, and say how it is stated."""
     for key in table:
         if any(word in key for word in ("inner", "wall", "hollow")):
-            points = (
-                'bore = [["0 mm", "7 mm"], ["80 mm", "7 mm"]], each its place from the tip and inner radius'
-            )
-            raise SceneError(UNKNOWN_KEY, key=key, value=table[key], remedy=f"State the bore: {points}.")
+            remedy = 'State inner_diameter = "14 mm", or a bore by points (place from the tip, radius).'
+            raise SceneError(UNKNOWN_KEY, key=key, value=table[key], remedy=remedy)
 
 
 def _of_mesh(table: Table, own: dict[str, Any]) -> ProjectileSpec:

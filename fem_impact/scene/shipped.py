@@ -187,6 +187,8 @@ def _change(data: dict[str, Any], key: str, value: Any) -> None:
     if path == ["projectile"] and bare(last) in (BY_LENGTH, *REPLACED):
         for other in {BY_LENGTH, *REPLACED} - {bare(last)}:
             table.pop(other, None)  # one of them states the form of a nose
+    if path == ["projectile"] and bare(last) == "inner_diameter":
+        table.pop("bore", None)  # it states the bore
     if path == ["projectile"] and last == "shape":
         for other in TIP:
             table.pop(other, None)  # a shape has its own

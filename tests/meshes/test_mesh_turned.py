@@ -51,6 +51,20 @@ def test_shapes_make_fair_meshes_of_their_volume(name):
         assert 0.0 < 1 - 2 * found.volume / volume_of(SHAPES[name]) < (0.04 if across == 8 else 0.018)
 
 
+def test_a_long_tube_has_higher_cells_behind_its_tip_and_equal_slices_up_to_its_tail():
+    tube, bore = np.array([[0, 0], [R, 0], [R, 2.0]]), np.array([[7e-3, 0.0], [7e-3, 2.0]])
+    zone = Zone(np.array([R, 0.0, 0.0]), np.eye(3), np.full(3, -1e-3), np.full(3, 1e-3))
+    body = meshes.turned(tube, 8, [zone, zone], bore=bore)
+    heights = np.unique(np.round(body.mesh.points[body.body_nodes[0], 2], 12))
+    assert np.ptp(np.diff(heights)) < 1e-11
+    assert body.slice_length == pytest.approx(2.0 / 500, rel=0.02)
+    assert body.body_start < 8 * 2 * R
+    edge = np.unique(np.round(body.mesh.points[np.hypot(*body.mesh.points[:, :2].T) > R - 1e-9, 2], 12))
+    assert np.diff(edge[edge < R]).max() < 1.2 * 2 * R / 8
+    short = meshes.turned(tube * [1, 0.3], 8, [zone, zone], bore=bore * [1, 0.3])
+    assert short.slice_length == pytest.approx(2 * R / 8, rel=0.02)
+
+
 def test_a_refined_tip_lies_on_the_exact_surface():
     line = SHAPES["sphere-cone"]
     place = np.array([3e-3 * np.sin(0.7), 0.0, 3e-3 * (1 - np.cos(0.7))])

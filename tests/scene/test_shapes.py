@@ -195,10 +195,28 @@ def test_a_shape_does_not_repeat_a_measured_set():
         read_dict({**scene({**rod, "bore": [["20 mm", "4 mm"], ["80 mm", "4 mm"]]}), "measured": "t5b"})
 
 
-@pytest.mark.parametrize("key", ["inner_diameter", "wall_thickness"])
-def test_another_word_for_a_bore_is_answered_with_the_bore(key):
-    tube = {"tip": "plain", "length": "80 mm", "diameter": "19 mm", key: "14 mm"}
-    with pytest.raises(SceneError, match=rf"projectile\.{key} = .*is not a known key.*bore = .*inner radius"):
+TUBE = {"tip": "plain", "length": "80 mm", "diameter": "19 mm"}
+
+
+def test_an_inner_diameter_states_a_bore_from_tip_to_tail():
+    tube = read_dict(scene({**TUBE, "inner_diameter": "14 mm"}))
+    assert tube.projectile.bore == ((0.0, 0.007), (0.08, 0.007))
+    assert read_dict(scene({**TUBE, "bore": [["0 mm", "7 mm"], ["80 mm", "7 mm"]]})) == tube
+    assert replace(tube, "projectile.inner_diameter_m", 0.012).projectile.bore[1] == (0.08, 0.006)
+    assert replace(tube, "projectile.length", "90 mm").projectile.bore[1] == (0.09, 0.007)
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "told"),
+    [
+        ("wall_thickness", "2 mm", r"projectile\.wall_thickness = .*is not a known key.*inner_diameter = "),
+        ("inner_diameter", "19 mm", r"bounds no body"),
+        ("bore", [["0 mm", "6 mm"], ["80 mm", "6 mm"]], r"inner_diameter: stands beside a bore"),
+    ],
+)
+def test_a_tube_is_stated_once_and_has_a_wall(key, value, told):
+    tube = {**TUBE, "inner_diameter": "14 mm", key: value}
+    with pytest.raises(SceneError, match=told):
         read_dict(scene(tube))
 
 
