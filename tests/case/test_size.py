@@ -113,6 +113,13 @@ def test_memory_of_the_modes_of_a_users_mesh(cells, measured, tmp_path):
     assert off(planned.size.memory, measured * 1e6) < 1.2
 
 
+def test_the_time_of_a_users_mesh_holds_that_of_its_modes(tmp_path):
+    """They took 9.5 s of a busy core."""
+    size = Case.of(half_box(tmp_path, 18, 9, 90)).size
+    rest = sizes.run_time(size.rod + size.barrier, size.yielding, size.steps)
+    assert off(size.time - rest, 9.5) < 2
+
+
 def test_a_users_mesh_that_does_not_fit_is_refused_before_any_work(tmp_path, monkeypatch):
     monkeypatch.setattr(sizes, "machine_memory", lambda: 8e8)
     scene = half_box(tmp_path, 32, 16, 32)

@@ -89,6 +89,13 @@ def test_a_factor_that_is_too_large_is_refused(long, monkeypatch):
         rod_modes(model.rod_stiffness, model.mass[:n], model.inverse_mass[:n] == 0, 5)
 
 
+def test_a_banded_factor_gives_the_modes_of_a_sparse_one(long, monkeypatch):
+    monkeypatch.setattr(eigen, "splu", None)
+    monkeypatch.setattr(eigen, "MANY", 0)
+    monkeypatch.setattr(eigen, "BAND", 100.0)
+    assert _modes(long[0], 11).omega == pytest.approx(long[1].omega[:11], rel=1e-8)
+
+
 def test_modes_are_orthonormal_and_solve_the_eigenproblem(long):
     model, modes = long
     n = model.layout.rod_size
