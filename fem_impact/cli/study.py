@@ -81,7 +81,7 @@ STUDIES = {
         "other diameters, speeds and angles, and strength from hardness. Finite elements on levels, "
         "three measured sets and the reduced model beside them. It says what the published limit, gamma = "
         "26.45, means.",
-        "870 runs, 358 of them finite elements, some 60 min",
+        "870 runs, 358 of them finite elements, some 2 h",
         "five rods, one place of the grid: 48 runs, some 3 min",
         870,
         48,

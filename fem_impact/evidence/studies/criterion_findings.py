@@ -53,7 +53,6 @@ def by_picture(
             *answer(body),
             *solid_onsets(body, solid),
             *modal_onsets(rods, body, solid),
-            *verdicts(body),
             *confirmed(ends, angles),
         ],
         "angles": spreads(body),
@@ -167,23 +166,6 @@ def _passed(rods: DataFrame, measure: str = "error_of_e") -> str:
     """Return from which slenderness a measure exceeds each level."""
     onsets = [(level, crossing(rods, level, measure)) for level in LEVELS]
     return ", ".join(f"{level:.0%} beyond gamma {gamma:.1f}" for level, gamma in onsets if gamma is not None)
-
-
-def verdicts(families: Families) -> list[str]:
-    """Return, per family, whether the limit of Eq 29 is safe for an error of `JUDGED`."""
-    sentences = []
-    for name, rods in families.items():
-        onset = crossing(rods, JUDGED)
-        if onset is None:
-            where = "never reaches" if rods.error_of_e.max() < JUDGED else "is always above"
-            sentences.append(f"{name}: the error {where} {JUDGED:.0%} on these rods.")
-            continue
-        word = "unsafe" if onset < LIMIT else "too strict" if onset > 1.15 * LIMIT else "about right and safe"
-        sentences.append(
-            f"{name}: with {JUDGED:.0%} allowed, gamma <= {LIMIT} is {word}: e is off by that at "
-            f"gamma {onset:.1f}."
-        )
-    return sentences
 
 
 def confirmed(ends: DataFrame, angles: DataFrame) -> list[str]:
