@@ -1,9 +1,9 @@
 """How large a run of the solid fidelity becomes: elements, memory, steps and time, before a mesh is made.
 
 The elements follow from the volumes of body and fine zone at each level of splitting, as the mesher splits
-them (`meshes.refine`). What an element costs was fitted to the 39 sizes of runs of the 13 measured sets that
-ship with the package (``case/data/summary.json``; ``tests/case/test_size.py`` repeats the comparison):
-elements within a quarter, memory within a third, steps and time within a factor of two.
+them (`meshes.refine`). What an element costs was fitted to runs of the 13 measured sets on meshes about an
+estimated contact. ``tests/case/test_size.py`` holds elements and memory to their default runs, which ship with
+the package (``case/data/summary.json``).
 """
 
 from __future__ import annotations
