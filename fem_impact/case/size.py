@@ -2,8 +2,8 @@
 
 The elements follow from the volumes of body and fine zone at each level of splitting, as the mesher splits
 them (`meshes.refine`). What an element costs was fitted to runs of the 13 measured sets on meshes about an
-estimated contact. ``tests/case/test_size.py`` holds elements and memory to their default runs, which ship with
-the package (``case/data/summary.json``).
+estimated contact. ``tests/case/test_size.py`` holds elements and memory to their default runs, which ship
+with the package (``case/data/summary.json``).
 """
 
 from __future__ import annotations

@@ -55,9 +55,7 @@ def check_elements(scene):
 
 def default_runs():
     for name, entry in summary()["scenes"].items():
-        yield pytest.param(
-            entry["scene"], next(one for one in entry["settings"] if one["default"]), id=name
-        )
+        yield pytest.param(entry["scene"], next(one for one in entry["settings"] if one["default"]), id=name)
 
 
 @pytest.mark.parametrize("data, setting", list(default_runs()))
