@@ -40,10 +40,10 @@ def scene_numbers() -> str:
 _PLACES = {"material": "`[projectile.material]` and `[barrier.material]`", "top": "Before the first table"}
 _PLACES |= {
     "tube": "`[projectile]`, of a tube",
-    "skin": "`[surface]`, for the effect machined-skin",
     "motion": "`[impact]` on a barrier that moves",
 }
 _LAWS = {"rate": material_fields.RATES, "flow": material_fields.FLOWS}
+_PLACES["skin"] = "`skin` of a material"
 _PLACES |= {
     f"{key} {law}": f'`{key}` of a material, with `law = "{law}"`'
     for key, laws in _LAWS.items()
@@ -56,6 +56,7 @@ def _groups() -> Iterator[tuple[str, tuple[Parameter, ...]]]:
     for name, value in vars(fields).items():
         if _parameters(value):
             yield name.strip("_").lower(), value
+    yield "skin", material_fields.SKIN
     for key, laws in _LAWS.items():
         yield from ((f"{key} {law}", numbers) for law, numbers in laws.items() if numbers)
 
@@ -74,6 +75,7 @@ def scene_choices() -> str:
     """Keys that take one of a few words."""
     choices = {
         "law of a material": material_fields.FlowLaw,
+        "shape of a material's skin": material_fields.SkinShape,
         "barrier.boundary": fields.Boundary,
         "barrier.support": fields.Support,
         "accuracy.element": fields.Element,

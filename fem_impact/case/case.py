@@ -11,6 +11,7 @@ from fem_impact.case.choose import Decision, all_effects, choices, decide, negle
 from fem_impact.case.effects.fill import filled
 from fem_impact.case.effects.loss import require_closed_form
 from fem_impact.case.effects.registry import AUTO, NAMES, check_effects
+from fem_impact.case.effects.skin import NOT_RIGID, require_skins
 from fem_impact.case.effects.slots import ModelSpec
 from fem_impact.case.elastic_only import require_crushing_named
 from fem_impact.case.layers import block_of, require_layers, thin_layer
@@ -28,9 +29,9 @@ from fem_impact.case.mesh import require_mesh
 from fem_impact.case.metals import unknowns
 from fem_impact.case.plates import is_thin, require_plate, require_plate_mesh
 from fem_impact.case.record import ContactRecord
-from fem_impact.case.recorded import AnyZones, recorded_zones
+from fem_impact.case.recorded import AnyZones, recorded_zones, unresolved_skins
 from fem_impact.case.size import RunSize, require_memory, require_rest, run_size
-from fem_impact.case.zones import Zones, require_fine_zone, require_layer, zones_of
+from fem_impact.case.zones import Zones, require_fine_zone, zones_of
 from fem_impact.errors import UsageError, did_you_mean
 from fem_impact.options import FIDELITIES
 from fem_impact.outcome.groups import EffectChoice
@@ -88,6 +89,7 @@ class Case:
             require_point(case.bodies, fidelity)
         slots = case.slots
         require_layers(case.bodies, fidelity)
+        require_skins(case.bodies, fidelity)
         require_closed_form(case.bodies, slots, fidelity)
         if fidelity == "solid":
             require_carried(scene, slots)
@@ -106,8 +108,6 @@ class Case:
             require_plate_mesh(self.bodies, self.zones.base, block_of(self.bodies, self.zones))
         if not slots.vibrating:
             require_rest(self.bodies, self._estimated)
-        if slots.skin and slots.barrier_law:
-            require_layer(slots.skin, self.zones.barrier_size, self.zones.skin_rows)
         self.require_memory()
 
     def require_memory(self) -> None:
@@ -199,7 +199,9 @@ class Case:
         of_scene = scene_limitations(self.bodies, self.slots.bending is not None)
         unstated = limitations("input", *unknowns(self.bodies))
         if self.fidelity != "solid":
-            return (*of_scene, *unstated)
+            skin = NOT_RIGID if "machined-skin" in self.active else ""
+            return (*of_scene, *limitations("model", skin), *unstated)
+        one_mesh = self.record is not None or self.scene.accuracy.levels == 1
         return (
             *of_scene,
             *limitations("input", *neglected(self.choices)),
@@ -207,6 +209,8 @@ class Case:
             # a record shows how wide the contact is
             *limitations("resolution", coarse_tip(self.bodies) if self.record is None else ""),
             *limitations("resolution", thin_cells(self.scene.projectile)),
+            # of levels only a mesh that follows a record is known
+            *limitations("resolution", *(unresolved_skins(self.slots, self.zones) if one_mesh else ())),
             *unstated,
         )
 

@@ -153,7 +153,7 @@ def _barrier(scene: Scene) -> str:
 
 def _surface(scene: Scene, active: Collection[str]) -> str:
     known = library.surfaces().values()
-    bare = replace(scene.surface, skin_depth=None, skin_factor=None, sliding_law=None)
+    bare = replace(scene.surface, sliding_law=None)
     if "friction" not in active or bare in known:
         return ""
     f, source = scene.surface.friction, scene.surface.source
@@ -375,9 +375,7 @@ def require_own_mesh(bodies: Bodies, fidelity: str) -> None:
         )
         remedy = "Use --fidelity solid or rigid, or state the shape as a profile."
         raise SceneError(problem, key="projectile.mesh", value=mesh.path, remedy=remedy)
-    if fidelity == "solid" and "machined-skin" in bodies.effects:
-        problem = (
-            "has the effect machined-skin, but how deep a node lies under a mesh's facets is not computed."
-        )
+    if fidelity == "solid" and "machined-skin" in bodies.effects and bodies.contact.rod.skin:
+        problem = "has a hardened layer, but how deep a node lies under a mesh's facets is not computed."
         remedy = 'Add "-machined-skin" to effects.'
         raise SceneError(problem, key="effects", value=list(scene.effects), remedy=remedy)

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import sqrt
+from math import log2, sqrt
 
 import numpy as np
 
 from fem_impact.arrays import Array, Bools
 from fem_impact.case.bodies import Bodies
+from fem_impact.case.effects.slots import ModelSpec
 from fem_impact.case.plates import is_thin
 from fem_impact.case.record import BodyRecord, ContactRecord
-from fem_impact.case.zones import Corners, Zones, base_cells, skin_rows
+from fem_impact.case.zones import SKIN_ROWS, Corners, Zones, base_cells, skin_rows
 from fem_impact.physics.plate import plate_waves
 from meshes import Cloud, HexMesh, thin_skin_rise
 
@@ -136,7 +137,37 @@ def recorded_zones(bodies: Bodies, record: ContactRecord) -> RecordedZones:
     rows = skin_rows(bodies, base / 2**below) if conforming and bodies.contact.f > 0 else 0
     edges = plate_waves(bodies.contact)[1] if is_thin(bodies) else 0.0
     rod_rows = ROD_ROWS if levels and bodies.contact.rod_yields else 0
+    if rod_rows and "machined-skin" in bodies.effects and bodies.contact.rod.skin:
+        rod_rows = SKIN_ROWS
     return RecordedZones(base, rod_base, levels, below, record, conforming, rows, rod_rows, edges)
+
+
+def rows_within(depth: float, h: float, rows: int) -> float:
+    """Return how many rows lie within a ``depth``, m, of which so many are drawn together, of height ``h``.
+
+    Examples
+    --------
+    >>> rows_within(0.3, 0.4, 2), rows_within(1.1, 0.4, 2)
+    (2.0, 4.0)
+    """
+    drawn = log2(1 + depth / h * 2**rows)
+    return drawn if drawn <= rows else rows + depth / h - 1 + 0.5**rows
+
+
+def unresolved_skins(spec: ModelSpec, zones: AnyZones) -> tuple[str, ...]:
+    """Say of each body that yields in how few rows of cells its hardened layer lies."""
+    told = []
+    for body, law, skin, h, drawn in (
+        ("rod", spec.rod_law, spec.rod_skin, zones.tip_size, zones.rod_rows),
+        ("barrier", spec.barrier_law, spec.barrier_skin, zones.barrier_size, zones.skin_rows),
+    ):
+        rows = rows_within(skin.depth, h, drawn) if law and skin else SKIN_ROWS
+        if rows < SKIN_ROWS and skin:
+            told.append(
+                f"The hardened layer of the {body}, {1e3 * skin.depth:.2g} mm, lies in {rows:.2g} rows of "
+                f"cells, where {SKIN_ROWS} resolve it: give accuracy.levels or a smaller accuracy.tip_size."
+            )
+    return tuple(told)
 
 
 def patch_radius(record: BodyRecord) -> float:

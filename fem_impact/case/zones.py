@@ -10,10 +10,10 @@ import numpy as np
 from fem_impact.arrays import Array, Bools
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.cells import body_cell, contact_radius, levels_of, rod_cell
+from fem_impact.case.effects.skin import skin_of
 from fem_impact.case.plates import doublings, is_thin
 from fem_impact.errors import SceneError
 from fem_impact.physics.contact import FLAT, ContactEstimate, ContactPair
-from fem_impact.physics.hardening import Skin
 from fem_impact.physics.plate import plate_waves
 from fem_impact.scene.barrier import Barrier
 from meshes import HexMesh, Zone, thin_skin_rise
@@ -60,7 +60,7 @@ class Zones:
     half : those of the zone in which cells may yield
     reach : how far the rod's zone follows its face down and up the slope; along : the same of the barrier's
     conforming : the barrier flows under all of the contact, so that its surface takes the rod's form
-    skin_rows : thin rows of cells at the top of the barrier
+    skin_rows : thin rows of cells at the top of the barrier; rod_rows : of the rod, which has none
     edges : how far a plate that is meshed through its thickness goes beyond its fine zone; else 0
     """
 
@@ -74,6 +74,7 @@ class Zones:
     conforming: bool
     skin_rows: int
     edges: float = 0.0
+    rod_rows: int = 0
 
     @property
     def tip_size(self) -> float:
@@ -233,11 +234,11 @@ def half_widths(size: ContactEstimate, h: float, share: Extents = (1.0, 1.0, 1.0
 def skin_rows(bodies: Bodies, h: float) -> int:
     """Return how many rows of cells ``h`` m high are drawn together at the skin of a plate that may stick.
 
-    A hardened layer in force may ask for more of them, until the first row is no higher than it.
+    A hardened layer in force may ask for more of them, until `SKIN_ROWS` lie in it.
     """
     halvings = floor(log2(h / (LOW * bodies.estimate.depth)))
-    layer = bodies.scene.surface.skin_depth if "machined-skin" in bodies.effects else None
-    most = SKIN_ROWS if layer is None else max(SKIN_ROWS, ceil(log2(h / layer)))
+    skin = skin_of(bodies.contact.barrier) if "machined-skin" in bodies.effects else None
+    most = max(SKIN_ROWS, ceil(log2(h * (2**SKIN_ROWS - 1) / skin.depth))) if skin else SKIN_ROWS
     return min(max(halvings, 0), most)
 
 
@@ -275,20 +276,6 @@ def slide(bodies: Bodies, t: float) -> Ways:
         return 0.0, 0.0
     way = SLIDE * bodies.estimate.depth * abs(speed) / max(bodies.contact.approach, 1e-6)
     return _ways(copysign(max(way, DRAG * t), speed))
-
-
-def require_layer(skin: Skin, barrier_size: float, skin_rows: int) -> None:
-    """Refuse a hardened layer that fills no Gauss point of the barrier's first row (SceneError)."""
-    row = barrier_size * 0.5**skin_rows
-    enough = 1.4 * skin.depth * 2**skin_rows
-    if skin.depth < row / 2:
-        raise SceneError(
-            f"is thinner than half the first row of the barrier's cells, {row * 1e3:.2g} mm: the mesh does "
-            "not resolve it.",
-            key="surface.skin_depth",
-            value=f"{skin.depth * 1e3:.3g} mm",
-            remedy=f"Give accuracy.barrier_size at most {enough * 1e3:.2g} mm, or leave machined-skin out.",
-        )
 
 
 def require_fine_zone(bodies: Bodies) -> None:

@@ -19,6 +19,7 @@ COMMANDS = {
     "assess": "say whether rigid theory may be used for a scene, and what vibration costs",
     "sweep": "compute a scene with values varied in all combinations",
     "cost": "show what accuracy costs: error and computing time of every setting",
+    "hardness": "say which hardened layers give the hardness that a material states",
     "scenes": "list the shipped scenes, or the materials",
     "report": "write the report as one HTML file",
     "render": "make a film of the stress waves",

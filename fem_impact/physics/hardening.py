@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from itertools import pairwise
 from math import log, log1p, sqrt
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fem_impact.arrays import Array
 from fem_impact.physics.contact import ContactEstimate
 from fem_impact.scene.material import JohnsonCookRate
 
@@ -61,12 +62,31 @@ def rate_law(metal: Material) -> RateLaw | None:
     return CowperSymonds(rate.D, rate.q) if rate else None
 
 
+SkinShape = Literal["even", "exponential"]
+
+
 @dataclass(frozen=True, slots=True)
 class Skin:
-    """A hardened layer: depth, m, under the surface, and factor of the flow stress in it."""
+    """A hardened layer under a surface.
+
+    Attributes
+    ----------
+    depth : m, of a layer of even strength; of an exponential one, where 1/e of the gain is left
+    factor : of the flow stress at the surface
+    shape : of the gain over the depth under the surface
+    """
 
     depth: float
     factor: float
+    shape: SkinShape = "even"
+
+    def mean(self, top: ArrayLike, bottom: ArrayLike) -> Array:
+        """Return the mean factor between depths under the surface, m, of one shape."""
+        over, under = np.asarray(top) / self.depth, np.asarray(bottom) / self.depth
+        gain = np.minimum(under, 1) - np.minimum(over, 1)
+        if self.shape == "exponential":
+            gain = np.exp(-over) - np.exp(-under)
+        return np.asarray(1 + (self.factor - 1) * gain / np.maximum(under - over, 1e-9))
 
 
 class PowerLaw(NamedTuple):

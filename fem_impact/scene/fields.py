@@ -28,12 +28,6 @@ SURFACE = (
     Parameter("friction_low", "lower end of the interval of f", "", 0.0, 10.0),
     Parameter("friction_high", "upper end of the interval of f", "", 0.0, 10.0),
 )
-SKIN = (
-    Parameter(
-        "skin_depth", "depth of the layer that cutting has hardened", "length", 1e-6, 1e-3, derived="none"
-    ),
-    Parameter("skin_factor", "flow stress of that layer over that of the bulk", "", 1.0, 5.0, derived="none"),
-)
 TOP = (Parameter("restitution", "energetic restitution of the rigid fidelity", "", 0.0, 1.0),)
 _INTO = "n points out of the barrier, so a rod that strikes it has v_n below 0."
 ANGLE = Parameter(

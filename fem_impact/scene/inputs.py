@@ -68,8 +68,8 @@ def materials_of(scene: Scene) -> dict[str, Material]:
 
 
 def _rows(key: str, value: Any, source: str = STATED) -> list[tuple[str, str, str]]:
-    """Return (input, value, source) of each value below a key; a law of rate or flow is one value."""
-    if isinstance(value, dict) and key.endswith((".rate", ".flow")):
+    """Return (input, value, source) of each value below a key; laws and a skin are one value each."""
+    if isinstance(value, dict) and key.endswith((".rate", ".flow", ".skin")):
         return [(key, ", ".join(f"{name} {part}" for name, part in value.items()), source)]
     if isinstance(value, dict):
         # a section with a density is a material, of which only the numbers have a source

@@ -51,6 +51,33 @@ RATES: dict[str, type[Rate]] = {kind.law: kind for kind in (JohnsonCookRate, Cow
 
 
 @dataclass(frozen=True, slots=True)
+class SkinSpec:
+    """A layer that machining has hardened, at the surface of a body of the material.
+
+    Attributes
+    ----------
+    factor : flow stress at the surface over that of the bulk
+    depth : m; None: it follows from the hardness of the material, measured with a load
+    load : kgf, of the hardness test; None: the depth is stated
+    shape : of the gain over the depth
+    """
+
+    factor: float
+    depth: float | None = None
+    load: float | None = None
+    shape: material_fields.SkinShape = "even"
+
+    def __post_init__(self) -> None:
+        check_numbers(self, material_fields.SKIN)
+        check_choice(self.shape, get_args(material_fields.SkinShape), "shape")
+        if self.depth is None and self.load is None:
+            remedy = "Give it, or the load of the hardness test, from which the depth then follows."
+            raise SceneError("is missing.", key="depth", remedy=remedy)
+        if self.depth is not None and self.load is not None:
+            raise SceneError("stands beside depth.", key="load", remedy="Keep one of the two.")
+
+
+@dataclass(frozen=True, slots=True)
 class Material:
     """A solid: E, yield_stress and ultimate_stress in Pa, nu dimensionless, rho in kg/m3.
 
@@ -67,6 +94,7 @@ class Material:
     family : by which friction is looked up and what an elastic body leaves out is told; empty: by its name
     sources : key and source of values, as the user states them
     rate : how flow stress grows with the strain rate; None: no data, no effect
+    skin : the hardened layer at the surface; None: none is known
     """
 
     name: str
@@ -86,6 +114,7 @@ class Material:
     family: str = ""
     loss_factor: float | None = None
     sources: tuple[tuple[str, str], ...] = ()
+    skin: SkinSpec | None = None
 
     def __post_init__(self) -> None:
         check_text(self.name, "name", 60)
@@ -126,7 +155,7 @@ def _check_strengths(metal: Material) -> None:
             "leave out yield_stress too: the body then never yields."
         )
         raise SceneError("is missing beside yield_stress.", key="ultimate_stress", remedy=remedy)
-    for key in ("ultimate_stress", *CURVES, "rate"):
+    for key in ("ultimate_stress", *CURVES, "rate", "skin"):
         if getattr(metal, key) not in (None, inf) and not metal.yields:
             raise SceneError("means nothing without yield_stress.", key=key, remedy="Leave it out.")
     if metal.yields and metal.yield_stress > MOST_STRAIN * metal.E:
@@ -162,6 +191,20 @@ def _check_law(metal: Material) -> None:
         value = f"{metal.tangent_modulus / 1e9:.4g} GPa"
         raise SceneError("is not below E, the slope before yield.", key="tangent_modulus", value=value)
     _check_flow(metal)
+    _check_skin(metal)
+
+
+def _check_skin(metal: Material) -> None:
+    """Refuse a skin whose depth follows from a hardness that is not stated, or that the bulk has."""
+    if metal.skin is None or metal.skin.load is None:
+        return
+    if metal.hardness is None:
+        remedy = "Give it, or skin.depth in place of skin.load."
+        raise SceneError("is missing beside skin.load.", key="hardness", remedy=remedy)
+    if metal.law == "hardness":
+        remedy = 'Write law = "tensile", or give skin.depth.'
+        problem = "gives the bulk the hardness that the skin is to explain."
+        raise SceneError(problem, key="law", value=metal.law, remedy=remedy)
 
 
 def _check_flow(metal: Material) -> None:

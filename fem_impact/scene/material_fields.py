@@ -46,6 +46,26 @@ MATERIAL = (
     Parameter("conductivity", "conductivity of heat", "conductivity", 1e-3, 1e5, derived="unknown"),
     Parameter("heat_capacity", "heat capacity of a mass", "heat capacity", 1e-3, 1e5, derived="unknown"),
 )
+SKIN = (
+    Parameter("factor", "flow stress at the surface over that of the bulk", "", 1.0, 5.0),
+    Parameter(
+        "depth",
+        "depth of the layer; of an exponential one, where 1/e of the gain is left",
+        "length",
+        1e-6,
+        1e-3,
+        derived="the least at which a layer of that factor meets the hardness at the load",
+    ),
+    Parameter(
+        "load",
+        "load of the hardness test, kgf: 30 of HV 30",
+        "",
+        1.0,
+        120.0,
+        derived="none: the depth is stated",
+    ),
+)
+SkinShape = Literal["even", "exponential"]  # of the gain of flow stress over the depth under the surface
 FlowLaw = Literal["tensile", "hardness"]  # what the power law of hardening passes through beside yield
 PLASTIC_STRAIN = Parameter("strain", "plastic strain of a point", "", 0.0, 100.0)
 FLOW_STRESS = Parameter("stress", "true stress of a point", "stress", 1e3, 1e12)

@@ -9,7 +9,7 @@ from fem_impact.errors import SceneError
 from fem_impact.scene import material_fields
 from fem_impact.scene.checks import check_choice, check_text
 from fem_impact.scene.flow import FLOWS, Flow, TableFlow
-from fem_impact.scene.material import RATES, Material, Rate
+from fem_impact.scene.material import RATES, Material, Rate, SkinSpec
 from fem_impact.scene.tables import Table, check_keys, needed, numbers_of, within
 from fem_impact.scene.units import parse_number, parse_quantity
 
@@ -24,13 +24,13 @@ def material_of(name: Any, table: Table, others: Iterable[str] = ()) -> Material
     SceneError
         A key is unknown, a value is missing or refused, or values contradict each other.
     """
-    named = ("law", "rate", "flow", "family", *others)
+    named = ("law", "rate", "flow", "skin", "family", *others)
     numbers = numbers_of(table, material_fields.MATERIAL, (*named, "source", "sources"))
     stated: dict[str, Any] = {
         f.key: f.checked(numbers[f.key]) for f in material_fields.MATERIAL if numbers[f.key] is not None
     }
     stated |= {key: table[key] for key in ("law", "family") if key in table}
-    for key, read in (("rate", _rate), ("flow", _flow)):
+    for key, read in (("rate", _rate), ("flow", _flow), ("skin", _skin)):
         if key in table:
             stated[key] = within(table, key, read)
     if isinstance(stated.get("flow"), TableFlow):
@@ -56,6 +56,11 @@ def _sources(table: Table, stated: list[str]) -> tuple[tuple[str, str], ...]:
 def _rate(table: Table) -> Rate:
     law = check_choice(needed(table, "law"), tuple(RATES), "law")
     return RATES[law](**numbers_of(table, material_fields.RATES[law], ("law",)))
+
+
+def _skin(table: Table) -> SkinSpec:
+    shape = {"shape": table["shape"]} if "shape" in table else {}
+    return SkinSpec(**numbers_of(table, material_fields.SKIN, ("shape",)), **shape)
 
 
 def _flow(table: Table) -> Flow:

@@ -177,7 +177,7 @@ def _open_at_tail(rod: Any, was: ProjectileSpec) -> None:
 
 def _change(data: dict[str, Any], key: str, value: Any) -> None:
     *path, last = key.split(".")
-    if path[-2:] in (["material", "rate"], ["material", "flow"]):
+    if path[-2:] in (["material", "rate"], ["material", "flow"], ["material", "skin"]):
         _open_law(_section(data, path[:-1], key), path[-1], last)
     if not path and last not in data:
         _refuse_bare(key, data)
@@ -257,7 +257,7 @@ def _section(data: dict[str, Any], path: list[str], key: str) -> dict[str, Any]:
 
 
 def _open_law(material: dict[str, Any], kind: str, last: str) -> None:
-    """Make the table of a law of rate or flow; another law leaves none of the old one's numbers."""
+    """Make the table of a law or a skin; another law leaves none of the old one's numbers."""
     if last == "law" or kind not in material:
         material[kind] = {}
 
@@ -276,5 +276,5 @@ def _rename(table: dict[str, Any], path: list[str], last: str) -> None:
         if last == "friction":
             table |= {"friction_low": table["friction"], "friction_high": table["friction"]}
     elif path == ["surface"] and last == "state":
-        for key in (*PAIR, "skin_depth", "skin_factor"):
+        for key in PAIR:
             table.pop(key, None)

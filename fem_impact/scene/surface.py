@@ -1,4 +1,4 @@
-"""The state of surfaces that touch: Coulomb friction, its interval and source, a hardened layer."""
+"""The state of surfaces that touch: Coulomb friction, its interval and source."""
 
 from __future__ import annotations
 
@@ -16,9 +16,7 @@ class Surface:
     """State of the two surfaces: Coulomb f that goes in, its interval and where they come from.
 
     ``pair`` is that of a table of dry pairs of materials, for a scene that states no surface.
-    ``skin_depth``, m, and ``skin_factor`` are those of the layer that cutting has hardened, of freshly cut
-    surfaces alone; None: no layer is known. ``sliding_law`` is how friction changes with speed; None: it
-    does not.
+    ``sliding_law`` is how friction changes with speed; None: it does not.
     """
 
     state: Literal["machined", "contaminated", "cleaned", "pair", "custom"]
@@ -26,28 +24,12 @@ class Surface:
     friction_low: float
     friction_high: float
     source: str
-    skin_depth: float | None = None
-    skin_factor: float | None = None
     sliding_law: SlidingLaw | None = None
 
     def __post_init__(self) -> None:
         check_choice(self.state, ("machined", "contaminated", "cleaned", "pair", "custom"), "state")
         check_numbers(self, fields.SURFACE)
-        check_numbers(self, fields.SKIN)
         check_text(self.source, "source", 1000)
-        # refuse half a hardened layer, or one on surfaces that were not freshly cut
-        stated = [key for key in ("skin_depth", "skin_factor") if getattr(self, key) is not None]
-        if len(stated) == 1:
-            other = "skin_factor" if stated == ["skin_depth"] else "skin_depth"
-            raise SceneError(
-                "is missing.", key=other, remedy=f"Give it beside {stated[0]}, or leave out both."
-            )
-        if stated and self.state in ("contaminated", "cleaned"):
-            raise SceneError(
-                f"means nothing on {self.state} surfaces: the layer is that of freshly cut ones.",
-                key="skin_depth",
-                remedy='Leave it out, or use state = "machined" or "custom".',
-            )
         if not self.friction_low <= self.friction <= self.friction_high:
             raise SceneError(
                 f"lies outside its own interval, {self.friction_low:g} to {self.friction_high:g}.",

@@ -18,8 +18,7 @@ LAW = "sliding_law"
 
 def read_surface(table: Table) -> Surface | None:
     """Read a surface; that of the pair, which is None, follows from both materials."""
-    skin = [key for f in fields.SKIN for key in (f.key, f.si_key) if key]
-    check_keys(table, ("state", "source", *(f.key for f in fields.SURFACE), *skin, LAW))
+    check_keys(table, ("state", "source", *(f.key for f in fields.SURFACE), LAW))
     state = needed(table, "state")
     if state == "custom":
         return _custom_surface(table)
@@ -27,26 +26,24 @@ def read_surface(table: Table) -> Surface | None:
 
 
 def of_known(surface: Callable[[], Surface], table: Table) -> Surface:
-    """Return a surface of known friction with the layer of its table, which may repeat what is known."""
-    known, skin = surface(), [key for f in fields.SKIN for key in (f.key, f.si_key)]
+    """Return a surface of known friction; its table may repeat what is known."""
+    known = surface()
     for key, value in table.items():
-        if key in (*skin, LAW):
-            continue
-        if value != getattr(known, key):
+        if key != LAW and value != getattr(known, key):
             raise SceneError(
                 f"is not the value of a {known.state} surface ({getattr(known, key)}).",
                 key=key,
                 value=value,
                 remedy='Leave it out, or write state = "custom" with your own friction and its source.',
             )
-    layer = numbers_of({key: value for key, value in table.items() if key in skin}, fields.SKIN)
-    return replace(known, sliding_law=_sliding_law(table), **layer)
+    return replace(known, sliding_law=_sliding_law(table))
 
 
 def _custom_surface(table: Table) -> Surface:
     f = needed(table, "friction", "0.3, Coulomb's coefficient")
-    wanted = (*fields.SURFACE, *fields.SKIN)
-    numbers = numbers_of(table, wanted, ("state", "source", LAW), {"friction_low": f, "friction_high": f})
+    numbers = numbers_of(
+        table, fields.SURFACE, ("state", "source", LAW), {"friction_low": f, "friction_high": f}
+    )
     source = needed(table, "source", '"our own tests", where the friction is known from')
     return Surface(state="custom", source=source, sliding_law=_sliding_law(table), **numbers)
 

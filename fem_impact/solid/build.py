@@ -255,7 +255,8 @@ class Builder:
 
     def strength(self, body: MeshedBody, here: Bools) -> Array | None:
         """Return the factor of the flow stress (m, 8) of a part's yielding cells, None without a layer."""
-        if self.spec.skin is None:
+        skin = self.spec.rod_skin if body.name == "rod" else self.spec.barrier_skin
+        if skin is None:
             return None
         from fem_impact.solid.skin import below_outline, strengths
 
@@ -265,7 +266,7 @@ class Builder:
             assert not isinstance(rod, Faceted), "the case refuses a hardened layer on a mesh of its own"
             outline = np.vstack([rod.meridian(), [rod.diameter / 2, rod.length]])
             under = below_outline(self.meshed.geometry.rod.mesh.points, outline)
-        return strengths(body.mesh.cells[body.yields & here], under, self.spec.skin)
+        return strengths(body.mesh.cells[body.yields & here], under, skin)
 
     @cached_property
     def contact(self) -> PlaneContact | MovingPlane | SurfaceContact:

@@ -13,13 +13,12 @@ def strengths(cells: Ints, under: Array, skin: Skin) -> Array:
     """Return the factor of the flow stress (m, 8) at the Gauss points of ``cells`` (m, 8).
 
     ``under`` (n,), m, is how deep each node lies under the surface. A Gauss point stands for the part of its
-    cell between its corner and the middle; where the layer ends within that part, its share counts.
+    cell between its corner and the middle, and has its mean factor.
     """
     corner = [int(np.flatnonzero((SIGNS == np.sign(point)).all(axis=1))[0]) for point in CORNERS]
     ends = np.stack([under[cells[:, corner]], np.repeat(under[cells].mean(axis=1)[:, None], 8, axis=1)])
     top, bottom = ends.min(axis=0), ends.max(axis=0)
-    thick = np.maximum(bottom - top, 1e-12)
-    return np.asarray(1 + (skin.factor - 1) * np.clip((skin.depth - top) / thick, 0.0, 1.0))
+    return skin.mean(top, bottom)
 
 
 def below_outline(points: Array, outline: Array) -> Array:

@@ -23,7 +23,7 @@ KEYS = {
     "projectile": ("mass", "lenght", "bore", "segments", "tip", "shape", "cone_angle", "nose_radius"),
     "barrier": ("thickness", "support", "span", "mass", "layers", "v_n", "inertia"),
     "impact": ("omega", "height", "speed", "v_n", "v_t", "angle"),
-    "surface": ("friction", "state", "skin_depth"),
+    "surface": ("friction", "state"),
     "accuracy": ("tip_size", "across", "max_time", "levels", "target", "element"),
 }
 NEW = (

@@ -15,6 +15,7 @@ from fem_impact.files.waves import read_waves
 from fem_impact.options import RunOptions
 from fem_impact.run.program import stamp
 from fem_impact.run.solid import reduce
+from fem_impact.scene.material import SkinSpec
 from fem_impact.solid.build import build
 from fem_impact.solid.checkpoint import put_back, take_out
 from fem_impact.solid.march import march
@@ -35,7 +36,8 @@ SETS = (
 def short(effects, **changes):
     scene = scenes.scene(*effects, length=0.06, v_n=-3.0, v_t=-3.0, max_time=5e-5, **changes)
     if "machined-skin" in effects:
-        scene = replace(scene, surface=replace(scene.surface, skin_depth=0.5e-3, skin_factor=1.3))
+        harder = replace(scene.barrier.material, skin=SkinSpec(1.3, 0.5e-3))
+        scene = replace(scene, barrier=replace(scene.barrier, material=harder))
     if "contact-loss" in effects:
         viscous = replace(scene.projectile.material, name="viscous", loss_factor=0.1)
         scene = replace(scene, projectile=replace(scene.projectile, material=viscous))

@@ -1,58 +1,98 @@
-"""The layer of a freshly cut surface, which cutting has hardened.
+"""The layer at the surface of a body that machining has hardened.
 
-Turning and milling strain the metal under the tool; a thin layer is left harder than the bulk. Its depth and
-its factor belong to the state of the surface (``skin_depth``, ``skin_factor``). No source with numbers for
-carbon steel could be read, so no shipped state has any, and the effect is off unless a scene states both.
+Turning and milling strain the metal under the tool; a thin layer is left harder than the bulk. Its factor
+and depth belong to the material that touches (``skin``). No source with numbers for carbon steel could be
+read, so no shipped material has any; a hardness leaves a curve of them (`fem_impact.physics.indentation`).
 """
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from fem_impact.case.effects.plasticity import hardening_of
 from fem_impact.case.effects.slots import Effect, ModelSpec
 from fem_impact.errors import SceneError
 from fem_impact.physics.hardening import Skin
+from fem_impact.physics.indentation import HardnessTest, skin_depth
+from fem_impact.scene.inputs import materials_of
 
 if TYPE_CHECKING:
     from fem_impact.case.bodies import Bodies
-    from fem_impact.scene.surface import Surface
+    from fem_impact.scene.material import Material
 
 
-def layer(surface: Surface) -> Skin | None:
-    """Return the hardened layer that a surface states, if any."""
-    if surface.skin_depth is None or surface.skin_factor is None:
-        return None
-    return Skin(surface.skin_depth, surface.skin_factor)
-
-
-def number(bodies: Bodies) -> float:
-    """Return the mean gain of the flow stress within a contact radius of the surface; 0 without a layer."""
-    skin = layer(bodies.scene.surface)
-    if skin is None:
-        return 0.0
-    return (skin.factor - 1) * min(skin.depth / bodies.estimate.radius, 1.0)
-
-
-def fill(bodies: Bodies, spec: ModelSpec) -> None:
-    """Set the layer.
+def skin_of(metal: Material) -> Skin | None:
+    """Return the hardened layer of a material, None of one that states none.
 
     Raises
     ------
     SceneError
-        If the surface states none.
+        If no depth meets the hardness, or the bulk has a flow curve that the indentations do not cover.
     """
-    spec.skin = layer(bodies.scene.surface)
-    if spec.skin is None:
+    spec = metal.skin
+    if spec is None:
+        return None
+    if spec.depth is not None:
+        return Skin(spec.depth, spec.factor, spec.shape)
+    assert metal.hardness is not None and spec.load is not None, "the material refuses a load without these"
+    try:
+        test = HardnessTest(metal.hardness, spec.load)
+        return Skin(
+            skin_depth(metal.E, hardening_of(metal), test, spec.factor, spec.shape), spec.factor, spec.shape
+        )
+    except ValueError as error:
         raise SceneError(
-            'names "machined-skin", but the surface states no hardened layer.',
+            str(error),
+            key=f"skin of {metal.name}",
+            value=f"factor {spec.factor:g}, load {spec.load:g} kgf",
+            remedy="`fem-impact hardness SCENE` prints the factors that can; or give skin.depth.",
+        ) from None
+
+
+def number(bodies: Bodies) -> float:
+    """Return the mean gain of the flow stress within a contact radius of the surface, of the harder layer."""
+    skins = [skin_of(metal) for metal in (bodies.contact.rod, bodies.contact.barrier)]
+    radius = bodies.estimate.radius
+    return max((float(skin.mean(0.0, radius)) - 1 for skin in skins if skin), default=0.0)
+
+
+def fill(bodies: Bodies, spec: ModelSpec) -> None:
+    """Set the layers.
+
+    Raises
+    ------
+    SceneError
+        If no material that touches states one.
+    """
+    spec.rod_skin, spec.barrier_skin = skin_of(bodies.contact.rod), skin_of(bodies.contact.barrier)
+    if not (spec.rod_skin or spec.barrier_skin):
+        raise SceneError(
+            'names "machined-skin", but no material that touches states a skin.',
             key="effects",
-            remedy="Give surface.skin_depth and surface.skin_factor, or leave the effect out.",
+            remedy="Give projectile.material.skin or barrier.material.skin, or leave the effect out.",
+        )
+
+
+NOT_RIGID = "The hardened layer does not enter: rigid theory takes the restitution as a number."
+
+
+def require_skins(bodies: Bodies, fidelity: str) -> None:
+    """Refuse a hardened layer where nothing touches it, and in the reduced model (SceneError)."""
+    for place, metal in materials_of(bodies.scene).items():
+        if metal.skin and metal not in (bodies.contact.rod, bodies.contact.barrier):
+            problem = "is that of a material which does not touch."
+            raise SceneError(problem, key=f"{place}.skin", remedy="Leave it out.")
+    if fidelity == "modal" and "machined-skin" in bodies.effects:
+        raise SceneError(
+            "holds machined-skin, which the reduced model does not compute: its contact has one flow curve.",
+            key="effects",
+            remedy='Use --fidelity solid, or add "-machined-skin" to effects.',
         )
 
 
 EFFECT = Effect(
     "machined-skin",
-    "Cells under the freshly cut surfaces are harder than the bulk.",
+    "Cells under the machined surfaces are harder than the bulk.",
     "The surfaces are as hard as the bulk.",
     "gain of the flow stress, mean over a contact radius under the surface",
     0.03,

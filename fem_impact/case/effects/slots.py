@@ -25,7 +25,7 @@ class ModelSpec:
     friction_over_speed : sliding speeds, m/s, and the factor of f at each; None where it does not change
     rod_law, barrier_law : hardening law of a body that may yield, or None
     under_laws : those of the materials under the first layer of a barrier, from the top down
-    skin : hardened layer of the surfaces, or None
+    rod_skin, barrier_skin : hardened layer at the surface of a body, or None
     meshed_barrier : a block instead of the rigid plane
     radiating : the block's outer boundary lets waves out
     plate : impedance of a plate that bends and is not meshed through its thickness, N s/m, or None
@@ -43,7 +43,8 @@ class ModelSpec:
     rod_law: HardeningLaw | None = None
     barrier_law: HardeningLaw | None = None
     under_laws: tuple[HardeningLaw | None, ...] = ()
-    skin: Skin | None = None
+    rod_skin: Skin | None = None
+    barrier_skin: Skin | None = None
     meshed_barrier: bool = False
     radiating: bool = False
     plate: float | None = None

@@ -6,14 +6,15 @@ contact, whose edge is where the face comes to touch, its bulge included. Vicker
 the pyramid, larger by 1/.927: HV = .927 p / 9.80665 MPa. The flow curve is the static one.
 
 Solver and reference move the cone at the same slow speed. Both are carried on from two meshes to cells of no
-size, with an error of first order in the cell: pressure acts at nodes and ends within a cell.
+size, with an error of first order in the cell: pressure acts at nodes and ends within a cell. The closed
+form of Vickers' number (`fem_impact.physics.indentation`) is held to the reference, bare and under a layer.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cache
-from math import ceil, radians, tan
+from math import ceil, radians, sqrt, tan
 
 import numpy as np
 
@@ -26,8 +27,16 @@ from fem_impact.evidence.problems.bodies import Block, FreeBody, body_model, pla
 from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values
 from fem_impact.evidence.problems.watch import ForceRecorder
 from fem_impact.evidence.references.axisymmetric import Metal
-from fem_impact.evidence.references.cone import REACH, Indentation, cone_speed, indent
-from fem_impact.physics.hardening import KGF_PER_MM2, TABOR, TABOR_STRAIN, Hardening, power_hardening
+from fem_impact.evidence.references.cone import FROM, REACH, Indentation, cone_speed, indent
+from fem_impact.physics.hardening import (
+    KGF_PER_MM2,
+    TABOR,
+    TABOR_STRAIN,
+    Hardening,
+    Skin,
+    power_hardening,
+)
+from fem_impact.physics.indentation import FACES, FRICTION, FRICTIONS, share, vickers
 from fem_impact.scene.library import material
 from fem_impact.scene.parameter import Parameter
 from fem_impact.solid.contact.surface import SurfaceContact
@@ -36,12 +45,15 @@ from fem_impact.solid.state import State
 from fem_impact.solid.stepguard import StepGuard
 from meshes import HexMesh, Zone
 
-FACES = 0.927  # projected area over that of the faces of Vickers' pyramid
 PRESSURE, RADIUS = 0.03, 0.03
 YIELDING = 2.5  # half-width and depth of the cells that may yield, over the radius of the cone at the face
 LEVELS = 2  # halvings of the block's cells
 WIDE = 1.35  # radius of the cone's body over its radius at the face: what is piled up touches it too
 RADIUS_M = 1e-3  # m, of the cone at the face, at the end; nothing depends on it
+PYRAMID = radians(70.3)  # half the angle of the cone that displaces as much
+LAYERS = Skin(0.35, 2.0), Skin(0.35, 2.0, "exponential")  # depths over the radius of the cone at the face
+MIDDLE = sqrt((1 + FROM + FROM**2) / 3)  # mean depth of the cone over the last, where the pressure is read
+BARE, LAYERED = 0.02, 0.05  # of the closed form
 STEELS = ("plate-steel", "rod-steel")
 TENSILE = "the flow curve is that of the tensile test; no flow curve was fitted to the hardness"
 RULE = "Tabor's rule, for pyramids in practice"
@@ -117,23 +129,34 @@ def _limit(coarse: Array, fine: Array) -> Array:
 
 
 @cache
-def _reference(metal: Metal, angle: float, friction: float, cells: int) -> tuple[float, float]:
+def _reference(
+    metal: Metal, angle: float, friction: float, cells: int, skin: Skin | None = None
+) -> tuple[float, float]:
     """Return the mean pressure, Pa, and the contact radius over the depth in axisymmetric elements."""
-    coarse, fine = (indent(metal, angle, friction, n).coefficients() for n in (cells, 2 * cells))
+    coarse, fine = (indent(metal, angle, friction, n, skin).coefficients() for n in (cells, 2 * cells))
     pressure, radius = _limit(coarse, fine)
     return float(pressure), float(radius)
 
 
 def _vickers(p: Values, friction: float) -> list[Check]:
-    """Return Vickers' numbers of the measured steels by the reference beside the measured ones."""
+    """Return Vickers' numbers of the measured steels: measured, in closed form and by the reference."""
     checks = []
     for name in STEELS:
-        of = material(name)
-        steel_metal = metal_of({"E": of.E, "nu": of.nu, "rho": of.rho}, hardening_of(of).power)
-        pressure, _ = _reference(steel_metal, p["angle"], friction, int(p["cells"]) // 2)
+        of, at = material(name), f"of {name}, f = {friction:g}"
+        law, cells = hardening_of(of), int(p["cells"]) // 2
+        steel_metal = metal_of({"E": of.E, "nu": of.nu, "rho": of.rho}, law.power)
+        pressure, _ = _reference(steel_metal, p["angle"], friction, cells)
+        found = FACES * pressure / KGF_PER_MM2
         if of.hardness:
-            found = FACES * pressure / KGF_PER_MM2
-            checks.append(Check.shown(f"HV of {name}, f = {friction:g}", "1", found, of.hardness, TENSILE))
+            checks.append(Check.shown(f"HV {at}", "1", found, of.hardness, TENSILE))
+        if p["angle"] != PYRAMID or friction not in FRICTIONS:
+            continue
+        checks.append(Check(f"closed form, HV {at}", "1", vickers(of.E, law, friction), found, BARE))
+        for skin in LAYERS if friction == FRICTION else ():
+            layered, wide = _reference(steel_metal, PYRAMID, friction, cells, skin)
+            part = share(law, skin, wide * MIDDLE / tan(PYRAMID))
+            closed, by = 1 + (skin.factor - 1) * part, layered / pressure
+            checks.append(Check(f"closed form, {skin.shape} layer over none, {at}", "1", closed, by, LAYERED))
     return checks
 
 
@@ -181,7 +204,7 @@ PROBLEM = Problem(
     "hardness",
     "a rigid cone is pressed into yielding steel: mean pressure, contact radius; Vickers' number beside",
     (
-        Parameter("angle", "half the angle of the cone at its tip", "angle", 0.9, 1.4, default=radians(70.3)),
+        Parameter("angle", "half the angle of the cone at its tip", "angle", 0.9, 1.4, default=PYRAMID),
         Parameter("f", "Coulomb friction of the second run; 0: none", "", 0.0, 0.5, default=0.1),
         *steel.elastic(206e9),
         Parameter("yield_stress", "yield stress", "stress", 1e6, 1e10, default=320e6),

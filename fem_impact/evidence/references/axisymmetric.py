@@ -40,10 +40,10 @@ class Metal:
         """Speed of pressure waves, m/s."""
         return sqrt(self.E * (1 - self.nu) / ((1 + self.nu) * (1 - 2 * self.nu)) / self.rho)
 
-    def flow(self, plastic: Array) -> tuple[Array, Array]:
-        """Return flow stresses and their slopes, Pa, at equivalent plastic strains."""
+    def flow(self, plastic: Array, strength: Array | float = 1.0) -> tuple[Array, Array]:
+        """Return flow stresses and their slopes, Pa, at equivalent plastic strains, times a ``strength``."""
         base = 1 + self.slope * plastic
-        stress = self.yield_stress * base**self.exponent
+        stress = strength * self.yield_stress * base**self.exponent
         return stress, stress * self.exponent * self.slope / base
 
 
@@ -96,7 +96,9 @@ def _strained(places: _Places, v: Array) -> tuple[Array, Array]:
     return rate, 0.5 * (L[1, 0] - L[0, 1])
 
 
-def _returned(metal: Metal, stress: Array, plastic: Array, strain: Array) -> tuple[Array, Array]:
+def _returned(
+    metal: Metal, stress: Array, plastic: Array, strain: Array, strength: Array | float
+) -> tuple[Array, Array]:
     """Return stress and equivalent plastic strain after an increment of strain."""
     G, bulk = metal.E / (2 + 2 * metal.nu), metal.E / (3 - 6 * metal.nu)
     swell, pressure = strain[:3].sum(axis=0), stress[:3].mean(axis=0)
@@ -105,7 +107,7 @@ def _returned(metal: Metal, stress: Array, plastic: Array, strain: Array) -> tup
     q = np.sqrt(1.5 * ((s[:3] ** 2).sum(axis=0) + 2 * s[3] ** 2))
     more = np.zeros_like(plastic)
     for _ in range(ITERATIONS):  # Newton's, from the elastic side: one is exact on a straight flow curve
-        flow, slope = metal.flow(plastic + more)
+        flow, slope = metal.flow(plastic + more, strength)
         more = np.maximum(more + (q - 3 * G * more - flow) / (3 * G + slope), 0.0)
     s *= 1 - 3 * G * more / np.maximum(q, 1e-30)
     s[:3] += pressure + bulk * swell
@@ -137,6 +139,7 @@ class Body:
     metal : Metal
     x, v : (n, 2) float64, m and m/s, in (r, z)
     corners : (4, m) int64, of the cells, turning left
+    strength : factor of the flow stress, of all points or (points, m)
     mass : (n,) float64, kg; force : (n, 2) float64, N, of the cells
     stress : (4, points, m) float64, Pa, rr, zz, hoop, rz; plastic : (points, m)
     dt, time : s
@@ -146,6 +149,7 @@ class Body:
     x: Array
     v: Array
     corners: NDArray[np.int64]
+    strength: Array | float = 1.0
     mass: Array = field(init=False)
     force: Array = field(init=False)
     stress: Array = field(init=False)
@@ -173,7 +177,7 @@ class Body:
         half = self._at_corners(self.x + 0.5 * self.dt * self.v)
         rate, spin = _strained(_Places.at(half), self._at_corners(self.v))
         turned = _turned(self.stress, self.dt * spin)
-        self.stress, self.plastic = _returned(self.metal, turned, self.plastic, self.dt * rate)
+        self.stress, self.plastic = _returned(self.metal, turned, self.plastic, self.dt * rate, self.strength)
         self.x += self.dt * self.v
         pushed = _force(_Places.at(self._at_corners(self.x)), self.stress)
         for i in (0, 1):

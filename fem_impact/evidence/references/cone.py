@@ -12,7 +12,8 @@ from math import cos, pi, sin, sqrt, tan
 import numpy as np
 
 from fem_impact.arrays import Array, Bools, Ints
-from fem_impact.evidence.references.axisymmetric import Body, Metal, grid
+from fem_impact.evidence.references.axisymmetric import CORNERS, Body, Metal, grid
+from fem_impact.physics.hardening import Skin
 
 REACH = 12.0  # half-width and depth of the body over the contact radius: 24 changes the pressure by .1 %
 FINE, GROWTH = 1.4, 1.12  # radius and depth of the equal cells over the contact radius; growth beyond
@@ -54,7 +55,9 @@ def cone_speed(metal: Metal) -> float:
     return sqrt(SLOW * metal.yield_stress / metal.rho)
 
 
-def indent(metal: Metal, angle: float, friction: float = 0.0, cells: int = 10) -> Indentation:
+def indent(
+    metal: Metal, angle: float, friction: float = 0.0, cells: int = 10, skin: Skin | None = None
+) -> Indentation:
     """Press a cone in and return what it met.
 
     Parameters
@@ -62,11 +65,13 @@ def indent(metal: Metal, angle: float, friction: float = 0.0, cells: int = 10) -
     metal : Metal
     angle : half the angle at the tip, rad
     friction : Coulomb's coefficient
-    cells : over the radius of the cone at the face, at the end
+    cells : over the radius of the cone at the face, at the end, which is the unit of length
+    skin : hardened layer under the face
     """
     lines = _lines(cells)
     x, corners = grid(lines, -lines[::-1])
-    body, found = Body(metal, x, np.zeros_like(x), corners), Indentation()
+    strength = _strength(-x[corners, 1], skin) if skin else 1.0
+    body, found = Body(metal, x, np.zeros_like(x), corners, strength), Indentation()
     speed, depth = cone_speed(metal), 1 / tan(angle)
     face, axis = np.arange(len(x) - len(lines), len(x)), x[:, 0] == 0.0
     far = (x[:, 0] == lines[-1]) | (x[:, 1] == -lines[-1])
@@ -84,6 +89,14 @@ def indent(metal: Metal, angle: float, friction: float = 0.0, cells: int = 10) -
     while speed * body.time < depth:
         body.advance(stop)
     return found
+
+
+def _strength(under: Array, skin: Skin) -> Array:
+    """Return the factor of the flow stress (points, m) of cells with corners ``under`` (4, m) the face, m."""
+    bottom, top = under.max(axis=0), under.min(axis=0)
+    middle = 0.5 * (bottom + top)
+    lower, upper = skin.mean(middle, bottom), skin.mean(top, middle)
+    return np.asarray([lower if z < 0 else upper for _, z in CORNERS])
 
 
 def _lines(cells: int) -> Array:

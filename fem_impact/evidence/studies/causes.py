@@ -28,7 +28,7 @@ SETS = ("t5b", "t6-17")  # by default: the short rod in slow drops, at 45 and at
 SHOWN = MEASURED[:3]  # e, mu, Omega
 SLOW: dict[str, Any] = {"effects": ["auto", "-rate-hardening"]}
 HARD = {f"{body}.material.law": "hardness" for body in ("projectile", "barrier")}
-SKIN = {"surface.skin_depth": "0.11 mm", "surface.skin_factor": 1.5}
+SKIN = {f"{body}.material.skin": {"factor": 1.5, "depth": "0.11 mm"} for body in ("projectile", "barrier")}
 BASE = "tensile, no rate"
 STEPS: dict[str, dict[str, Any]] = {
     BASE: SLOW,

@@ -84,7 +84,7 @@ def _impossible(scene: Scene) -> set[str]:
     """Return the effects of which the scene does not state what they are about."""
     viscous = scene.projectile.material.loss_factor or scene.barrier.material.loss_factor
     has = {
-        "machined-skin": bool(scene.surface.skin_depth),
+        "machined-skin": bool(scene.projectile.material.skin or scene.barrier.material.skin),
         "contact-loss": bool(viscous),
         "plate-bending": scene.barrier.bends,
     }

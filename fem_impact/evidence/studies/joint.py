@@ -16,6 +16,7 @@ from __future__ import annotations
 import csv
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from importlib.resources import files
 from typing import TYPE_CHECKING
 
@@ -107,12 +108,16 @@ def _scaled(covariance: Array, u: Array) -> Array:
 
 def plan(request: Request, results: JobResults) -> list[Job]:
     """Return runs of the reduced model: each set as stated, and over the sample of its inputs."""
-    return [job for name in _sets(request) for job in (_nominal(name), *_sample(name, request))]
+    return [job for name in sets(request) for job in (_nominal(name), *_sample(name, request))]
 
 
 def conclude(request: Request, results: JobResults) -> StudyReport:
     """Return the study: each set's distance, and what it is made of."""
-    found = [one for name in _sets(request) if (one := _joint(name, request, results)) is not None]
+    found = [
+        one
+        for name in sets(request)
+        if (one := of_set(name, request, results, stored_rows()[name])) is not None
+    ]
     return report_of(found)
 
 
@@ -185,7 +190,8 @@ def _picture(found: Sequence[JointError]) -> Picture:
     return Picture("joint", caption, panels, columns=2)
 
 
-def _sets(request: Request) -> tuple[str, ...]:
+def sets(request: Request) -> tuple[str, ...]:
+    """Return the requested sets; by default all, or one of the quick study."""
     return request.ids or (("t5b",) if request.quick else MEASURED_SETS)
 
 
@@ -206,8 +212,10 @@ def _sample(name: str, request: Request) -> list[Job]:
     ]
 
 
-def _joint(name: str, request: Request, results: JobResults) -> JointError | None:
-    """Return the joint error of a set; None where its runs failed."""
+def of_set(
+    name: str, request: Request, results: JobResults, rows: Sequence[dict[str, float]]
+) -> JointError | None:
+    """Return the joint error of a set from S, D and uncertainties; None where its runs failed."""
     measured, nominal = measured_set(name), results.get(_nominal(name).name)
     runs = [run for job in _sample(name, request) if isinstance(run := results.get(job.name), Outcome)]
     if not isinstance(nominal, Outcome) or len(runs) < FEWEST:
@@ -216,10 +224,11 @@ def _joint(name: str, request: Request, results: JobResults) -> JointError | Non
     moved = np.array([outputs(run, measured) for run in runs])[:, AT] - at_nominal
     columns = measured.recomputed()
     tests = np.column_stack([columns[NAMES[at]] for at in AT])
-    return joint_error(name, _stored()[name], moved, tests)
+    return joint_error(name, rows, moved, tests)
 
 
-def _stored() -> dict[str, list[dict[str, float]]]:
+@cache
+def stored_rows() -> dict[str, list[dict[str, float]]]:
     """Return of each set a row a number of `SHOWN`, by finite elements."""
     text = files("fem_impact.evidence.studies").joinpath("data", "validation.csv").read_text(encoding="utf-8")
     rows = {(row["set"], row["quantity"]): row for row in csv.DictReader(text.splitlines())}

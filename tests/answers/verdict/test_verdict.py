@@ -573,7 +573,7 @@ def test_the_reduced_model_is_refused_for_them_with_the_remedy(striker):
 def test_a_mesh_that_the_solid_model_cannot_hold_is_refused_before_any_run(striker, monkeypatch):
     asked = solid_alone(monkeypatch, [])
     with pytest.raises(SceneError, match="machined-skin"):
-        skin = {"surface.skin_depth": "0.1 mm", "surface.skin_factor": 1.5}
+        skin = {"projectile.material.skin": {"factor": 1.5, "depth": "0.1 mm"}}
         assess(replace_all(striker, skin | {"effects": ["auto", "machined-skin"]}))
     assert asked == []
 

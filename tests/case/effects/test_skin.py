@@ -1,4 +1,4 @@
-"""The hardened layer of a cut surface: off unless stated, and where it is in the meshes."""
+"""The hardened layer of a machined body: off unless stated, and where it is in the meshes."""
 
 import numpy as np
 import pytest
@@ -6,6 +6,7 @@ import pytest
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.case import Case
 from fem_impact.case.effects.registry import EFFECTS
+from fem_impact.case.recorded import rows_within
 from fem_impact.errors import SceneError
 from fem_impact.physics.hardening import Skin
 from fem_impact.scene.read import read_dict
@@ -13,31 +14,39 @@ from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.write import digest, to_dict
 from fem_impact.solid.build import Builder
 from fem_impact.solid.skin import below_outline, strengths
+from meshes import drawn_depths
 
 T5B = load("t5b")
-LAYER = {"surface.skin_depth": "0.11 mm", "surface.skin_factor": 1.5}
+BODIES = ("projectile", "barrier")
 
 
-def skinned(**more):
-    return replace_all(T5B, LAYER | more)
+def skinned(scene=T5B, bodies=BODIES, **skin):
+    layer = {"factor": 1.5, "depth": "0.11 mm"} | skin
+    return replace_all(scene, {f"{body}.material.skin": layer for body in bodies})
 
 
 def test_it_is_off_unless_a_scene_states_a_layer():
     assert "machined-skin" not in Case(T5B).active
-    assert Case.of(T5B).slots.skin is None
-    stated = skinned()
+    assert Case.of(T5B).slots.barrier_skin is None
+    stated = skinned(bodies=["barrier"], shape="exponential")
+    slots = Case.of(stated).slots
     assert "machined-skin" in Case(stated).active
-    assert Case.of(stated).slots.skin == Skin(pytest.approx(1.1e-4), 1.5)
+    assert slots.barrier_skin == Skin(pytest.approx(1.1e-4), 1.5, "exponential")
+    assert slots.rod_skin is None
     assert (stated.surface.state, stated.measured) == ("machined", "t5b")
-    assert Case.of(stated).limitations == Case.of(T5B).limitations
     assert read_dict(to_dict(stated)) == stated
     assert digest(stated) != digest(T5B)
-    without = replace_all(stated, {"effects": ["auto", "-machined-skin"]})
-    assert Case.of(without).slots.skin is None
+    assert Case.of(replace_all(stated, OFF)).slots.barrier_skin is None
+
+
+def test_one_value_of_it_is_changed_alone():
+    deeper = replace_all(skinned(), {"barrier.material.skin.depth": "0.2 mm"})
+    assert deeper.barrier.material.skin.depth == pytest.approx(2e-4)
+    assert deeper.barrier.material.skin.factor == 1.5
 
 
 def number(depth):
-    elastic = Bodies(skinned(**{"surface.skin_depth": depth}), ("vibration", "barrier-elastic"))
+    elastic = Bodies(skinned(depth=depth), ("vibration", "barrier-elastic"))
     return EFFECTS["machined-skin"].number(elastic)
 
 
@@ -49,40 +58,63 @@ def test_its_number_is_the_mean_gain_within_a_contact_radius():
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"surface.skin_depth": "0.1 mm"}, ["surface.skin_factor", "is missing"]),
-        ({"surface.skin_factor": 1.5}, ["surface.skin_depth", "is missing"]),
-        (LAYER | {"surface.skin_factor": 0.5}, ["skin_factor", "at least 1"]),
-        (LAYER | {"surface.skin_depth": "2 mm"}, ["skin_depth", "at most 1 mm"]),
+        ({"depth": None}, ["skin.depth", "is missing", "load of the hardness test"]),
+        ({"load": 30}, ["skin.load", "stands beside depth"]),
+        ({"factor": 0.5}, ["skin.factor", "at least 1"]),
+        ({"depth": "2 mm"}, ["skin.depth", "at most 1 mm"]),
+        ({"shape": "round"}, ["skin.shape", '"even" or "exponential"']),
+        ({"hardness": 200}, ["skin.hardness", "is not a known key"]),
     ],
 )
 def test_half_a_layer_or_an_odd_one_is_refused(changes, words):
+    layer = {"factor": 1.5, "depth": "0.1 mm"} | changes
     with pytest.raises(SceneError) as caught:
-        replace_all(T5B, changes)
+        replace_all(T5B, {"barrier.material.skin": {k: v for k, v in layer.items() if v is not None}})
     for word in words:
         assert word in str(caught.value)
 
 
-def test_only_freshly_cut_surfaces_have_one():
-    with pytest.raises(SceneError, match="contaminated surfaces"):
-        replace_all(load("t2"), LAYER)
+def test_a_layer_that_follows_from_a_hardness_needs_one_and_a_softer_bulk():
+    bare = {"barrier.material": {"name": "x", "E": "206 GPa", "nu": 0.3, "rho": "7850 kg/m3"}}
+    strength = {"yield_stress": "320 MPa", "ultimate_stress": "446 MPa"}
+    skin = {"skin": {"factor": 2.0, "load": 30}}
+    with pytest.raises(SceneError, match=r"hardness: is missing beside skin\.load"):
+        replace_all(T5B, {"barrier.material": bare["barrier.material"] | strength | skin})
+    with pytest.raises(SceneError, match="gives the bulk the hardness"):
+        replace_all(T5B, {"barrier.material.law": "hardness", "barrier.material.skin": skin["skin"]})
+    with pytest.raises(SceneError, match=r"skin: means nothing without yield_stress"):
+        replace_all(T5B, {"barrier.material": bare["barrier.material"] | {"hardness": 163} | skin})
 
 
 def test_it_cannot_be_wanted_without_a_layer():
-    with pytest.raises(SceneError, match="states no hardened layer"):
+    with pytest.raises(SceneError, match="no material that touches states a skin"):
         Case.of(replace_all(T5B, {"effects": ["auto", "machined-skin"]}))
 
 
-def test_a_layer_that_no_gauss_point_can_hold_is_refused_before_any_mesh():
-    thin = {"surface.skin_depth": "0.002 mm", "effects": ["auto", "machined-skin"]}
-    with pytest.raises(SceneError, match=r"skin_depth = .*0.002 mm.*: is thinner.*accuracy.barrier_size"):
-        Case.of(skinned(**thin))
+def test_a_layer_that_nothing_touches_is_refused():
+    with pytest.raises(SceneError, match=r"barrier\.material\.skin: is that of a material which does not"):
+        Case.of(skinned(load("layered"), ["barrier"]))
+
+
+def test_other_models_refuse_it_or_say_that_it_does_not_enter():
+    with pytest.raises(SceneError, match="holds machined-skin, which the reduced model does not compute"):
+        Case.of(skinned(), "modal")
+    assert Case.of(replace_all(skinned(), OFF), "modal").slots.barrier_skin is None
+    told = [one.text for one in Case.of(skinned(), "rigid").limitations]
+    assert sum("hardened layer does not enter" in text for text in told) == 1
 
 
 def test_rows_of_the_plate_follow_the_layer():
-    """The first row is no higher than the layer, unless it would be crushed."""
-    for depth in (0.2, 0.1, 0.05):
-        zones = Case.of(skinned(**{"surface.skin_depth": f"{depth} mm"})).zones
-        assert zones.barrier_size * 0.5**zones.skin_rows <= 1e-3 * depth * 1.001
+    """Three rows lie in it, unless the first would be crushed; fewer are told."""
+    for depth in (0.5, 0.3, 0.02):
+        case = Case.of(replace_all(skinned(depth=f"{depth} mm"), {"accuracy.levels": 1, "effects": WANTED}))
+        h, rows = case.zones.barrier_size, case.zones.skin_rows
+        ends = drawn_depths(h * np.arange(1.0, 9.0), h, rows)
+        within = int(np.searchsorted(ends, 1e-3 * depth * (1 + 1e-9), "right"))
+        assert within == int(rows_within(1e-3 * depth, h, rows))
+        told = [one.text for one in case.limitations if "hardened layer of the barrier" in one.text]
+        assert bool(told) == (within < 3), depth
+    assert told[0].startswith("The hardened layer of the barrier, 0.02 mm, lies in 1.")
 
 
 CUBE = np.array([[0, 1, 2, 3, 4, 5, 6, 7]])  # VTK order: the face z = 0 below that of z = 1
@@ -96,6 +128,12 @@ def test_a_gauss_point_has_the_share_of_its_part_of_the_cell(depth, upper, lower
     assert found[0] == pytest.approx([lower] * 4 + [upper] * 4)
 
 
+def test_an_exponential_layer_has_the_gain_of_an_even_one_in_all():
+    found = strengths(CUBE, TOP, Skin(0.5, 1.4, "exponential"))
+    assert found[0].mean() - 1 == pytest.approx(0.4 * 0.5 / 2 * (1 - np.exp(-4)))
+    assert found[0, 4] - 1 == pytest.approx(0.4 * 0.5 * (1 - np.exp(-2)))
+
+
 def test_distances_from_an_outline():
     outline = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 5.0]])
     points = np.array([[0.0, 0.0, 0.3], [0.0, 0.9, 2.0], [0.6, 0.0, 0.5], [3.0, 4.0, 5.0]])
@@ -104,8 +142,9 @@ def test_distances_from_an_outline():
 
 def test_the_model_is_harder_by_the_layer_and_no_more():
     """In the plate gain times volume, over the area that yields at its surface, is gain times depth."""
-    coarse = skinned(**{"accuracy.tip_size": "0.7 mm", "surface.skin_depth": "0.2 mm"})
-    soft, hard = (Builder(Case.of(scene), 1e-10) for scene in (replace_all(coarse, OFF), coarse))
+    coarse = {"accuracy.tip_size": "0.7 mm", "effects": WANTED}
+    scenes = (replace_all(skinned(depth="0.2 mm", factor=factor), coarse) for factor in (1.0, 1.5))
+    soft, hard = (Builder(Case.of(scene), 1e-10) for scene in scenes)
     for before, after in zip(soft.zones, hard.zones, strict=True):
         gain = after.blocks.flow / before.blocks.flow - 1
         assert np.unique(before.blocks.flow).size == 1
@@ -118,4 +157,5 @@ def test_the_model_is_harder_by_the_layer_and_no_more():
     assert (gain * after.blocks.weight).sum() == pytest.approx(0.5 * 2e-4 * area, rel=0.03)
 
 
+WANTED = ["auto", "machined-skin"]
 OFF = {"effects": ["auto", "-machined-skin"]}

@@ -8,7 +8,6 @@ from study_fakes import outcome, published
 from fem_impact.answers.report import Request
 from fem_impact.case.case import Case
 from fem_impact.case.effects.plasticity import hardening_of
-from fem_impact.case.effects.skin import layer
 from fem_impact.evidence.studies.causes import BASE, STEPS, conclude, plan
 from fem_impact.jobs.job import Failure
 from fem_impact.scene.shipped import load
@@ -22,7 +21,7 @@ def fake(job):
     """A model whose e grows by .01 with the rate, .1 with hardness and 1 with the skin."""
     scene = job.scene
     e = 0.2 + 0.01 * (len(scene.effects) == 1) + 0.1 * (scene.barrier.material.law == "hardness")
-    return outcome(e_paper=e + 1.0 * (layer(scene.surface) is not None), Omega_rad_per_s=10.0)
+    return outcome(e_paper=e + 1.0 * (scene.barrier.material.skin is not None), Omega_rad_per_s=10.0)
 
 
 def test_each_step_switches_on_what_it_says(tmp_path):

@@ -11,11 +11,11 @@ from fem_impact.evidence.studies.joint import (
     HEAD,
     SHOWN,
     SIZE,
-    _stored,
     conclude,
     joint_error,
     plan,
     report_of,
+    stored_rows,
 )
 from fem_impact.scene.types import MEASURED_SETS
 
@@ -59,7 +59,7 @@ def test_uncertainties_of_mesh_and_tests_count_and_keep_their_size():
 
 
 def test_each_set_has_stored_values_and_runs_of_the_reduced_model():
-    assert set(_stored()) == {*MEASURED_SETS}
+    assert set(stored_rows()) == {*MEASURED_SETS}
     jobs = plan(Request("x"), {})
     assert len(jobs) == len(MEASURED_SETS) * (SIZE + 1) and {job.fidelity for job in jobs} == {"modal"}
 

@@ -1,0 +1,87 @@
+"""The command ``hardness``: what the hardness of a scene's materials says of a hardened layer."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import asdict
+from math import inf
+from typing import TYPE_CHECKING
+
+from fem_impact.cli.options import Options, add_text
+from fem_impact.cli.parser import CommandParser
+from fem_impact.cli.scene_options import add_scene, changed_scene
+from fem_impact.cli.terminal import print_answer
+from fem_impact.errors import UsageError
+from fem_impact.tables.table import Table
+from fem_impact.tables.text import wrapped
+
+if TYPE_CHECKING:
+    from fem_impact.answers.hardness import Hardness, SkinPoint
+
+
+ABOUT = (
+    "Say what Vickers' number the flow curve of each material of a scene has by itself, and which hardened "
+    "layers, pairs of factor and depth, give the number that the material states."
+)
+
+
+def add_options(parser: CommandParser) -> None:
+    """State the command and its options."""
+    parser.state(hardness, "fem-impact hardness t5b --loads 10,30 --scatter 5", about=ABOUT)
+    add_scene(parser)
+    add_text(parser, "--loads", "KGF", "loads of the hardness test, such as 30 of HV 30 (default: 5,10,30)")
+    add_text(parser, "--scatter", "HV", "how far the stated number may be off (default: 0)")
+
+
+def hardness(options: Options) -> int:
+    """Print the layers that meet the hardness of each material."""
+    from fem_impact.answers.hardness import hardnesses
+
+    loads = [_number("--loads", text) for text in options.loads.split(",")] if options.loads else []
+    scatter = _number("--scatter", options.scatter) if options.scatter else 0.0
+    found = list(hardnesses(changed_scene(options.scene, options.changes), loads, scatter))
+    lines = [line for one in found for line in _lines(one)] or wrapped("No material states a hardness.")
+    print_answer(options, [_document(one) for one in found], "\n".join(lines) + "\n")
+    return 0
+
+
+def _number(option: str, text: str) -> float:
+    try:
+        number = float(text)
+    except ValueError:
+        number = -1.0
+    if not 0 < number < inf:
+        raise UsageError("is no number above 0.", key=option, value=text)
+    return number
+
+
+def _document(one: Hardness) -> dict[str, object]:
+    """Return a hardness for ``--json``, where no finite depth is null."""
+    plain = asdict(one)
+    points = [{k: None if v == inf else v for k, v in point.items()} for point in plain["points"]]
+    return plain | {"points": points}
+
+
+def _lines(one: Hardness) -> Iterator[str]:
+    low, usual, high = one.bulk
+    yield from wrapped(
+        f"{one.place} ({one.material}): HV {one.HV:g} is stated; its flow curve alone has HV "
+        f"{usual:.0f} with friction 0.1 under the pyramid, {low:.0f} without and {high:.0f} with 0.2."
+    )
+    if one.skin is not None:
+        yield from wrapped(f"The layer of the scene is {1e3 * one.skin:.3g} mm deep.")
+    loads = list(dict.fromkeys(point.load for point in one.points))
+    rows = [
+        [f"{factor:g}", *(_depth(point) for point in one.points if point.factor == factor)]
+        for factor in dict.fromkeys(point.factor for point in one.points)
+    ]
+    heads = "factor", *(f"depth at HV {load:g}, mm" for load in loads)
+    yield from ["", *Table.of(heads, rows).terminal(indent="  ").splitlines(), ""]
+
+
+def _depth(point: SkinPoint) -> str:
+    """Return depth and range, mm; a bar where no depth suffices."""
+    low, at, high = (
+        "–" if depth == inf else f"{1e3 * depth:.2g}" for depth in (point.low, point.depth, point.high)
+    )
+    return f"{at} ({low} to {high})"

@@ -1,0 +1,164 @@
+"""The measured sets with what their printed hardness says of a hardened layer, and with friction over speed.
+
+Every layer is derived: the tensile tests of both steels and their printed hardness leave a curve of factors
+and depths (`fem_impact.physics.indentation`), of which two points are run at a load that is assumed, since
+none is printed. No impact enters. Which point agrees best is shown; to take it would be a calibration.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fem_impact import load, replace_all
+from fem_impact.answers.compare import MEASURED
+from fem_impact.answers.report import Request, Sheet, StudyReport
+from fem_impact.answers.simulate import simulate
+from fem_impact.evidence.studies import joint
+from fem_impact.evidence.studies.joint import LEVEL, JointError, of_set, stored_rows
+from fem_impact.evidence.studies.reach import SHOWN
+from fem_impact.figures.panels import Mark, Panel, Picture, Series
+from fem_impact.jobs.job import Job
+from fem_impact.jobs.run import JobResults
+from fem_impact.outcome.keys import Unknown
+from fem_impact.outcome.record import Outcome
+from fem_impact.tables.table import Table
+
+if TYPE_CHECKING:
+    from fem_impact.scene.types import Scene
+
+
+LOAD = 30  # kgf, assumed: the paper prints none
+
+
+def _skin(factor: float) -> dict[str, Any]:
+    return {f"{body}.material.skin": {"factor": factor, "load": LOAD} for body in ("projectile", "barrier")}
+
+
+LAW = {"surface.sliding_law": "dry-rail"}
+INPUTS: Mapping[str, dict[str, Any]] = {
+    "skin 2": _skin(2.0),
+    "skin 1.5": _skin(1.5),
+    "skin 2, dry-rail": _skin(2.0) | LAW,
+    "dry-rail": LAW,
+}
+"""Changed keys of the scenes by the name of the inputs."""
+DEFAULT = "default"
+KEYS = [quantity.key for quantity in MEASURED if quantity.name in SHOWN]
+HEAD = (
+    "set",
+    "inputs",
+    *(f"{part} {name}" for name in SHOWN for part in ("S", "E", "u_val")),
+    "D2",
+    "p",
+    "jointly",
+)
+
+
+def plan(request: Request, results: JobResults) -> list[Job]:
+    """Return a run by finite elements a set and inputs, and those of the reduced model by the study joint."""
+    runs = [_job(name, inputs) for inputs in INPUTS for name in joint.sets(request)]
+    first = len(joint.sets(request))
+    return [*runs[:first], *joint.plan(request, results), *runs[first:]]
+
+
+def _job(name: str, inputs: str) -> Job:
+    scene: Scene = replace_all(load(name), INPUTS[inputs] | {"save.frames": 0})
+    return Job(f"{name}, {inputs}", scene, way=simulate)
+
+
+def conclude(request: Request, results: JobResults) -> StudyReport:
+    """Return the study: each set's errors with every inputs, and how many sets they reject."""
+    found = {
+        name: {
+            inputs: one for inputs in (DEFAULT, *INPUTS) if (one := _joint(name, inputs, request, results))
+        }
+        for name in joint.sets(request)
+    }
+    rows = [
+        (
+            *(name, inputs),
+            *(number for at in range(len(SHOWN)) for number in (one.E[at] + D[at], one.E[at], one.u[at])),
+            *(one.distance, one.p, "rejected" if one.p < LEVEL else "agrees"),
+        )
+        for name, of_inputs in found.items()
+        for D in [[row["D"] for row in stored_rows()[name]]]
+        for inputs, one in of_inputs.items()
+    ]
+    sentences = _sentences(found)
+    return StudyReport(
+        "skin",
+        "The measured sets with a hardened skin from their hardness",
+        sentences,
+        [_picture(found)],
+        [Sheet("skin", "Errors of each set with every inputs", Table.of(HEAD, rows))],
+        [
+            "Default: S and u_val of the study validation. Skin 1.5, skin 2: flow stress at the surface of "
+            "both bodies over that of the bulk; the depth of an even layer follows from HV 163 (plate) and "
+            f"235 (rod) at {LOAD} kgf, which is assumed. dry-rail: the shipped law of friction over speed.",
+            "E = S - D; p: the probability of the three errors together without an error of the model, as in "
+            "the study joint, with the u_input of the default inputs: that of factor and load is not in it.",
+        ],
+        conclusions=[("skin", sentence) for sentence in sentences],
+    )
+
+
+def _joint(name: str, inputs: str, request: Request, results: JobResults) -> JointError | None:
+    """Return the joint error of a set with some inputs; None where a run failed or has no band."""
+    stored = stored_rows()[name]
+    if inputs == DEFAULT:
+        return of_set(name, request, results, stored)
+    run = results.get(_job(name, inputs).name)
+    if not isinstance(run, Outcome):
+        return None
+    limits, bands = run.validity.mesh_limit, run.validity.mesh_band
+    if isinstance(limits, Unknown) or isinstance(bands, Unknown):
+        return None
+    rows = [
+        row | {"S": limits[key.name], "u_num": bands[key.name] / 2}
+        for row, key in zip(stored, KEYS, strict=True)
+        if limits[key.name] is not None and bands[key.name] is not None
+    ]
+    return of_set(name, request, results, rows) if len(rows) == len(stored) else None
+
+
+def _sentences(found: Mapping[str, Mapping[str, JointError]]) -> list[str]:
+    """Return of every inputs how many sets are rejected, and the mean distance of the numbers."""
+    told = []
+    for inputs in (DEFAULT, *INPUTS):
+        of = [one[inputs] for one in found.values() if inputs in one]
+        if not of:
+            continue
+        rejected = [one.set for one in of if one.p < LEVEL]
+        away = np.sqrt(np.mean([(one.E / one.u) ** 2 for one in of], axis=0))
+        parts = ", ".join(f"{name} {far:.2g}" for name, far in zip(SHOWN, away, strict=True))
+        told.append(
+            f"{inputs}: {len(rejected)} of {len(of)} sets are rejected ({', '.join(rejected) or 'none'}); "
+            f"root mean square of E / u_val: {parts}."
+        )
+    return told
+
+
+def _picture(found: Mapping[str, Mapping[str, JointError]]) -> Picture:
+    """Return E / u_val of each number, a panel each, of every inputs by sets."""
+    sets, panels = tuple(found), []
+    for at, name in enumerate(SHOWN):
+        series = []
+        for colour, inputs in enumerate((DEFAULT, *INPUTS)):
+            places = [k for k, one in enumerate(found.values()) if inputs in one]
+            errors = [found[sets[k]][inputs] for k in places]
+            series.append(
+                Series(
+                    inputs,
+                    [one.E[at] / one.u[at] for one in errors],
+                    np.array(places, float),
+                    "points",
+                    colour,
+                )
+            )
+        marks = Mark(-2.0), Mark(2.0)
+        panels.append(Panel(name, "E / u_val", "", tuple(series), marks, rows=sets))
+    caption = "Errors over their uncertainty with every inputs; beyond 2 a number shows an error by itself."
+    return Picture("skin", caption, tuple(panels), columns=3)

@@ -1,0 +1,35 @@
+"""The command ``hardness``: numbers by the flow curve, and the layers that give the stated ones."""
+
+import json
+
+from fem_impact.cli.main import main
+from fem_impact.physics.indentation import HardnessTest
+
+
+def test_it_tells_numbers_and_the_curve_of_each_material(capsys):
+    assert main(["hardness", "t5b", "--loads", "10,30"]) == 0
+    out = capsys.readouterr().out
+    assert "projectile.material (rod-steel): HV 235 is stated; its flow curve alone has HV" in out
+    assert "factor" in out and "depth at HV 30, mm" in out
+    assert out.count("\n  2 ") == 2
+
+
+def test_its_document_has_every_point_with_its_range(capsys):
+    skin = "barrier.material.skin.factor=1.7", "barrier.material.skin.load=5"
+    assert (
+        main(["hardness", "t5b", "--json", "--scatter", "5", *(w for one in skin for w in ("--set", one))])
+        == 0
+    )
+    rod, plate = json.loads(capsys.readouterr().out)
+    at = {(p["load"], p["factor"]): p for p in plate["points"]}
+    assert {load for load, _ in at} == {5} and {p["load"] for p in rod["points"]} == {5, 10, 30}
+    assert plate["skin"] == at[5, 1.7]["depth"]
+    low, depth, high = (at[5, 2.0][key] for key in ("low", "depth", "high"))
+    assert 0 < low < depth < high < HardnessTest(163, 5).radius
+    soft = {p["factor"]: p for p in rod["points"] if p["load"] == 10}
+    assert soft[1.2]["depth"] is None and soft[1.5]["depth"] > soft[2.0]["depth"]
+
+
+def test_a_load_that_is_no_number_is_refused(capsys):
+    assert main(["hardness", "t5b", "--loads", "HV30"]) == 2
+    assert '--loads = "HV30": is no number above 0' in capsys.readouterr().err
