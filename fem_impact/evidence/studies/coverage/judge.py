@@ -34,7 +34,6 @@ ZERO = 1e-9
 """In the unit of the quantity: what is smaller on both sides is zero by physics and tells nothing."""
 KNOWN = 0.1
 """Widest half-width of finite elements, over `unit_of`, that tells an error of the reduced model."""
-FACTOR = 2.0  # within which a forecast of time counts as met
 AIM = 0.95
 LOWEST, HIGHEST = "low", "high"
 Results = Mapping[tuple[str, str], CoverageResult]
@@ -202,8 +201,8 @@ def _bare(outcome: Outcome | None) -> bool:
 def times(scenes: Iterable[DrawnScene], results: Results) -> pandas.DataFrame:
     """Return told times beside what was taken, s: columns ``told``, ``said``, ``taken`` and ``inside``.
 
-    Before a run the class of its last level's processor time is told; after the pilot what is left of the
-    wall time, which counts as met within a factor of `FACTOR`.
+    Before a run the class of its last level's processor time is told; after the pilot a range of the wall
+    time that is left, of which ``said`` is the most.
     """
     import pandas
 
@@ -217,7 +216,7 @@ def times(scenes: Iterable[DrawnScene], results: Results) -> pandas.DataFrame:
             same = time_class(said) == time_class(took)
             rows.append((scene.name, "class before the run", said, took, same))
         if result.forecast_s and result.left_s:
-            ratio = result.left_s / result.forecast_s
-            near = 1 / FACTOR <= ratio <= FACTOR
-            rows.append((scene.name, "time left after the pilot", result.forecast_s, result.left_s, near))
+            least, most = result.forecast_s
+            held = least <= result.left_s <= most
+            rows.append((scene.name, "range of the time left after the pilot", most, result.left_s, held))
     return pandas.DataFrame(rows, columns=["scene", "told", "said", "taken", "inside"])

@@ -49,8 +49,8 @@ class CoverageResult:
     trouble, reason : why there is none, in a word and in the program's words; empty where there is one
     cpu_s, wall_s : processor and wall time of all of it, s
     planned_s : processor time, s, that its last level was expected to take before the run; None: not known
-    forecast_s, left_s : wall time, s, that was told after the pilot to be left, and what it then took; None
-        where nothing was told
+    forecast_s, left_s : least and most wall time, s, that were told after the pilot to be left, and what it
+        then took; None where nothing was told
     notices : sentences told during the run
     """
 
@@ -60,7 +60,7 @@ class CoverageResult:
     cpu_s: float = 0.0
     wall_s: float = 0.0
     planned_s: float | None = None
-    forecast_s: float | None = None
+    forecast_s: tuple[float, float] | None = None
     left_s: float | None = None
     notices: tuple[str, ...] = ()
 
@@ -107,15 +107,15 @@ class _Listener:
 
     most_s: float
     notices: list[str] = field(default_factory=list)
-    forecast: tuple[float, float] | None = None
+    forecast: tuple[tuple[float, float], float] | None = None
     begun: float = field(default_factory=time.process_time)
 
     def __call__(self, progress: Progress | Notice) -> None:
         if isinstance(progress, Notice):
             self.notices.append(progress.text)
             return
-        if self.forecast is None and progress.eta_s is not None and ", level 2" in progress.note:
-            self.forecast = progress.eta_s, time.perf_counter()
+        if self.forecast is None and progress.eta_range_s is not None and ", level 2" in progress.note:
+            self.forecast = progress.eta_range_s, time.perf_counter()
         if time.process_time() - self.begun > self.most_s:
             raise TooDearError(f"took more than {self.most_s:g} s of processor time at {progress.note}")
 
@@ -177,6 +177,7 @@ class CoverageRun:
             kept: dict[str, Any] = json.loads(text)
             outcome = kept.pop("outcome")
             kept["notices"] = tuple(kept["notices"])
+            kept["forecast_s"] = kept["forecast_s"] and tuple(kept["forecast_s"])
             return CoverageResult(outcome and Outcome.from_json(outcome, self.name), **kept)
         except (ValueError, TypeError, KeyError) as error:
             raise ResultError(f"{self.name}: its stored result is damaged ({error}).") from error

@@ -1,8 +1,8 @@
 """Scenes drawn at random over all that the program is meant for, by a seed: the same ones everywhere.
 
 Each family of projectiles has as many scenes as every other. Within a family the numbers lie evenly over
-their ranges (a Halton sequence), and kinds of barrier and metals take turns. The twelve bodies stand beside
-them, each at five angles.
+their ranges (a Halton sequence), and kinds of barrier and metals take turns. Beside them stand the twelve
+bodies, each at five angles, and for every two scenes of a family one of its shapes that hardly yields.
 """
 
 from __future__ import annotations
@@ -41,6 +41,8 @@ SEED = 20261126
 """Of the scenes by which the reduced model tells its error."""
 OWN = "twelve bodies"
 """Name of the family of `TWELVE`."""
+GENTLE = "hardly yielding"
+"""Name of the family of scenes that stay elastic or just yield: brittle bodies at any speed, slow metals."""
 TESTED = "measured sets"
 """Name of the family of the thirteen measured sets."""
 RANGES: Mapping[str, tuple[float, float]] = {
@@ -61,6 +63,8 @@ STEELS = ("rod-steel", "steel-4340", "stainless-304", "c45", "100cr6")
 LIGHT = ("aluminium-6061-t6", "aluminium-7075-t6", "titanium-6al-4v", "magnesium-az31b", "aluminium-2024-t3")
 SOFT = ("plate-steel", "copper", "aluminium-1350-h14", "s235", "magnesium-az31b")
 HARD = ("100cr6", "42crmo4", "alumina", "tungsten-heavy-alloy", "titanium-6al-4v")
+BRITTLE = ("alumina", "soda-lime-glass", "silicon-nitride")
+SLOWER = 20.0  # times, metals that hardly yield: 5 mm/s to 1 m/s; slower is no impact under gravity
 KINDS = ("massive", "plate", "free", "layers")
 """Kinds of barrier: a half-space, a plate that bends, a body free to move, a layer on another metal."""
 BENCH: Mapping[str, tuple[float, float]] = {**RANGES, "speed": (0.5, 5.0)}
@@ -108,12 +112,14 @@ class DrawnScene:
 
 
 def drawn(count: int, angles: int, seed: int = SEED) -> list[DrawnScene]:
-    """Return so many scenes of each family, the twelve bodies at so many of their angles, and measured sets.
+    """Return so many scenes of each family, half as many of its shapes that hardly yield, and others.
 
-    More of them hold the fewer, so that stored runs are kept. The measured sets stand beside the twelve.
+    The others are the twelve bodies at so many of their angles and, if any, by the own seed the measured
+    sets. More of them hold the fewer, so that stored runs are kept.
     """
     random = [one for family in FAMILIES for one in _of_family(family, count, seed)]
-    return [*random, *_of_twelve(angles, seed), *(_of_tests() if angles else ())]
+    tests = _of_tests() if angles and seed == SEED else ()
+    return [*random, *_gentle(count // 2, seed), *_of_twelve(angles, seed), *tests]
 
 
 def _of_family(family: str, count: int, drawn_by: int) -> Iterator[DrawnScene]:
@@ -126,6 +132,21 @@ def _of_family(family: str, count: int, drawn_by: int) -> Iterator[DrawnScene]:
         barrier = _barrier(kind, metal, projectile, rod, values["barrier"])
         name = f"{family.replace(', ', '-').replace(' ', '-')}-{at}"
         yield _stated(name, family, projectile, rod, barrier, values)
+
+
+def _gentle(rounds: int, drawn_by: int) -> Iterator[DrawnScene]:
+    """Yield rounds of the turned families that hardly yield: in turns brittle bodies and slow metals."""
+    turned = [family for family in FAMILIES if family != "own mesh"]
+    seed, count = (drawn_by, len(FAMILIES) + 1), rounds * len(turned)
+    metals = _metals(count, seed)
+    rods, barriers = (_turns(BRITTLE, count, np.random.default_rng([*seed, at])) for at in (4, 5))
+    kinds = _turns(KINDS[:3], count, np.random.default_rng([*seed, 1]))  # layers: no reduced model
+    for at, (values, kind) in enumerate(zip(_rows(RANGES, count, seed), kinds, strict=True)):
+        slow, projectile = at % 2 == 1, FAMILIES[turned[at % len(turned)]](values)
+        rod, struck = metals[at] if slow else (rods[at], barriers[at])
+        barrier = _barrier(kind, struck, projectile, rod, values["barrier"])
+        speed = values["speed"] / (SLOWER if slow else 1.0)
+        yield _stated(f"gentle-{at}", GENTLE, projectile, rod, barrier, {**values, "speed": speed})
 
 
 def _of_twelve(angles: int, drawn_by: int) -> Iterator[DrawnScene]:
