@@ -122,7 +122,7 @@ def validate(
     if tests is None:
         raise SceneError("is missing: there is nothing to compare with.", key="measured", remedy=_TESTS)
     stated = _friction(scene) if uncertain is None else uncertain
-    intervals = [_interval(key, ends) for key, ends in stated.items()]
+    intervals = [interval_of(key, ends) for key, ends in stated.items()]
     quick = inputs_by or ("rigid" if fidelity == "rigid" else "modal")
     if quick not in FIDELITIES:
         remedy = f"Known: {', '.join(FIDELITIES)}."
@@ -151,7 +151,7 @@ def validate(
 
     def of_units(x: Array) -> Array:
         """Return the numbers (numbers, n) of inputs (inputs, n), each from 0 to 1."""
-        values = np.array([numbers(_at(scene, intervals, column)) for column in x.T]).T
+        values = np.array([numbers(at_place(scene, intervals, column)) for column in x.T]).T
         drawn.append(values.copy())  # the indices centre what they are given
         return values
 
@@ -217,7 +217,7 @@ def _measured(tests: MeasuredTests) -> list[str]:
     return [n for n in tests.statistics() if n in compared or n in NUMBERS]
 
 
-def _interval(key: str, ends: Ends) -> tuple[str, float, float, str]:
+def interval_of(key: str, ends: Ends) -> tuple[str, float, float, str]:
     """Return key, ends and unit of an interval."""
     read = [measure(end) for end in ends]
     numbers, units = [number for number, _ in read if not isinstance(number, str)], {unit for _, unit in read}
@@ -228,7 +228,7 @@ def _interval(key: str, ends: Ends) -> tuple[str, float, float, str]:
     return key, low, high, unit
 
 
-def _at(scene: Scene, intervals: Sequence[tuple[str, float, float, str]], place: Array) -> Scene:
+def at_place(scene: Scene, intervals: Sequence[tuple[str, float, float, str]], place: Array) -> Scene:
     """Return the scene with its uncertain inputs at places (inputs,), each from 0 to 1 of its interval."""
     changes: dict[str, Any] = {}
     for (key, low, high, unit), share in zip(intervals, place.tolist(), strict=True):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +15,7 @@ from fem_impact.cli.scene_options import (
     SHAPE,
     add_rod,
     add_scene,
+    add_uncertain,
     angle_of,
     command_line,
     named_scene,
@@ -26,6 +28,7 @@ from fem_impact.tables.text import wrapped
 if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
 
+QUESTIONS = ("rigid", "heat", "force", "dent")
 SHORT = ("length", "diameter", "height", "angle", "surface")
 """Options of a dropped steel rod that must be given where no scene is."""
 
@@ -33,7 +36,11 @@ SHORT = ("length", "diameter", "height", "angle", "surface")
 def add_options(parser: CommandParser) -> None:
     """State the command and its options."""
     dropped = f'fem-impact assess --height "0.82 m" --surface machined {ROD}'
-    parser.state(assess, "fem-impact assess t5b", dropped)
+    limited = (
+        'fem-impact assess t5b --for heat --limit "430 degC"',
+        'fem-impact assess t5b --for force --limit "5 kN" --uncertain impact.angle=30,50deg',
+    )
+    parser.state(assess, "fem-impact assess t5b", *limited, dropped)
     add_scene(parser, optional=True)
     parser.add_argument(
         "--fidelity",
@@ -41,6 +48,13 @@ def add_options(parser: CommandParser) -> None:
         default="auto",
         help="auto (default): modal, and solid where the known error of modal leaves the answer open",
     )
+    asked = (
+        "the question: may rigid theory be used (default), does flash temperature, peak force or "
+        "depth of the dent stay below --limit"
+    )
+    parser.add_argument("--for", dest="question", choices=QUESTIONS, default=QUESTIONS[0], help=asked)
+    add_text(parser, "--limit", "VALUE", 'what heat, force or dent must stay below, such as "5 kN"')
+    add_uncertain(parser, "the answer then holds for the whole interval")
     within = (
         "change by vibration that may be neglected: of e, of the energy that the body keeps or of the work "
         'of friction, such as "e 0.05" (default), "energy 2 %%" or "friction 2 %%", both of E_0'
@@ -63,6 +77,8 @@ def add_options(parser: CommandParser) -> None:
 
 def assess(options: Options) -> int:
     """Assess one scene and print the verdict, before anything else its three lines."""
+    if options.question != QUESTIONS[0] or options.uncertain:
+        return _limited(options)
     from fem_impact.answers.verdict.assess import BUDGET
     from fem_impact.answers.verdict.assess import assess as assessed
     from fem_impact.answers.verdict.dropped import dropped
@@ -70,6 +86,9 @@ def assess(options: Options) -> int:
     from fem_impact.jobs.executors import cores
     from fem_impact.scene.impact import FIRST
 
+    if options.limit:
+        remedy = "Ask for it: --for heat, force or dent; a change by vibration is stated by --within."
+        raise UsageError("has no question.", key="--limit", value=options.limit, remedy=remedy)
     budget = stated_budget(options)
     means = BUDGET if budget is None else budget, min(options.workers or cores(), 2)
     scene = named_scene(options, SHORT) or _dropped_rod(options)
@@ -81,14 +100,9 @@ def assess(options: Options) -> int:
 
         refuse_other_scene(out / "scene.toml", to_toml(scene))
 
-    def tell(sentence: str) -> None:
-        """Print a sentence to a terminal that waits."""
-        if not options.quiet and sys.stderr.isatty():
-            sys.stderr.write(f"{sentence}\n")
-
     try:
         of, change = _within(options)
-        verdict = assessed(scene, options.fidelity, change, *means, tell=tell, of=of)
+        verdict = assessed(scene, options.fidelity, change, *means, tell=_telling(options), of=of)
     except KeyboardInterrupt:
         remedy = "--budget bounds the time of the next one, --fidelity modal takes seconds."
         raise KeyboardInterrupt(f"an assessment that is stopped keeps nothing: {remedy}") from None
@@ -107,6 +121,49 @@ def assess(options: Options) -> int:
 
         answer["page"] = str(write_verdict(verdict, answer, out))
     print_answer(options, answer, _text(answer))
+    return 0
+
+
+def _telling(options: Options) -> Callable[[str], None]:
+    """Return what prints a sentence to a terminal that waits."""
+    shown = not options.quiet and sys.stderr.isatty()
+    return lambda sentence: print(sentence, file=sys.stderr) if shown else None
+
+
+def _limited(options: Options) -> int:
+    """Judge a number against its limit, over the intervals that are stated, and print the answer."""
+    from fem_impact.answers.vary import read_vary
+    from fem_impact.answers.verdict.assess import BUDGET
+    from fem_impact.answers.verdict.criteria import LIMITED, Criterion, Rigidity
+    from fem_impact.answers.verdict.limit import document, judge
+    from fem_impact.jobs.executors import cores
+    from fem_impact.scene.units import option_quantity
+
+    if options.out or options.heat:
+        key = "--out" if options.out else "--heat"
+        remedy = "Leave it out: --json prints all of the answer."
+        raise UsageError("belongs to the verdict of one scene on rigid theory.", key=key, remedy=remedy)
+    scene = named_scene(options, SHORT) or _dropped_rod(options)
+    criterion: Criterion
+    if options.question == QUESTIONS[0]:
+        of, limit = _within(options)
+        criterion = Rigidity(of)
+    else:
+        criterion = LIMITED[options.question]
+        limit = option_quantity(options.limit, criterion.dimension, "--limit")
+    budget = stated_budget(options) or BUDGET
+    uncertain: dict[str, Any] = dict(read_vary(text) for text in options.uncertain)
+    means = options.fidelity, budget, min(options.workers or cores(), 2)
+    found = judge(scene, criterion, limit, uncertain, *means, tell=_telling(options))
+    given = "question", "limit", "uncertain", "within"
+    answer = document(
+        found, command_line(options, "assess", *SHORT, *SHAPE, *given).replace("--question", "--for")
+    )
+    lines = [line for sentence in answer["lines"] for line in wrapped(sentence)]
+    lines += [f"Next step: {answer['next_step']}"] if answer["next_step"] else []
+    rests = [*answer["steps"], *answer["notes"]]
+    lines += ["", "What this rests on", *(line for one in rests for line in wrapped(f"- {one}", "  "))]
+    print_answer(options, answer, "\n".join(lines) + "\n")
     return 0
 
 

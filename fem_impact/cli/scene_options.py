@@ -43,6 +43,14 @@ def add_changes(parser: argparse._ActionsContainer) -> None:
     parser.add_argument("--set", dest="changes", action="append", default=[], metavar="KEY=VALUE", help=about)
 
 
+def add_uncertain(parser: argparse.ArgumentParser, then: str) -> None:
+    """Add the intervals of uncertain inputs; ``then`` says what they are for."""
+    about = (
+        f"lowest and highest value of an uncertain input, as impact.angle=44,46deg: {then}; may be repeated"
+    )
+    parser.add_argument("--uncertain", action="append", default=[], metavar="KEY=LOW,HIGH", help=about)
+
+
 def add_rod(parser: argparse._ActionsContainer) -> None:
     """Add the options that describe a steel rod."""
     add_text(parser, "--length", "LENGTH", 'of the rod, such as "240 mm"')

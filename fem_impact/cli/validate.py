@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from fem_impact.cli.options import Options
 from fem_impact.cli.parser import CommandParser
-from fem_impact.cli.scene_options import add_scene, changed_scene
+from fem_impact.cli.scene_options import add_scene, add_uncertain, changed_scene
 from fem_impact.cli.terminal import chosen_meter, print_answer
 from fem_impact.errors import UsageError
 from fem_impact.options import FIDELITIES, RunOptions
@@ -29,8 +29,7 @@ def add_options(parser: CommandParser) -> None:
         "fem-impact validate t5b --uncertain impact.angle=44.5,45.5deg",
     )
     add_scene(parser)
-    about = "lowest and highest value of an uncertain input, as impact.angle=44,46deg; may be repeated"
-    parser.add_argument("--uncertain", action="append", default=[], metavar="KEY=LOW,HIGH", help=about)
+    add_uncertain(parser, "its part of the error is told")
     fidelity = "of the compared run (default: modal)"
     parser.add_argument("--fidelity", choices=FIDELITIES, default="modal", help=fidelity)
     by = "fidelity in which the inputs are varied (default: rigid for --fidelity rigid, else modal)"

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
-from math import ceil, hypot, inf, log10, sqrt
+from math import ceil, exp, hypot, inf, log10, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -37,6 +37,8 @@ TOLD = (
     *("E_r_over_E_0", VIBRATION, "W_friction_over_E_0"),
 )
 """Keys of the numbers whose error is told."""
+FACTORS = ("peak_force_N", "dent_m", "flash_rise_K")
+"""Numbers that are held against limits; their errors are natural logarithms of the ratio of both models."""
 
 
 class Place(NamedTuple):
@@ -101,14 +103,15 @@ class Stored:
     Attributes
     ----------
     places : (n, 6) numbers of `Place`
-    errors : (n, k) distances of both models in each of `TOLD`, over `scale_of`; nan where it is not known
+    errors : (n, k) distances of both models in each of `TOLD`, over `scale_of`, and of `FACTORS`; nan where
+        it is not known
     """
 
     places: Array
     errors: Array
 
     def half_width(self, place: Array, of: int, unlike: bool = False) -> float:
-        """Return the half-width, over `scale_of`, of a number of `TOLD` at a place (6,).
+        """Return the half-width, as ``errors`` are, of the number of a column at a place (6,).
 
         Of a scene ``unlike`` the stored ones it is at least the widest that one of them would be told.
         """
@@ -161,6 +164,14 @@ def half_widths(place: Place, outcome: Outcome) -> dict[str, float]:
     return halves
 
 
+def factor_of(place: Place, name: str, far: bool) -> float:
+    """Return the factor that holds nine in ten ratios of both models in one of `FACTORS` at a place.
+
+    Of a scene ``far`` from the stored ones it is the widest.
+    """
+    return exp(stored().half_width(np.array(place), len(TOLD) + FACTORS.index(name), far))
+
+
 def unlike(place: Place, outcome: Outcome) -> tuple[str, ...]:
     """Return in what a scene is unlike all stored ones, of which one place touched."""
     sites = or_none(outcome.contact.sites) or ()
@@ -186,4 +197,4 @@ def stored() -> Stored:
     def columns(names: tuple[str, ...]) -> Array:
         return np.array([[row[name] for name in names] for row in rows])
 
-    return Stored(columns(Place._fields), np.abs(columns(TOLD)))
+    return Stored(columns(Place._fields), np.abs(columns((*TOLD, *FACTORS))))

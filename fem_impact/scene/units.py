@@ -82,6 +82,7 @@ DIMENSIONS: dict[str, Dimension] = {
         Dimension("density", "kg_per_m3", "kg/m3", "7850 kg/m3", (Unit("kg/m3"), Unit("g/cm3", 3))),
         Dimension("inertia", "kg_m2", "kg m2", "0.02 kg m2", (Unit("kg m2"), Unit("g cm2", -7))),
         Dimension("mass", "kg", "kg", "5 kg", (Unit("kg"), Unit("g", -3), Unit("t", 3))),
+        Dimension("force", "N", "N", "5 kN", (Unit("N"), Unit("kN", 3))),
         Dimension("temperature", "K", "K", "430 degC", (Unit("K"), Unit("degC", offset=273.15))),
         Dimension("conductivity", "W_per_m_K", "W/(m K)", "53 W/(m K)", (Unit("W/(m K)"), Unit("W/mK"))),
         Dimension(

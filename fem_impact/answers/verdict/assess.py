@@ -142,7 +142,8 @@ def assess(
     RunError
         No model gives a restitution at the scene's inclination.
     """
-    _check(fidelity, tolerance, budget_s, of)
+    check_means(fidelity, budget_s)
+    _check(tolerance, of)
     scene = scene.first_impact
     bodies = Case(scene).bodies
     lacking = not_reduced(bodies)
@@ -199,18 +200,22 @@ def _step(by: str, effect: VibrationEffect | None, tolerance: float, took_s: flo
     return f"{by}{time}: {effect.of} changes by {effect.told}: {effect.answer(tolerance)}"
 
 
-def _check(fidelity: str, tolerance: float, budget_s: float, of: str) -> None:
+def check_means(fidelity: str, budget_s: float) -> None:
+    """Refuse another fidelity than those of a verdict, and a budget that is none (SceneError)."""
     if fidelity not in FIDELITIES:
         remedy = f"Use one of {', '.join(FIDELITIES)}."
         raise SceneError("is not a fidelity of a verdict.", key="fidelity", value=fidelity, remedy=remedy)
+    if not 0.0 < budget_s < 1e6:
+        raise SceneError("must lie above 0 and below 1e6 s.", key="budget", value=f"{budget_s:g} s")
+
+
+def _check(tolerance: float, of: str) -> None:
     if of not in CHANGED:
         remedy = f"Use one of {', '.join(CHANGED)}."
         raise SceneError("is not a number whose change is judged.", key="of", value=of, remedy=remedy)
     if not 0.0 < tolerance < 1.0:
         remedy = "It is the change that may be neglected: give one such as 0.05."
         raise SceneError("must lie between 0 and 1.", key="tolerance", value=tolerance, remedy=remedy)
-    if not 0.0 < budget_s < 1e6:
-        raise SceneError("must lie above 0 and below 1e6 s.", key="budget", value=f"{budget_s:g} s")
 
 
 def _solid(
@@ -228,19 +233,15 @@ def _solid(
     has an answer, which counts where finite elements have none. A sentence on each level is added to
     ``steps``; ``allowed`` is the change of what that may be neglected.
     """
-    (of, tolerance), begun = allowed, set[str]()
+    of, tolerance = allowed
 
     def decides(levels: Sequence[LevelRun]) -> bool:
         effect = solid_effect([level.runs for level in levels], of)
         return effect is not None and effect.answer(tolerance) != "undecided"
 
-    def announce(progress: Progress | Notice) -> None:
-        if isinstance(progress, Progress) and progress.note not in begun:
-            begun.add(progress.note)
-            tell(f"finite elements, {progress.note} ...")
-
     free, stiff = twins(untargeted(scene))
-    levels = LevelChain(Case(free), RunOptions(progress=announce), budget_s, workers, decides, stiff)
+    options = RunOptions(progress=announcing(tell))
+    levels = LevelChain(Case(free), options, budget_s, workers, decides, stiff)
     try:
         levels.refine()
     except (SceneError, RunError) as refused:
@@ -256,8 +257,20 @@ def _solid(
     effect = solid_effect([level.runs for level in levels.done], of)
     if effect is not None and effect.answer(tolerance) != "undecided":
         return effect, [], ""
-    note, more = _stopped(levels)
+    note, more = why_stopped(levels)
     return effect, [*note, *([] if effect else [_nothing(levels.done, of)])], more
+
+
+def announcing(tell: Tell) -> Callable[[Progress | Notice], None]:
+    """Return what takes the progress of finite elements and tells when each level begins."""
+    begun = set[str]()
+
+    def announce(progress: Progress | Notice) -> None:
+        if isinstance(progress, Progress) and progress.note not in begun:
+            begun.add(progress.note)
+            tell(f"finite elements, {progress.note} ...")
+
+    return announce
 
 
 def _nothing(levels: Sequence[LevelRun], of: str) -> str:
@@ -270,7 +283,7 @@ def _nothing(levels: Sequence[LevelRun], of: str) -> str:
     return "The last level of finite elements does not resolve the contact."
 
 
-def _stopped(levels: LevelChain) -> tuple[list[str], str]:
+def why_stopped(levels: LevelChain) -> tuple[list[str], str]:
     """Return a note on why no other level runs, and the options with which one would."""
     if levels.failed:
         return [f"Finite elements give no result on level {len(levels.done) + 1}: {levels.failed}"], ""

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from math import log
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
@@ -10,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fem_impact.answers.report import Sheet, StudyReport
+from fem_impact.answers.verdict.criteria import LIMITED
 from fem_impact.case.case import Case
 from fem_impact.evidence.studies.coverage.judge import (
     AIM,
@@ -28,7 +30,10 @@ from fem_impact.evidence.studies.coverage.judge import (
 from fem_impact.evidence.studies.coverage.run import DEFAULT, FINER, FINEST, MODAL, MOST, NEXT
 from fem_impact.evidence.studies.coverage.scenes import SEED, DrawnScene
 from fem_impact.figures.panels import Mark, Panel, Picture, Series
-from fem_impact.run.modal_error import HELD, TOLD, Place, place_of
+from fem_impact.outcome.keys import or_none
+from fem_impact.outcome.record import KEY_TABLE, Outcome
+from fem_impact.run.modal import closed
+from fem_impact.run.modal_error import FACTORS, HELD, TOLD, Place, place_of
 from fem_impact.tables.table import Cell, Column, Table
 from fem_impact.tables.text import plain
 
@@ -56,6 +61,7 @@ HEAD = (
 NUMBERS = ("finished", "strikes again")  # ends of runs that gave numbers
 WORST = 30  # misses that the page shows
 LONGEST = 160  # letters of a reason
+MOST_OFF = 0.5  # widest half-width of finite elements, over the number, that tells a ratio of both models
 
 
 def report_of(scenes: Sequence[DrawnScene], results: Results, seed: int) -> StudyReport:
@@ -187,11 +193,23 @@ def _pairs(scenes: Sequence[DrawnScene], results: Results) -> Sheet:
         for scene in scenes:
             modal, solid = of_reduced(scene, results)
             if modal is not None and solid is not None:
-                place = place_of(Case.of(scene.scene(Path(folder)), "modal"), modal)
-                numbers = *place, *(reduced_error(modal, solid, key) for key in TOLD)
+                case = Case.of(scene.scene(Path(folder)), "modal")
+                told = (*(reduced_error(modal, solid, key) for key in TOLD), *_ratios_of(case, solid))
+                numbers = *place_of(case, modal), *told
                 rows.append((scene.name, *(None if one is None else round(one, 5) for one in numbers)))
     caption = "Where scenes of both models stand, and reduced model less finite elements over the scale"
-    return Sheet("pairs", caption, Table.of(("scene", *Place._fields, *TOLD), rows), shown=False)
+    return Sheet("pairs", caption, Table.of(("scene", *Place._fields, *TOLD, *FACTORS), rows), shown=False)
+
+
+def _ratios_of(case: Case, solid: Outcome) -> Iterator[float | None]:
+    """Yield the logarithm of reduced model over finite elements in each of `FACTORS`, None: not known."""
+    result = closed(case, recorded=True)
+    for name in FACTORS:
+        of = next(one for one in LIMITED.values() if one.column == name)
+        truth = or_none(of.of_solid(solid)) or 0.0
+        half = solid.estimate(name)[1] if name in KEY_TABLE else 0.0
+        value = of.of_reduced(case, result) if half is not None and half <= MOST_OFF * truth else 0.0
+        yield log(value / truth) if min(value, truth) > 0.0 else None
 
 
 def _all(name: str, caption: str, table: pandas.DataFrame) -> Sheet:

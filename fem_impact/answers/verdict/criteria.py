@@ -1,0 +1,227 @@
+"""What may be asked of a scene by a limit: rigid theory's error, heat, force and dent, by both models."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from math import inf, pi
+
+import numpy as np
+
+from fem_impact.answers.refine.extrapolate import level_limit, level_limits
+from fem_impact.answers.refine.level import LevelRun
+from fem_impact.answers.verdict.effect import (
+    Answer,
+    modal_effect,
+    modal_pair,
+    solid_effect,
+    unfinished,
+    untargeted,
+)
+from fem_impact.answers.verdict.reliability import known_error
+from fem_impact.answers.verdict.twins import twins
+from fem_impact.case.case import Case
+from fem_impact.case.effects.heating import halves
+from fem_impact.case.effects.registry import NAMES
+from fem_impact.modal.impact import ModalResult
+from fem_impact.modal.motion import ROW
+from fem_impact.outcome.keys import Num, Unknown
+from fem_impact.outcome.record import Outcome
+from fem_impact.physics.contact_law import contact_law
+from fem_impact.physics.flash import flash
+from fem_impact.run.modal import closed, reduce
+from fem_impact.run.modal_error import factor_of, place_of, unlike
+from fem_impact.scene.types import Scene
+
+
+@dataclass(frozen=True, slots=True)
+class Bound:
+    """A number with its least and most, SI; ``alike``: its error was found on scenes like this one."""
+
+    value: float
+    low: float
+    high: float
+    alike: bool = True
+
+    def answer(self, limit: float) -> Answer:
+        """Say whether the number stays below a limit."""
+        if self.low > limit:
+            return "no"
+        return "yes" if self.high <= limit else "undecided"
+
+
+class Criterion(ABC):
+    """A number that must stay below a limit.
+
+    Attributes
+    ----------
+    called : in a sentence
+    dimension, unit, per_unit : of its limit, the unit that is printed, and how many of SI that is
+    """
+
+    called: str
+    dimension: str
+    unit: str
+    per_unit: float
+
+    @abstractmethod
+    def reduced(self, scene: Scene) -> Bound | Unknown:
+        """Return the number by the reduced model (SceneError: the scene is refused)."""
+
+    @abstractmethod
+    def meshed(self, scene: Scene) -> tuple[Scene, Scene | None]:
+        """Return the scene for finite elements and the twin that runs beside it, None where none does."""
+
+    @abstractmethod
+    def solid(self, levels: Sequence[LevelRun]) -> Bound | None:
+        """Return the number by levels of finite elements from coarse to fine, None where they tell none."""
+
+
+class Rigidity(Criterion):
+    """The change of a number of `fem_impact.answers.verdict.reliability.CHANGED` by vibration."""
+
+    dimension, unit, per_unit = "", "", 1.0
+
+    def __init__(self, of: str) -> None:
+        self.of, self.called = of, f"the change of {of} by vibration"
+
+    def reduced(self, scene: Scene) -> Bound | Unknown:
+        """Return the change with the largest error on comparable scenes."""
+        pair = modal_pair(scene)
+        if failed := unfinished(pair, self.of):
+            return Unknown(failed)
+        effect = modal_effect(scene, pair, self.of)
+        return _about(abs(effect.value), effect.band, known_error(scene).alike)
+
+    def meshed(self, scene: Scene) -> tuple[Scene, Scene | None]:
+        """Return the twins."""
+        return twins(untargeted(scene))
+
+    def solid(self, levels: Sequence[LevelRun]) -> Bound | None:
+        """Return the change and the band of the levels."""
+        effect = solid_effect([level.runs for level in levels], self.of)
+        return None if effect is None else _about(abs(effect.value), effect.band)
+
+
+class Limited(Criterion):
+    """A number of one run, which the reduced model tells within a factor."""
+
+    column: str  # of the stored scenes, by which that factor is found
+
+    @abstractmethod
+    def of_reduced(self, case: Case, result: ModalResult) -> float:
+        """Return the number from a run of the reduced model."""
+
+    @abstractmethod
+    def of_solid(self, outcome: Outcome) -> Num:
+        """Return the number from a run of finite elements."""
+
+    def base(self, scene: Scene) -> float:
+        """Return what of the number is known beforehand: of a temperature that of the surroundings."""
+        return 0.0
+
+    def reduced(self, scene: Scene) -> Bound | Unknown:
+        """Return the number between those over and times its factor."""
+        case = Case.of(scene, "modal")
+        result = closed(case, recorded=True)
+        if not result.finished:
+            return Unknown(result.reason)
+        outcome = reduce(case, result)
+        place, value, base = place_of(case, outcome), self.of_reduced(case, result), self.base(scene)
+        far = bool(unlike(place, outcome))
+        factor = factor_of(place, self.column, far)
+        return Bound(base + value, base + value / factor, base + value * factor, not far)
+
+    def meshed(self, scene: Scene) -> tuple[Scene, Scene | None]:
+        """Return the scene without a film."""
+        return untargeted(replace(scene, measured=None, save=replace(scene.save, frames=0))), None
+
+    def solid(self, levels: Sequence[LevelRun]) -> Bound | None:
+        """Return the limit and the half-width of the levels."""
+        known = [
+            (level, value) for level in levels if isinstance(value := self.of_solid(level.outcome), float)
+        ]
+        used = [level.runs for level, _ in known][-3:]
+        if isinstance(level_limits(used)[0], Unknown):
+            return None
+        values = [[value] for _, value in known][-3:]
+        value, band = level_limit([one.size for one in used], values, [one.wide for one in used])
+        return _about(value + self.base(known[-1][0].cases[0].scene), band)
+
+
+def _about(value: float, band: float, alike: bool = True) -> Bound:
+    return Bound(value, value - band, value + band, alike)
+
+
+class Heat(Limited):
+    """The highest mean temperature of the patch."""
+
+    called, column = "the flash temperature of the contact", "flash_rise_K"
+    dimension, unit, per_unit = "temperature", "K", 1.0
+
+    def of_reduced(self, case: Case, result: ModalResult) -> float:
+        """Return the rise, K, of the patch, see `fem_impact.physics.flash`.
+
+        The friction of the record heats the patch of Hertz or, where that is larger, the one that carries the
+        force at the pressure at which the softer body flows.
+        """
+        record, law = result.record, contact_law(case.contact)
+        t, first = np.unique(record[:, ROW.time], return_index=True)
+        force, work = np.maximum(record[first, ROW.force_n], 0.0), record[first, ROW.friction]
+        force, power = 0.5 * (force[1:] + force[:-1]), np.maximum(np.diff(work) / np.diff(t), 0.0)
+        patch = pi * (0.75 * force * law.R / law.E_star) ** (2 / 3)
+        patch = np.maximum(patch, 0.0 if law.limit == inf else force / law.limit)
+        rubs, zero = (force > 0.0) & (power > 0.0), np.zeros_like(force)
+        flux = np.divide(power, patch, out=zero.copy(), where=rubs)
+        speed = np.divide(power, law.friction * force, out=zero.copy(), where=rubs)
+        return flash(t, flux, np.sqrt(patch / pi), speed, *halves(case.bodies)).peak
+
+    def of_solid(self, outcome: Outcome) -> Num:
+        """Return the rise, K."""
+        return outcome.heat.rise
+
+    def base(self, scene: Scene) -> float:
+        """Return the temperature of the surroundings, K."""
+        return scene.heating.ambient
+
+    def meshed(self, scene: Scene) -> tuple[Scene, Scene | None]:
+        """Return the scene with its heat followed."""
+        plain, _ = super().meshed(scene)
+        on = {*Case(plain).active, "contact-heating"}
+        return replace(plain, effects=tuple(name for name in NAMES if name in on)), None
+
+
+class Force(Limited):
+    """The largest normal force."""
+
+    called, column = "the peak force", "peak_force_N"
+    dimension, unit, per_unit = "force", "kN", 1e3
+
+    def of_reduced(self, case: Case, result: ModalResult) -> float:
+        """Return the force, N."""
+        return result.force
+
+    def of_solid(self, outcome: Outcome) -> Num:
+        """Return the force, N."""
+        return outcome.contact.peak_force
+
+
+class Dent(Limited):
+    """The largest indentation of the barrier."""
+
+    called, column = "the deepest indentation of the barrier", "dent_m"
+    dimension, unit, per_unit = "length", "mm", 1e-3
+
+    def of_reduced(self, case: Case, result: ModalResult) -> float:
+        """Return the depth, m, at the place that is pressed deepest."""
+        return max(site.depth for site in result.sites)
+
+    def of_solid(self, outcome: Outcome) -> Num:
+        """Return the depth, m, at the place that is pressed deepest."""
+        sites = outcome.contact.sites
+        return sites if isinstance(sites, Unknown) else max(site.depth for site in sites)
+
+
+LIMITED: Mapping[str, Limited] = {"heat": Heat(), "force": Force(), "dent": Dent()}
+"""Criteria that need a limit, by the word that asks for them."""

@@ -1,0 +1,301 @@
+"""Whether a number stays below a limit, at a scene or anywhere in intervals of what is uncertain.
+
+The reduced model looks at places over the intervals, and finite elements at the worst of them and the mildest
+where its error leaves the answer open.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from itertools import product
+from math import inf
+from time import perf_counter
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fem_impact.answers.refine.budget import about_s
+from fem_impact.answers.refine.chain import LevelChain
+from fem_impact.answers.refine.level import LevelRun
+from fem_impact.answers.validate import FRICTION, Ends, at_place, interval_of
+from fem_impact.answers.verdict.assess import BUDGET, LEAST_LEVELS, Tell, announcing, check_means, why_stopped
+from fem_impact.answers.verdict.criteria import Bound, Criterion
+from fem_impact.answers.verdict.effect import Answer
+from fem_impact.case.case import Case
+from fem_impact.case.limits import not_reduced
+from fem_impact.errors import RunError, SceneError, UsageError
+from fem_impact.options import RunOptions
+from fem_impact.outcome.keys import Unknown
+from fem_impact.tables.text import plain
+
+if TYPE_CHECKING:
+    from fem_impact.scene.types import Scene
+
+PLACES = {0: 1, 1: 21, 2: 7, 3: 5, 4: 3}
+"""Values of each of so many intervals at which the reduced model looks."""
+CONFIRMED = (
+    "Finite elements ran where the reduced model has its largest number and its least; as much as it is too "
+    "low at one of them it counts as too low at all places."
+)
+UNCONFIRMED = (
+    "At the worst place finite elements stay below the limit, but elsewhere the number may pass it if the "
+    "reduced model is as much too low there as where they ran, or it has no answer there."
+)
+
+
+@dataclass(frozen=True, slots=True)
+class LimitVerdict:
+    """Whether a number stays below a limit.
+
+    Attributes
+    ----------
+    scene, criterion, limit : the question; SI
+    intervals : lowest to highest value by key, as stated
+    answer : for all of the intervals
+    worst, bound, by : values by key where the number is largest, the number there, and by which model
+    least : the smallest number of the reduced model over the intervals, None where it has none
+    places, not_known : where the reduced model looked, and why it has no answer at some
+    steps, notes : what was computed one after the other, and what the reader should know
+    more : options that may decide what is undecided
+    """
+
+    scene: Scene
+    criterion: Criterion
+    limit: float
+    intervals: Mapping[str, str]
+    answer: Answer
+    worst: Mapping[str, str]
+    bound: Bound | None
+    by: str
+    least: float | None
+    places: int
+    not_known: str
+    steps: tuple[str, ...]
+    notes: tuple[str, ...]
+    more: str
+
+    @property
+    def margin(self) -> float | None:
+        """How far the number stays below the limit at the worst place with its error, SI; below 0: beyond."""
+        if self.bound is None:
+            return None
+        return self.limit - (self.bound.low if self.bound.answer(self.limit) == "no" else self.bound.high)
+
+
+def judge(
+    scene: Scene,
+    criterion: Criterion,
+    limit: float,
+    uncertain: Mapping[str, Ends] | None = None,
+    fidelity: str = "auto",
+    budget_s: float = BUDGET,
+    workers: int = 1,
+    tell: Tell = lambda sentence: None,
+) -> LimitVerdict:
+    """Say whether a number stays below a limit, SI, for all values in the intervals.
+
+    Parameters
+    ----------
+    uncertain : lowest and highest value by key, as of `fem_impact.answers.validate.validate`; None: friction
+        over the interval of the scene, if it states one
+    fidelity, budget_s, workers, tell : as of `fem_impact.answers.verdict.assess.assess`
+
+    Raises
+    ------
+    SceneError, UsageError
+        The scene or an interval cannot be used.
+    RunError
+        No level of finite elements came to an end, and there is no reduced model.
+    """
+    check_means(fidelity, budget_s)
+    scene = scene.first_impact
+    intervals = [interval_of(key, ends) for key, ends in (_stated(scene) | dict(uncertain or {})).items()]
+    if len(intervals) not in PLACES:
+        problem, remedy = f"states {len(intervals)} intervals.", f"Give at most {max(PLACES)}."
+        raise UsageError(problem, key="uncertain", remedy=remedy)
+    steps, notes, more = list[str](), list[str](), ""
+    least = LEAST_LEVELS if fidelity == "solid" else 1
+    lacking = not_reduced(Case(scene).bodies)
+    if not lacking:
+        tell(f"the reduced model at {PLACES[len(intervals)] ** len(intervals)} places ...")
+    found = {} if lacking and fidelity != "modal" else _scanned(scene, criterion, intervals)
+    known = {place: one for place, one in found.items() if isinstance(one, Bound)}
+    why = next((one.reason for one in found.values() if isinstance(one, Unknown)), "")
+    notes += [f"There is no reduced model of {lacking}: finite elements alone answer."] if lacking else []
+    worst = max(known, key=lambda place: known[place].value, default=(0.5,) * len(intervals))
+    bound, by = known.get(worst), "the reduced model"
+    answer = _together([one.answer(limit) for one in known.values()], bool(why) or not known)
+    if bound is not None:
+        where = f" at the worst of {len(known)} places" if intervals else ""
+        steps.append(f"{by}: {_told(criterion, bound)}{where}: {answer}")
+        tell(steps[-1])
+    open_still = answer == "undecided" or not all(one.alike for one in known.values())
+    if fidelity == "solid" or (fidelity == "auto" and open_still):
+        mildest = min(known, key=lambda place: known[place].value, default=worst)
+        end, solids = perf_counter() + budget_s, dict[tuple[float, ...], Bound]()
+        for place in (worst, mildest):
+            if place in solids or any(one.answer(limit) != "yes" for one in solids.values()):
+                continue
+            at = at_place(scene, intervals, np.array(place)) if intervals else scene
+            means = least, max(end - perf_counter(), 1.0), workers
+            solid, told, more = _solid(at, criterion, limit, means, tell, steps)
+            notes += told
+            if solid is not None:
+                solids[place] = solid
+        if worst in solids:
+            bound, by = solids[worst], "finite elements"
+            answer = _together([one.answer(limit) for one in solids.values()], mildest not in solids)
+            if answer == "yes" and intervals:
+                answer = _everywhere(solids, known, limit, bool(why))
+                notes.append(CONFIRMED if answer == "yes" else UNCONFIRMED)
+    if bound is None and not steps:
+        raise RunError(" ".join([*notes, why]))
+    return LimitVerdict(
+        scene,
+        criterion,
+        limit,
+        {key: f"{low:g} to {high:g} {unit}".rstrip() for key, low, high, unit in intervals},
+        answer,
+        {
+            key: f"{low + share * (high - low):.4g} {unit}".rstrip()
+            for (key, low, high, unit), share in zip(intervals, worst, strict=True)
+        },
+        bound,
+        by,
+        min((one.value for one in known.values()), default=None),
+        len(found),
+        why,
+        tuple(steps),
+        tuple(notes),
+        more if answer == "undecided" else "",
+    )
+
+
+def _stated(scene: Scene) -> dict[str, Ends]:
+    """Return the interval of friction of a scene, if it states one."""
+    low, high = scene.surface.friction_low, scene.surface.friction_high
+    return {} if low == high else {FRICTION: (low, high)}
+
+
+def _scanned(
+    scene: Scene, criterion: Criterion, intervals: Sequence[tuple[str, float, float, str]]
+) -> dict[tuple[float, ...], Bound | Unknown]:
+    """Return the number by the reduced model at places, each from 0 to 1 of the intervals."""
+    shares, found = np.linspace(0.0, 1.0, PLACES[len(intervals)]).tolist(), {}
+    for place in product(shares, repeat=len(intervals)):
+        try:
+            found[place] = criterion.reduced(at_place(scene, intervals, np.array(place)) if place else scene)
+        except (SceneError, RunError) as refused:
+            if not intervals:
+                raise
+            found[place] = Unknown(str(refused))
+    return found
+
+
+def _together(answers: Sequence[Answer], missing: bool) -> Answer:
+    """Return the answer for all places: no if it is at one, yes if it is at each and none is missing."""
+    if "no" in answers:
+        return "no"
+    return "yes" if {*answers} == {"yes"} and not missing else "undecided"
+
+
+def _everywhere(
+    solids: Mapping[tuple[float, ...], Bound],
+    known: Mapping[tuple[float, ...], Bound],
+    limit: float,
+    missing: bool,
+) -> Answer:
+    """Return the answer for all places where finite elements are content with the worst and the mildest.
+
+    As much as the reduced model is too low at one of them it counts as too low at all others.
+    """
+    offs = [solid.high - known[place].value for place, solid in solids.items() if place in known]
+    highest = max((one.value for one in known.values()), default=inf) + max(offs, default=inf)
+    return "yes" if highest <= limit and not missing else "undecided"
+
+
+def _solid(
+    scene: Scene,
+    criterion: Criterion,
+    limit: float,
+    means: tuple[int, float, int],
+    tell: Tell,
+    steps: list[str],
+) -> tuple[Bound | None, list[str], str]:
+    """Return what finite elements say of one place, notes on it, and options for another level.
+
+    ``means`` are levels that run whatever the budget, the budget, s, and runs at a time; a sentence on each
+    level is added to ``steps``.
+    """
+    least, budget_s, workers = means
+
+    def decides(levels: Sequence[LevelRun]) -> bool:
+        bound = criterion.solid(levels)
+        return bound is not None and bound.answer(limit) != "undecided"
+
+    free, twin = criterion.meshed(scene)
+    levels = LevelChain(
+        Case(free), RunOptions(progress=announcing(tell)), budget_s, workers, decides, twin, least
+    )
+    try:
+        levels.refine()
+    except (SceneError, RunError) as refused:
+        return None, [f"Finite elements have no answer here: {refused}"], ""
+    for number, level in enumerate(levels.done, 1):
+        bound = criterion.solid(levels.done[:number])
+        told = "no band yet" if bound is None else f"{_told(criterion, bound)}: {bound.answer(limit)}"
+        size = plain(1e3 * level.size, 2)
+        steps.append(
+            f"finite elements, level {number}, cells of {size} mm in {about_s(level.wall_s)}: {told}"
+        )
+        tell(steps[-1])
+    bound = criterion.solid(levels.done)
+    if bound is not None and bound.answer(limit) != "undecided":
+        return bound, [], ""
+    return bound, *why_stopped(levels)
+
+
+def _in_unit(criterion: Criterion, number: float) -> str:
+    return f"{plain(number / criterion.per_unit, 3)} {criterion.unit}".rstrip()
+
+
+def _told(criterion: Criterion, bound: Bound) -> str:
+    """Return a number between its least and most, in the unit of its criterion."""
+    low, high = (_in_unit(criterion, end) for end in (bound.low, bound.high))
+    return f"{_in_unit(criterion, bound.value)} ({low} to {high})"
+
+
+def document(v: LimitVerdict, command: str) -> dict[str, object]:
+    """Return the verdict as plain JSON, its sentences with it; ``command`` is that which gives it again."""
+    of, bound = v.criterion, v.bound
+    over = " and ".join(f"{key} from {ends}" for key, ends in v.intervals.items())
+    where = f", {over}" if over else ""
+    lines = [f"Does {of.called} stay below {_in_unit(of, v.limit)}{where}? {v.answer.upper()}."]
+    if bound is not None and v.margin is not None:
+        at = ", ".join(f"{key} {value}" for key, value in v.worst.items())
+        size = _in_unit(of, abs(v.margin))
+        far = {
+            "yes": f"at least {size} below",
+            "no": f"at least {size} above",
+            "undecided": f"up to {size} above",
+        }
+        place = f"At the worst place, {at}" if at else "Here"
+        lines.append(f"{place}: {_told(of, bound)}, {far[bound.answer(v.limit)]} the limit, by {v.by}.")
+    if v.least is not None and over:
+        lines.append(f"Of {v.places} places of the reduced model the least has {_in_unit(of, v.least)}.")
+    lacking = [f"At some places the reduced model has no answer: {v.not_known}"] if v.not_known else []
+    return {
+        "criterion": of.called,
+        "limit": v.limit,
+        "over": dict(v.intervals),
+        "answer": v.answer,
+        "margin": v.margin,
+        "worst": dict(v.worst),
+        "bound": None if bound is None else asdict(bound),
+        "rests_on": v.by,
+        "lines": lines,
+        "steps": list(v.steps),
+        "notes": [*v.notes, *lacking],
+        "next_step": f"{command} {v.more}" if v.more else None,
+    }

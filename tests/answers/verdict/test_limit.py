@@ -1,0 +1,186 @@
+"""A number against its limit over intervals: answer, worst place, margin; heat, force and dent."""
+
+import json
+from dataclasses import replace
+from math import pi, sqrt
+
+import numpy as np
+import pytest
+
+import fem_impact
+from fem_impact.cli.main import main
+from fem_impact.answers.verdict import limit as module
+from fem_impact.answers.verdict.criteria import LIMITED, Bound, Force
+from fem_impact.answers.verdict.limit import document, judge
+from fem_impact.case.case import Case
+from fem_impact.case.effects.heating import halves
+from fem_impact.errors import SceneError, UsageError
+from fem_impact.modal.motion import ROW
+from fem_impact.outcome.keys import Unknown
+from fem_impact.run.modal import closed
+
+ANGLE = {"impact.angle": ("20 deg", "60 deg")}
+
+
+@pytest.fixture
+def scene():
+    return fem_impact.replace(fem_impact.load("t5b"), "surface.friction", 0.57)
+
+
+class Sloped(Force):
+    """A force of as many N as the angle has degrees, told within 10 N."""
+
+    def __init__(self, missing=()):
+        self.missing = missing
+
+    def reduced(self, scene):
+        value = np.degrees(scene.impact.angle)
+        if any(abs(value - at) < 0.5 for at in self.missing):
+            return Unknown("it slides on")
+        return Bound(value, value - 10.0, value + 10.0)
+
+
+def test_no_yes_stands_beside_a_place_that_is_undecided(scene):
+    told = {limit: judge(scene, Sloped(), limit, ANGLE, "modal") for limit in (75.0, 69.0, 49.0)}
+    assert [told[limit].answer for limit in (75.0, 69.0, 49.0)] == ["yes", "undecided", "no"]
+    assert told[69.0].worst == {"impact.angle": "60 deg"} and told[69.0].margin == pytest.approx(-1.0)
+    assert told[75.0].margin == pytest.approx(5.0) and told[49.0].margin == pytest.approx(-1.0)
+    assert told[75.0].places == 21 and told[75.0].least == pytest.approx(20.0)
+    assert judge(scene, Sloped(), 69.0, None, "modal").answer == "yes"
+
+
+def test_a_place_without_an_answer_forbids_yes(scene):
+    found = judge(scene, Sloped(missing=(40.0,)), 75.0, ANGLE, "modal")
+    assert found.answer == "undecided" and found.not_known == "it slides on"
+
+
+def solids(monkeypatch, values):
+    """Let finite elements tell a bound by the angle in degrees; return the angles at which they ran."""
+    ran = []
+
+    def of(scene, criterion, limit, means, tell, steps):
+        ran.append(round(np.degrees(scene.impact.angle)))
+        value = values[ran[-1]]
+        return value and Bound(value, value - 1.0, value + 1.0), [], "--budget more"
+
+    monkeypatch.setattr(module, "_solid", of)
+    return ran
+
+
+@pytest.mark.parametrize(
+    ("values", "limit", "answer", "ran"),
+    [
+        ({60: 50.0, 20: 10.0}, 65.0, "yes", [60, 20]),
+        ({60: 50.0, 20: 30.0}, 65.0, "undecided", [60, 20]),  # 11 too low at the mild end: 71 at the worst
+        ({60: 80.0}, 65.0, "no", [60]),
+        ({60: 65.5}, 65.0, "undecided", [60]),
+        ({60: 50.0, 20: None}, 65.0, "undecided", [60, 20]),
+    ],
+)
+def test_finite_elements_confirm_at_the_worst_place_and_the_mildest(
+    monkeypatch, scene, values, limit, answer, ran
+):
+    seen = solids(monkeypatch, values)
+    found = judge(scene, Sloped(), limit, ANGLE)
+    assert found.answer == answer and seen == ran and found.by == "finite elements"
+    assert found.bound.value == values[60]
+
+
+def test_a_number_that_is_clear_needs_no_finite_elements(monkeypatch, scene):
+    seen = solids(monkeypatch, {})
+    assert judge(scene, Sloped(), 75.0, ANGLE).by == "the reduced model" and not seen
+
+
+def test_the_interval_of_friction_that_a_scene_states_counts(scene):
+    stated = fem_impact.load("t5b")
+    found = judge(stated, Sloped(), 75.0, {}, "modal")
+    assert found.answer == "yes" and found.intervals == {"surface.friction": "0.45 to 0.7"}
+    assert judge(scene, Sloped(), 75.0, {}, "modal").intervals == {}
+    with pytest.raises(UsageError, match="5 intervals"):
+        judge(stated, LIMITED["force"], 5e3, {f"a{at}": (0, 1) for at in range(4)})
+
+
+def test_force_and_dent_are_those_of_the_outcome(scene):
+    outcome = fem_impact.simulate(scene, "modal")
+    for word, value in (
+        ("force", outcome.contact.peak_force),
+        ("dent", max(site.depth for site in outcome.contact.sites)),
+    ):
+        bound = LIMITED[word].reduced(scene)
+        assert bound.value == pytest.approx(value) and bound.low < value < bound.high
+        assert bound.high / value == pytest.approx(value / bound.low)
+
+
+def test_an_even_flux_heats_two_half_spaces_as_the_closed_form_says(scene):
+    """In a short time heat flows straight into both: T = 2 q sqrt(t / pi) / (b_rod + b_barrier)."""
+    case = Case.of(scene, "modal")
+    record = np.zeros((200, len(ROW)))
+    t, force, power = np.linspace(0.0, 1e-6, 200), 4000.0, 500.0
+    record[:, ROW.time], record[:, ROW.force_n], record[:, ROW.friction] = t, force, power * t
+    result = replace(closed(case), record=record)
+    rods = halves(case.bodies)
+    patch = force / (2.8 * case.contact.softer.yield_stress)
+    expected = 2 * power / patch * sqrt(t[-1] / pi) / sum(half.effusivity for half in rods)
+    assert LIMITED["heat"].of_reduced(case, result) == pytest.approx(expected, rel=1e-6)
+    assert LIMITED["heat"].reduced(scene).low > scene.heating.ambient
+
+
+def test_heat_of_a_metal_that_states_no_conduction_is_refused(scene):
+    metal = "projectile.material", {"name": "mine", "E": "200 GPa", "nu": 0.3, "rho": "7800 kg/m3"}
+    unknown = fem_impact.replace(scene, *metal)
+    with pytest.raises(SceneError, match="rod_conductivity"):
+        judge(unknown, LIMITED["heat"], 600.0)
+
+
+def test_heat_by_finite_elements_follows_the_contact(scene):
+    meshed, twin = LIMITED["heat"].meshed(
+        fem_impact.replace(scene, "effects", ["friction", "barrier-elastic"])
+    )
+    assert twin is None and set(meshed.effects) == {"friction", "barrier-elastic", "contact-heating"}
+
+
+def test_the_command_says_question_place_and_margin(capsys):
+    line = ["assess", "t5b", "--fidelity", "modal", "--for", "force", "--limit"]
+    assert main([*line, "3.2 kN", "--uncertain", "impact.angle=44,46deg"]) == 0
+    told = capsys.readouterr().out
+    assert "stay below 3.2 kN" in told and "UNDECIDED" in told and "impact.angle 44 deg" in told
+    assert main([*line, "1 kN", "--json"]) == 0
+    answer = json.loads(capsys.readouterr().out)
+    assert answer["answer"] == "no" and answer["margin"] < 0 and answer["limit"] == 1000.0
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        (["--for", "force"], "--limit"),
+        (["--for", "heat", "--limit", "5 kN"], "temperature"),
+        (["--limit", "5 kN"], "has no question"),
+        (["--for", "dent", "--limit", "1 mm", "--out", "somewhere"], "--out"),
+    ],
+)
+def test_what_cannot_be_asked_is_refused(capsys, options, told):
+    assert main(["assess", "t5b", *options]) == 2
+    assert told in capsys.readouterr().err
+
+
+def test_rigid_theory_is_judged_over_an_interval_too(capsys):
+    line = [
+        "assess",
+        "t5b",
+        "--fidelity",
+        "modal",
+        "--uncertain",
+        "impact.angle=44,46deg",
+        "--within",
+        "e 0.2",
+    ]
+    assert main([*line, "--set", "surface.friction=0.57"]) == 0
+    assert "the change of e by vibration stay below 0.2, impact.angle from 44 to 46 deg? YES" in " ".join(
+        capsys.readouterr().out.split()
+    )
+
+
+def test_a_next_step_repeats_the_question(monkeypatch, scene):
+    solids(monkeypatch, {60: 65.5})
+    found = judge(scene, Sloped(), 65.0, ANGLE)
+    assert document(found, "fem-impact assess t5b")["next_step"] == "fem-impact assess t5b --budget more"
