@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 import fem_impact
-from fem_impact.cli.main import main
 from fem_impact.answers.verdict import limit as module
 from fem_impact.answers.verdict.criteria import LIMITED, Bound, Force
 from fem_impact.answers.verdict.limit import document, judge
 from fem_impact.case.case import Case
 from fem_impact.case.effects.heating import halves
+from fem_impact.cli.main import main
 from fem_impact.errors import SceneError, UsageError
 from fem_impact.modal.motion import ROW
 from fem_impact.outcome.keys import Unknown
