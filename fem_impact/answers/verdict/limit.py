@@ -11,7 +11,7 @@ from dataclasses import asdict, dataclass
 from itertools import product
 from math import inf
 from time import perf_counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -266,7 +266,7 @@ def _told(criterion: Criterion, bound: Bound) -> str:
     return f"{_in_unit(criterion, bound.value)} ({low} to {high})"
 
 
-def document(v: LimitVerdict, command: str) -> dict[str, object]:
+def document(v: LimitVerdict, command: str) -> dict[str, Any]:
     """Return the verdict as plain JSON, its sentences with it; ``command`` is that which gives it again."""
     of, bound = v.criterion, v.bound
     over = " and ".join(f"{key} from {ends}" for key, ends in v.intervals.items())
