@@ -201,8 +201,8 @@ def _bare(outcome: Outcome | None) -> bool:
 def times(scenes: Iterable[DrawnScene], results: Results) -> pandas.DataFrame:
     """Return told times beside what was taken, s: columns ``told``, ``said``, ``taken`` and ``inside``.
 
-    Before a run the class of its last level's processor time is told; after the pilot a range of the wall
-    time that is left, of which ``said`` is the most.
+    Before a run the class of its last level's processor time is told; after the pilot a range of the time
+    that is left, of which ``said`` is the most.
     """
     import pandas
 

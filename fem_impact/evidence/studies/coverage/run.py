@@ -49,8 +49,8 @@ class CoverageResult:
     trouble, reason : why there is none, in a word and in the program's words; empty where there is one
     cpu_s, wall_s : processor and wall time of all of it, s
     planned_s : processor time, s, that its last level was expected to take before the run; None: not known
-    forecast_s, left_s : least and most wall time, s, that were told after the pilot to be left, and what it
-        then took; None where nothing was told
+    forecast_s, left_s : least and most time, s, that were told after the pilot to be left, and the processor
+        time that it then took, as an idle machine takes; None where nothing was told
     notices : sentences told during the run
     """
 
@@ -115,7 +115,7 @@ class _Listener:
             self.notices.append(progress.text)
             return
         if self.forecast is None and progress.eta_range_s is not None and ", level 2" in progress.note:
-            self.forecast = progress.eta_range_s, time.perf_counter()
+            self.forecast = progress.eta_range_s, time.process_time()
         if time.process_time() - self.begun > self.most_s:
             raise TooDearError(f"took more than {self.most_s:g} s of processor time at {progress.note}")
 
@@ -158,12 +158,12 @@ class CoverageRun:
         listener, wall = _Listener(MOST[self.model]), time.perf_counter()
         with tempfile.TemporaryDirectory() as folder:
             result = self._result(Path(folder), listener)
-        ended = time.perf_counter()
+        ended, wall_s = time.process_time(), time.perf_counter() - wall
         forecast_s, told = listener.forecast or (None, None)
         result = replace(
             result,
-            cpu_s=time.process_time() - listener.begun,
-            wall_s=ended - wall,
+            cpu_s=ended - listener.begun,
+            wall_s=wall_s,
             forecast_s=forecast_s,
             left_s=None if told is None else ended - told,
             notices=tuple(listener.notices),
