@@ -19,7 +19,7 @@ from fem_impact.answers.refine.budget import about_s
 from fem_impact.answers.refine.chain import LevelChain
 from fem_impact.answers.refine.level import LevelRun
 from fem_impact.answers.validate import FRICTION, Ends, at_place, interval_of
-from fem_impact.answers.verdict.assess import BUDGET, LEAST_LEVELS, Tell, announcing, check_means, why_stopped
+from fem_impact.answers.verdict.assess import BUDGET, Tell, announcing, check_means, why_stopped
 from fem_impact.answers.verdict.criteria import Bound, Criterion
 from fem_impact.answers.verdict.effect import Answer
 from fem_impact.case.case import Case
@@ -115,7 +115,6 @@ def judge(
         problem, remedy = f"states {len(intervals)} intervals.", f"Give at most {max(PLACES)}."
         raise UsageError(problem, key="uncertain", remedy=remedy)
     steps, notes, more = list[str](), list[str](), ""
-    least = LEAST_LEVELS if fidelity == "solid" else 1
     lacking = not_reduced(Case(scene).bodies)
     if not lacking:
         tell(f"the reduced model at {PLACES[len(intervals)] ** len(intervals)} places ...")
@@ -138,7 +137,7 @@ def judge(
             if place in solids or any(one.answer(limit) != "yes" for one in solids.values()):
                 continue
             at = at_place(scene, intervals, np.array(place)) if intervals else scene
-            means = least, max(end - perf_counter(), 1.0), workers
+            means = max(end - perf_counter(), 1.0), workers
             solid, told, more = _solid(at, criterion, limit, means, tell, steps)
             notes += told
             if solid is not None:
@@ -219,25 +218,22 @@ def _solid(
     scene: Scene,
     criterion: Criterion,
     limit: float,
-    means: tuple[int, float, int],
+    means: tuple[float, int],
     tell: Tell,
     steps: list[str],
 ) -> tuple[Bound | None, list[str], str]:
     """Return what finite elements say of one place, notes on it, and options for another level.
 
-    ``means`` are levels that run whatever the budget, the budget, s, and runs at a time; a sentence on each
-    level is added to ``steps``.
+    ``means`` are the budget, s, and runs at a time; a sentence on each level is added to ``steps``.
     """
-    least, budget_s, workers = means
 
     def decides(levels: Sequence[LevelRun]) -> bool:
         bound = criterion.solid(levels)
         return bound is not None and bound.answer(limit) != "undecided"
 
+    (budget_s, workers), options = means, RunOptions(progress=announcing(tell))
     free, twin = criterion.meshed(scene)
-    levels = LevelChain(
-        Case(free), RunOptions(progress=announcing(tell)), budget_s, workers, decides, twin, least
-    )
+    levels = LevelChain(Case(free), options, budget_s, workers, decides, twin)
     try:
         levels.refine()
     except (SceneError, RunError) as refused:
