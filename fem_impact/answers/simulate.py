@@ -49,7 +49,7 @@ def _require_mesh(scene: Scene, fidelity: str) -> None:
             f"is asked of the {fidelity} model, which has no mesh to refine.",
             key="accuracy",
             value=f"{100 * scene.accuracy.target:.3g} %",
-            remedy="Leave out --fidelity for finite elements, or the wanted error.",
+            remedy="Leave out the fidelity for finite elements, or the wanted error.",
         )
 
 

@@ -182,7 +182,9 @@ def cases(scene: Scene, vary: Mapping[str, Iterable[Any]]) -> list[Variation]:
 
 def _check(vary: Mapping[str, Sequence[Any]]) -> None:
     if not vary or not all(vary.values()):
-        raise UsageError("names no values.", key="vary", remedy=_EXAMPLE)
+        raise UsageError(
+            "names no values.", key="vary", remedy='Give some, as {"impact.angle": ["15 deg", "30 deg"]}.'
+        )
     count = 1
     for values in vary.values():
         count *= len(values)

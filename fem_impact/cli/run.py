@@ -326,7 +326,10 @@ def _share(outcome: Outcome, key: Key) -> str:
     """Return a share in per cent as text."""
     value, band = outcome.estimate(key)
     tiny = not isinstance(value, Unknown) and band is None and 0 < abs(value) < 1e-5
-    return "under 0.001" if tiny else outcome.told(key, 100.0)
+    if tiny:
+        return "under 0.001"
+    told = outcome.told(key, 100.0)
+    return plain(100 * value, 2) if key is RESIDUAL and not isinstance(value, Unknown) else told
 
 
 def _changed(spread: FrictionSpread | None, key: Key, scale: float = 1.0) -> str:

@@ -176,7 +176,7 @@ def _layout(panel: Panel) -> dict[str, Any]:
     shapes = [_line("x", mark.at) for mark in panel.marks] + [_line("y", level.at) for level in panel.levels]
     return {
         "font": {"size": 12, "color": INK},
-        "margin": {"l": 10, "r": 10, "t": 18, "b": 10},
+        "margin": {"l": 10, "r": 10, "t": 34, "b": 10},  # the buttons of a figure stand above it
         "paper_bgcolor": "#fff",
         "plot_bgcolor": "#fff",
         "barmode": "stack",

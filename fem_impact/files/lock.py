@@ -43,7 +43,7 @@ def directory_lock(out: Path) -> Iterator[None]:
         owner = path.read_text("utf-8", "replace") if path.exists() else ""
         raise OutputPathError(
             f"{path.parent}: {owner or 'another process'} is writing its results there. Wait for its end, or "
-            "choose another directory with --out."
+            "choose another directory (out)."
         ) from None
     except OSError as error:
         if error.errno not in _NO_LOCKS:

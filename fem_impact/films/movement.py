@@ -158,14 +158,17 @@ def film_times(movement: Movement, field: str, span: Span) -> np.ndarray:
     """
     end = movement.end if field == "strain" else movement.stored_end
     if span.frames is not None and span.frames < 1:
-        raise UsageError("is no number of frames: a film needs one.", key="--frames", value=span.frames)
+        raise UsageError("is no number of frames: a film needs one.", key="frames", value=span.frames)
     if span.first is not None or span.last is not None or span.speed is not None:
         first, last = span.first or 0.0, end if span.last is None else span.last
         if not 0.0 <= first < last <= end * (1 + 1e-9):
             shown = f"{first * 1e6:.4g} us to {last * 1e6:.4g} us"
             remedy = f"Give times from 0 to {end * 1e6:.4g} us, the first before the last."
             raise UsageError(
-                "lies outside what this film can show.", key="--from --until", value=shown, remedy=remedy
+                "lies outside what this film can show.",
+                key="the span of the film",
+                value=shown,
+                remedy=remedy,
             )
         if span.speed is None:
             return np.linspace(first, last, span.frames or FRAMES)

@@ -26,6 +26,8 @@ MOST = 200
 HEIGHT = 620  # px
 EYE = {"x": -0.8, "y": -2.2, "z": 0.5}
 """Where the camera stands at first: in front of the plane of motion, a little up the slope and above."""
+COMPACT = 1.6
+"""Longest side of what is shown over the mean of the three that this place shows whole."""
 
 
 def write_view(folder: Path, out: Path, span: Span, field: str) -> RenderResult:
@@ -83,7 +85,7 @@ def _shown(motion: FilmData, times: np.ndarray) -> dict[str, Any]:
         "alt": "the rod on the barrier, to be turned",
         "height": HEIGHT,
         "data": [mesh],
-        "layout": _layout(names, first),
+        "layout": _layout(names, first, _eye(motion, times, nodes)),
         "frames": [{"name": name, "data": [state]} for name, state in zip(names, states, strict=True)],
     }
     return {"caption": "", "columns": 1, "legend": [], "panels": [panel]}
@@ -115,6 +117,14 @@ def _state(motion: FilmData, time: float, nodes: np.ndarray) -> dict[str, Any]:
     return {"type": "mesh3d", **places, "intensity": _packed(np.tile(colours[nodes], 2), "f4")}
 
 
+def _eye(motion: FilmData, times: np.ndarray, nodes: np.ndarray) -> dict[str, float]:
+    """Return where the camera sees all: Plotly draws a long body larger."""
+    places = np.concatenate([motion.positions(time)[1][nodes] for time in (times[0], times[-1])])
+    sides = np.ptp(places, axis=0) * [1.0, 2.0, 1.0]  # both halves
+    away = max(1.0, float(sides.max() / np.prod(sides) ** (1 / 3)) / COMPACT)
+    return {axis: place * away for axis, place in EYE.items()}
+
+
 def _packed(values: np.ndarray, kind: str) -> dict[str, str]:
     """Return an array as Plotly reads it: little-endian numbers in base64."""
     return {"dtype": kind, "bdata": base64.b64encode(values.astype(f"<{kind}").tobytes()).decode()}
@@ -134,7 +144,7 @@ def _colours(motion: FilmData) -> dict[str, Any]:
     }
 
 
-def _layout(names: list[str], first: int) -> dict[str, Any]:
+def _layout(names: list[str], first: int, eye: dict[str, float]) -> dict[str, Any]:
     at_once = {"mode": "immediate", "frame": {"duration": 0, "redraw": True}, "transition": {"duration": 0}}
     steps = [{"label": name, "method": "animate", "args": [[name], at_once]} for name in names]
     play = {"frame": {"duration": 120, "redraw": True}, "transition": {"duration": 0}, "fromcurrent": True}
@@ -149,7 +159,7 @@ def _layout(names: list[str], first: int) -> dict[str, Any]:
     place = {"x": 0.0, "y": 0.0, "xanchor": "left", "yanchor": "top", "pad": {"t": 8}}
     return {
         "margin": {"l": 0, "r": 0, "t": 40, "b": 130},
-        "scene": {**axes, "aspectmode": "data", "camera": {"eye": EYE}, "dragmode": "orbit"},
+        "scene": {**axes, "aspectmode": "data", "camera": {"eye": eye}, "dragmode": "orbit"},
         "sliders": [{**slider, "steps": steps, "active": first, "font": {"size": 10}}],
         "updatemenus": [{**place, "type": "buttons", "direction": "left", "buttons": buttons}],
     }

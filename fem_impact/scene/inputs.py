@@ -84,4 +84,13 @@ def _rows(key: str, value: Any, source: str = STATED) -> list[tuple[str, str, st
         return [row for number, part in enumerate(value, 1) for row in _rows(f"{key}[{number}]", part)]
     if isinstance(value, list) and len(value) > MOST_POINTS:
         return [(key, f"{len(value)} points", source)]
-    return [(key, str(value), source)]
+    return [(key, _short(str(value)), source)]
+
+
+def _short(value: str) -> str:
+    """Return a value in at most 10 digits: the scene keeps them all, the rest is rounding of a unit."""
+    number, blank, unit = value.partition(" ")
+    try:
+        return f"{float(number):.10g}{blank}{unit}" if len(number) > 12 else value
+    except ValueError:
+        return value

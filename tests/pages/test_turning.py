@@ -3,6 +3,7 @@
 import base64
 import json
 import re
+from types import SimpleNamespace
 
 import numpy as np
 import plotly.graph_objects as go
@@ -13,7 +14,7 @@ from fem_impact.cli.main import main
 from fem_impact.errors import UsageError
 from fem_impact.films.motion import prepare
 from fem_impact.films.movement import Span, read_movement
-from fem_impact.pages.turning import write_view
+from fem_impact.pages.turning import _eye, write_view
 
 
 @pytest.fixture
@@ -45,6 +46,16 @@ def test_every_moment_shows_both_halves_where_the_film_does(run):
     apart = np.abs(half[:, None] - shown[None]).max(axis=2).min(axis=1)
     assert apart.max() < 1e-3  # mm, single precision
     assert np.ptp(half[:, 1]) > 0
+
+
+def test_the_camera_stands_further_from_a_longer_body(run):
+    """Plotly makes sides l, w, w of a body of the mean 1: a body 100 times as long as wide is 21 long."""
+    motion = prepare(read_movement(run)[0], "stress", np.zeros(1))
+    away = []
+    for stretched in (1.0, 20.0):
+        long = SimpleNamespace(positions=lambda time, by=stretched: (None, motion.fields.points * [by, 1, 1]))
+        away.append(_eye(long, np.zeros(1), np.arange(len(motion.fields.points)))["y"])
+    assert away[1] < 3 * away[0] < 0
 
 
 def test_the_mesh_is_closed_over_the_plane_of_motion_and_one_that_plotly_draws(run):

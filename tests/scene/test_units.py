@@ -7,6 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fem_impact.errors import SceneError
+from fem_impact.scene.inputs import inputs
+from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.units import DIMENSIONS, format_quantity, parse_number, parse_quantity
 
 magnitudes = st.floats(1e-200, 1e30)
@@ -132,3 +134,12 @@ def test_any_text_is_read_as_finite_or_refused(text, dimension):
     except SceneError:
         return
     assert math.isfinite(value)
+
+
+def test_rounding_of_a_unit_is_not_shown_among_the_inputs():
+    scene = replace_all(
+        load("t5b"), {"projectile.length": "50.00000000000001 mm", "impact.angle": "33.3333333 deg"}
+    )
+    shown = {row[0]: row[1] for row in inputs(scene).rows}
+    assert (shown["projectile.length"], shown["impact.angle"]) == ("50 mm", "33.3333333 deg")
+    assert scene.projectile.length != 0.05
