@@ -118,7 +118,7 @@ def run(options: Options) -> int:
     else:
         own_tests = (scene.measured or "").endswith(OWN)
         spread = friction_spread(scene, case.fidelity, outcome) if outcome.validity.finished else None
-        print_outcome(outcome, out, own_tests, spread)
+        print_outcome(outcome, out, own_tests, spread, scene.accuracy.target_of)
         if scene.impact.until != FIRST:
             from fem_impact.cli.strikes import print_strikes
 
@@ -221,7 +221,11 @@ _IF_ON = ("damping", "contact", "plate", "barrier")
 
 
 def print_outcome(
-    outcome: Outcome, out: Path, own_tests: bool = False, spread: FrictionSpread | None = None
+    outcome: Outcome,
+    out: Path,
+    own_tests: bool = False,
+    spread: FrictionSpread | None = None,
+    target_of: str | None = None,
 ) -> None:
     """Print the motion after impact, where the energy went, and every limitation.
 
@@ -263,7 +267,7 @@ def print_outcome(
     if or_none(outcome.energy.below_floor):
         floor = _value(outcome.energy.vibration_floor)
         lines += [f"  vibration is below its numerical floor (fraction {floor})"]
-    lines += _accuracy_lines(outcome)
+    lines += _accuracy_lines(outcome, target_of)
     told = {**{label: KEY_TABLE[name] for label, name, _ in rows}, **listed, HEATING: SKIN}
     lines += _unknown_lines({label: key.of(outcome) for label, key in told.items()})
     others = [one for one in by_weight(outcome.validity.limitations) if one not in wrong]
@@ -291,13 +295,14 @@ def _label(share: EnergyShare, energy: Energy) -> str:
     return f"elastic energy left in {body}" if elastic else share.label
 
 
-def _accuracy_lines(outcome: Outcome) -> list[str]:
+def _accuracy_lines(outcome: Outcome, target_of: str | None) -> list[str]:
     """Return what a run says of the error that was asked for, or why its errors are not known."""
     v = outcome.validity
     if isinstance(v.accuracy_target, Unknown):
         unbanded = outcome.provenance.fidelity == "solid" and isinstance(v.mesh_band, Unknown)
         return ["", *wrapped(f"error of these numbers not known: {_reason(v.mesh_band)}")] if unbanded else []
-    judged = "e" if isinstance(outcome.energy.vibration, Unknown) else "e and E_vib"  # a rigid rod has none
+    rigid = isinstance(outcome.energy.vibration, Unknown)  # then there is no E_vib
+    judged = target_of or ("e" if rigid else "e and E_vib")
     lines = [
         "",
         f"asked for {_percent(v.accuracy_target)}; reached in {judged} {_percent(v.achieved_error)}, "

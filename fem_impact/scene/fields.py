@@ -243,6 +243,7 @@ FineZone = Literal["graded", "even"]  # finest cells right under the contact alo
 Support = Literal["backed", "infinite"]  # of a plate: bonded to a base, or free underneath and wide
 Boundary = Literal["half-space", "fixed"]  # of a meshed barrier's outer faces
 Unresolved = Literal["withhold", "report"]  # what becomes of numbers that the mesh does not resolve
+TargetOf = Literal["e", "mu", "Omega", "E_vib", "E_lt", "E_ln", "plastic", "friction"]  # a wanted error alone
 Fields = Literal["shown", "all"]  # that a run keeps
 MESH = ("tip_size", "across", "grid_shift")  # keys of accuracy that a target replaces
 SAVE = (

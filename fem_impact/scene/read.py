@@ -379,7 +379,7 @@ def _save(table: Table) -> Save:
 def _accuracy(table: Table | str) -> Accuracy:
     """Read a mesh, or a wanted error written alone or as the key ``target``."""
     if isinstance(table, str):
-        return Accuracy(target=parse_share(table, ""))
+        return Accuracy(**_wanted(table, ""))
     choices = ("element", "yielding_element", "fine_zone", "unresolved")
     numbers = numbers_of(table, fields.ACCURACY, (*choices, "target"))
     numbers |= {key: table[key] for key in choices if key in table}
@@ -390,4 +390,10 @@ def _accuracy(table: Table | str) -> Accuracy:
             raise SceneError(
                 "stands beside a target, which chooses the mesh.", key=key, remedy="Keep one of the two."
             )
-    return Accuracy(**numbers, target=parse_share(table["target"], "target"))
+    return Accuracy(**numbers, **_wanted(table["target"], "target"))
+
+
+def _wanted(text: Any, key: str) -> dict[str, Any]:
+    """Read a wanted error such as ``"2 %"``, or ``"e 2 %"`` of one number alone."""
+    of, _, share = text.partition(" ") if isinstance(text, str) and text[:1].isalpha() else ("", "", text)
+    return {"target": parse_share(share, key), "target_of": of or None}

@@ -46,7 +46,8 @@ class Accuracy:
     bending and the contact time, see `Plan.max_time`.
     ``levels`` is the number of meshes of a finite-element run, of which the last counts.
     ``offsets`` is the number of places of a meshed barrier's grid at which each level but the first runs.
-    ``target`` is the wanted relative error; levels then go on until it is reached.
+    ``target`` is the wanted relative error; levels then go on until it is reached, by ``target_of`` alone if
+    that is stated, else by e and E_vib.
     """
 
     tip_size: float | None = None
@@ -62,6 +63,7 @@ class Accuracy:
     fine_zone: fields.FineZone = "graded"
     unresolved: fields.Unresolved = "withhold"
     target: float | None = None
+    target_of: fields.TargetOf | None = None
     levels: int = fields.LEVELS
     offsets: int | None = None
 
@@ -71,6 +73,8 @@ class Accuracy:
         check_choice(self.yielding_element, get_args(fields.YieldingElement), "yielding_element")
         check_choice(self.fine_zone, get_args(fields.FineZone), "fine_zone")
         check_choice(self.unresolved, get_args(fields.Unresolved), "unresolved")
+        if self.target_of is not None:
+            check_choice(self.target_of, get_args(fields.TargetOf), "target")
         if self.target is not None and not (isinstance(self.target, float) and 0.0 < self.target <= 1.0):
             raise SceneError("must be a share above 0 and at most 1.", key="target", value=self.target)
 

@@ -134,7 +134,7 @@ def _accuracy(accuracy: Accuracy) -> dict[str, Any]:
     if accuracy.target is None:
         return written
     rest = {key: value for key, value in written.items() if key not in fields.MESH}
-    return {"target": f"{100 * accuracy.target:.12g} %", **rest}
+    return {"target": f"{accuracy.target_of or ''} {100 * accuracy.target:.12g} %".lstrip(), **rest}
 
 
 def material_table(material: Material) -> dict[str, Any]:

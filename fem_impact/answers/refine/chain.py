@@ -193,7 +193,8 @@ class LevelChain:
         of a rod that is rigid.
         """
         limits = quantity_limits([level.runs for level in self.done[: self.counted]])
-        return {name: limits[name].error for name in TARGETED if name in limits}
+        of = self.scene.accuracy.target_of
+        return {name: limits[name].error for name in ((of,) if of else TARGETED) if name in limits}
 
     def _reached(self, errors: Mapping[str, float]) -> bool:
         """Say whether relative errors, by quantity, are what the scene asks for; those of none are not."""

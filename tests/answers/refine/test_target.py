@@ -21,6 +21,7 @@ from fem_impact.outcome.record import Outcome
 from fem_impact.progress import Notice, Progress
 from fem_impact.run.resolution import without_end
 from fem_impact.scene.shipped import load, replace, replace_all
+from fem_impact.scene.write import to_dict
 
 ASKED = replace(load("t5b"), "accuracy", "5 %")
 FINEST = "0.001 %"
@@ -65,6 +66,22 @@ def test_each_level_but_the_pilot_runs_at_two_places(ran):
     assert [place for _, place in others] == [0.0, 0.5] * (len(others) // 2)
     sizes = [size for size, _ in others[::2]]
     assert sizes == sorted(sizes, reverse=True) and sizes == [size for size, _ in others[1::2]]
+
+
+def test_an_error_of_one_number_alone_is_reached_by_that_number(ran):
+    """Two levels give mu to 9.5 %, e and E_vib to 20 %."""
+    simulate(replace(ASKED, "accuracy", "10 %"), budget_s=1e9)
+    both, _ = len(ran), ran.clear()
+    outcome = simulate(replace(ASKED, "accuracy", "mu 10 %"), budget_s=1e9)
+    assert outcome.validity.achieved_error == pytest.approx(0.0947, rel=1e-3) and not told(outcome)
+    assert len(ran) < both
+
+
+def test_a_wanted_error_is_written_as_it_is_read():
+    for text in ("e 2 %", "2 %"):
+        assert to_dict(replace(ASKED, "accuracy", text))["accuracy"]["target"] == text
+    with pytest.raises(SceneError, match=r"target.*Omega"):
+        replace(ASKED, "accuracy", "speed 2 %")
 
 
 def test_places_can_be_asked_for_without_an_error(ran):
