@@ -27,7 +27,7 @@ from fem_impact.case.limits import (
 )
 from fem_impact.case.mesh import require_mesh
 from fem_impact.case.metals import unknowns
-from fem_impact.case.plates import is_thin, require_plate, require_plate_mesh
+from fem_impact.case.plates import is_thin, require_plate, require_plate_mesh, too_thin
 from fem_impact.case.record import ContactRecord
 from fem_impact.case.recorded import AnyZones, recorded_zones, unresolved_skins
 from fem_impact.case.size import RunSize, require_memory, require_rest, run_size
@@ -197,8 +197,10 @@ class Case:
     def limitations(self) -> tuple[Limitation, ...]:
         """What limits trust in any run of the case, before it is run."""
         of_scene = scene_limitations(self.bodies, self.slots.bending is not None)
+        meshed = self.fidelity == "solid"
+        of_scene += limitations("model", *too_thin(self.bodies, meshed))
         unstated = limitations("input", *unknowns(self.bodies))
-        if self.fidelity != "solid":
+        if not meshed:
             skin = NOT_RIGID if "machined-skin" in self.active else ""
             return (*of_scene, *limitations("model", skin), *unstated)
         one_mesh = self.record is not None or self.scene.accuracy.levels == 1

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from fem_impact.arrays import Array
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.effects.barrier import compliance_share
@@ -70,6 +72,28 @@ def thin_plate(bodies: Bodies, meshed_through: bool) -> str:
         f"idealised: {thin}, and taken as that of a half-space, which gives {100 * _deeper(bodies):.2g} % of "
         f"its way deeper than the plate is thick: e may be off by some {100 * error:.2g} %"
     )
+
+
+def too_thin(bodies: Bodies, meshed: bool) -> tuple[str, ...]:
+    """Tell where a dent is deeper than plate or wall of a tube are thick, and what that leaves out.
+
+    Without a mesh the wall behind a contact that is wider than it counts as massive.
+    """
+    size, barrier, rod = bodies.estimate, bodies.barrier, bodies.rod
+    first = barrier.layers[0].thickness if barrier.layers else barrier.thickness
+    dent, told = f"the estimated dent is {size.depth * 1e3:.2g} mm deep", []
+    if first is not None and size.depth > first:
+        part = "first layer" if barrier.layers else "plate"
+        told.append(f"left out: {dent}, the {part} {first * 1e3:.2g} mm thick: it may be pierced")
+    if rod.bore:
+        (rho, z), (along, _, inner) = bodies.contact.touch_point, rod.wall()
+        wall, width = float(np.hypot(along - z, inner - rho).min()), contact_width(bodies)
+        behind = f"the wall behind it {wall * 1e3:.2g} mm thick: that it buckles, folds or is pierced"
+        if size.depth > wall:
+            told.append(f"left out: {dent}, {behind}")
+        elif width > wall and not meshed:
+            told.append(f"left out: the contact is {width * 1e3:.2g} mm wide, {behind}")
+    return tuple(told)
 
 
 def _hardly_left(bodies: Bodies, thickness: float) -> str:

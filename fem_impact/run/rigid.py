@@ -81,7 +81,18 @@ def rigid_outcome(case: Case) -> Outcome:
         peak_force=Unknown(UNKNOWN),
         choices=Unknown(UNKNOWN),
         unmeshed=UNKNOWN,
-        limited=limitations("model", loss.source, *ASSUMPTIONS, *plate, *heated),
+        limited=limitations("model", loss.source, *ASSUMPTIONS, _sharp(case), *plate, *heated),
+    )
+
+
+def _sharp(case: Case) -> str:
+    """Tell where the edge that touches is sharper than the dent is deep."""
+    radius, depth = case.contact.principal_radii[0], case.estimate.depth
+    if "rod-plasticity" not in case.active or radius >= depth:
+        return ""
+    return (
+        f"The edge that touches, at most {radius * 1e3:.2g} mm in radius, is sharper than the dent is deep, "
+        f"{depth * 1e3:.2g} mm: it is crushed itself, of which the law of restitution knows nothing."
     )
 
 

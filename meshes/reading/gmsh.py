@@ -43,8 +43,10 @@ def gmsh(path: Path) -> StoredMesh:
     version = sections["MeshFormat"][0].split()[0] if "MeshFormat" in sections else "1"
     names = {}
     for line in sections.get("PhysicalNames", [])[1:]:
-        dimension, number, name = line.split(maxsplit=2)
-        names[int(dimension), int(number)] = name.strip().strip('"')
+        numbers, _, name = line.partition('"')
+        *dimension, number = map(int, numbers.split())
+        for of in dimension or (2, 3):  # the first of version 2 name no dimension
+            names[of, number] = name.strip().strip('"')
     numbered: dict[int, list[float]]
     if version.startswith("4"):
         numbered = _nodes_4(sections["Nodes"], version)

@@ -65,7 +65,7 @@ def lsdyna(path: Path) -> StoredMesh:
         elif name.startswith(("ELEMENT_SOLID", "ELEMENT_TSHELL")):
             solids += _solids(name, lines, 20 if long else 8)
         elif name == "ELEMENT_SHELL":
-            flat += [_numbers(line, 20 if long else 8, name)[:6] for line in lines]
+            flat += [_numbers(line, 20 if long else 8, name, 6) for line in lines]
         elif name.startswith(("SET_SEGMENT", "SET_NODE_LIST")):
             sets.append((name, long, lines))
         elif name.startswith(("ELEMENT_MASS", "ELEMENT_INERTIA")):
@@ -105,9 +105,9 @@ def _split(line: str, widths: list[int]) -> list[str]:
     return [part.strip() for part in line.split(",")] if "," in line else fixed_fields(line, widths)
 
 
-def _numbers(line: str, width: int, name: str) -> list[int]:
-    """Return the whole numbers of a line, those that are left out not."""
-    return [whole_number(text, f"*{name}") for text in _split(line, [width] * 10) if text]
+def _numbers(line: str, width: int, name: str, most: int = 10) -> list[int]:
+    """Return the whole numbers in the first ``most`` fields of a line, those that are left out not."""
+    return [whole_number(text, f"*{name}") for text in _split(line, [width] * most)[:most] if text]
 
 
 def _mass(name: str, long: bool, line: str, place: dict[int, int]) -> PointMass:
@@ -128,9 +128,10 @@ def _take_set(name: str, lines: list[str], width: int, place: dict[int, int], fo
     number = whole_number(_split(head, [width])[0], f"*{name}")
     names = {lines[0].strip() if titled else "", f"{'SEGMENT' if 'SEGMENT' in name else 'NODE'} SET {number}"}
     for line in rest:
-        nodes = [place.get(node, -1) for node in _numbers(line, width, name)]
+        # attributes of a segment follow its nodes
+        nodes = [place.get(node, -1) for node in _numbers(line, width, name, 4 if "SEGMENT" in name else 8)]
         if "SEGMENT" in name:
-            found.add_face("", nodes[:4], *(names - {""}))
+            found.add_face("", nodes, *(names - {""}))
             continue
         for one in names - {""}:
             found.node_sets.setdefault(one, []).extend(node for node in nodes if node >= 0)

@@ -12,6 +12,7 @@ from fem_impact.case.plates import contact_width, half_space_error
 from fem_impact.errors import SceneError
 from fem_impact.outcome.limitation import texts
 from fem_impact.physics.plate import least_span
+from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace_all
 
 
@@ -97,3 +98,24 @@ def test_the_expected_elements_are_those_of_the_mesh():
     low, high = block_of(planned.bodies, planned.zones)
     assert planned.size.barrier > ((high - low) / planned.zones.base).prod() > 3000
     assert Case(planned.scene).active == planned.active
+
+
+def test_it_is_told_what_a_dent_deeper_than_plate_or_wall_leaves_out():
+    def told(thickness):
+        case = Case.of(stated(thickness, **{"impact.v_n": "-6 m/s", "barrier.support": "backed"}), "rigid")
+        return about(texts(case.limitations, "model"), "it may be pierced")
+
+    assert told("0.1 mm") and not told("10 mm")
+
+
+def test_a_wall_thinner_than_its_contact_counts_as_massive_where_there_is_no_mesh():
+    for fidelity, is_told in (("rigid", True), ("modal", True), ("solid", False)):
+        sentences = texts(Case.of(load("tube"), fidelity).limitations, "model")
+        assert bool(about(sentences, "the wall behind it 2.5 mm thick: that it buckles")) == is_told
+
+
+def test_a_sharp_edge_is_told_to_be_crushed_itself():
+    sharp = {"projectile.tip": "plain", "projectile.tip_radius": "0 mm"}
+    for scene, is_told in ((replace_all(load("t5b"), sharp), True), (load("t5b"), False)):
+        sentences = texts(simulate(scene, "rigid").validity.limitations, "model")
+        assert bool(about(sentences, "it is crushed itself")) == is_told

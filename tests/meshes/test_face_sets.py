@@ -169,7 +169,7 @@ def lsdyna(points, cells, bottom, side):
         "*SET_SEGMENT_TITLE",
         "bottom",
         f"{4:10d}",
-        *("".join(f"{n:10d}" for n in q) for q in bottom + 1),
+        *("".join(f"{n:10d}" for n in q) + f"{0.0:10.1f}" * 4 for q in bottom + 1),  # attributes follow
     ]
     nodes = ["*SET_NODE_LIST_TITLE", "side", f"{5:10d}", *(f"{n:10d}" for n in np.unique(side) + 1)]
     return decks.lsdyna(points, cells).replace("*END\n", "\n".join([*segments, *nodes, "*END", ""]))

@@ -166,6 +166,24 @@ def test_what_an_abaqus_deck_makes_by_rules_is_refused(tmp_path, line, reason):
         read_own(tmp_path / "a.inp", 1e-3)
 
 
+def test_the_first_gmsh_files_of_version_2_name_groups_without_a_dimension(tmp_path):
+    points, cells = square()
+    lines = [
+        "$MeshFormat",
+        "2.0 0 8",
+        "$EndMeshFormat",
+        "$PhysicalNames",
+        "1",
+        '7"my bar"',
+        "$EndPhysicalNames",
+    ]
+    lines += ["$Nodes", str(len(points)), *(f"{n} {x} {y} {z}" for n, (x, y, z) in decks.numbered(points))]
+    lines += ["$EndNodes", "$Elements", str(len(cells))]
+    lines += [f"{n} 5 2 7 1 {' '.join(map(str, cell))}" for n, cell in decks.numbered(cells + 1)]
+    (tmp_path / "two.msh").write_text("\n".join([*lines, "$EndElements", ""]))
+    assert set(read_own(tmp_path / "two.msh", 1e-3).sets) == {"VOLUME 1", "my bar"}
+
+
 def test_an_abaqus_system_moves_and_turns_the_nodes_that_follow(tmp_path):
     points, cells = square()
     local = np.stack([points[:, 1], -points[:, 0], points[:, 2] - 5.0], axis=1)
