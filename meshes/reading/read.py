@@ -128,6 +128,6 @@ def _reader(source: Path) -> Reader | None:
             return ansys
         if "*KEYWORD" in upper:
             return lsdyna
-        if ending == ".dat" and not ("GRID" in upper or "BEGIN BULK" in upper or "CHEXA" in upper):
+        if ending in (".dat", ".msh") and not ("GRID" in upper or "BEGIN BULK" in upper or "CHEXA" in upper):
             return abaqus if "*NODE" in upper or "*HEADING" in upper else None
     return by_vtk if ending in ENDINGS else READERS.get(ending)

@@ -166,6 +166,11 @@ def test_what_an_abaqus_deck_makes_by_rules_is_refused(tmp_path, line, reason):
         read_own(tmp_path / "a.inp", 1e-3)
 
 
+def test_a_mesh_of_calculix_is_known_by_its_content(tmp_path):
+    (tmp_path / "all.msh").write_text(decks.abaqus(*square()))
+    assert volume_of(tmp_path / "all.msh") == pytest.approx(8640.0)
+
+
 def test_the_first_gmsh_files_of_version_2_name_groups_without_a_dimension(tmp_path):
     points, cells = square()
     lines = [
