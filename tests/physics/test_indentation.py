@@ -37,6 +37,24 @@ def test_a_layer_that_follows_from_a_hardness_has_it(of, HV, shape):
     assert skin_depth(of.E, law, HardnessTest(HV, 120), 2.0, shape) == pytest.approx(2 * depth)
 
 
+@pytest.mark.parametrize(
+    ("stiffness", "exponent", "skin", "harder"),
+    [
+        (643.75, 0.1033, Skin(0.496, 2.0), 1.445),
+        (643.75, 0.1033, Skin(0.517, 3.0), 1.697),
+        (643.75, 0.1033, Skin(0.724, 1.3), 1.226),
+        (401.1, 0.0426, Skin(0.496, 2.0), 1.502),
+        (1000.0, 0.3, Skin(0.54, 2.0), 1.325),
+        (643.75, 0.1033, Skin(0.488, 2.0, "exponential"), 1.417),
+        (401.1, 0.0426, Skin(0.273, 2.0, "exponential"), 1.329),
+    ],
+)
+def test_a_layer_makes_the_number_higher_as_in_the_elements(stiffness, exponent, skin, harder):
+    """Pressed by `evidence.references.cone`, friction 0.1, at cells of no size; depths over the radius."""
+    law = Hardening(1e6, stiffness, exponent)
+    assert 1 + (skin.factor - 1) * share(law, skin, 1.0) == pytest.approx(harder, rel=0.025)
+
+
 def test_a_layer_counts_less_the_thinner_and_the_harder_it_is():
     law = hardening_of(PLATE)
     thin, thick, hard = (share(law, Skin(*of), 0.2e-3) for of in ((5e-5, 2.0), (1e-3, 2.0), (5e-5, 3.0)))
