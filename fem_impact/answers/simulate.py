@@ -8,6 +8,7 @@ from fem_impact.answers.refine.chain import BUDGET, LevelChain
 from fem_impact.answers.refine.forecast import OverBudgetError
 from fem_impact.answers.refine.level_meshes import LevelMeshes
 from fem_impact.case.case import Case
+from fem_impact.case.size import SETUP
 from fem_impact.errors import FemImpactError, SceneError
 from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import Unknown, or_none
@@ -16,6 +17,7 @@ from fem_impact.run import simulate as run
 from fem_impact.scene.types import Scene
 from fem_impact.tables.text import plain, with_band
 
+SPARE = 0.1  # of a budget that is used up, that the modes of the reduced model may still take
 TOLD = {"e": "e_edge", "mu": "mu", "E_vib/E_0": "E_vib_over_E_0"}
 """Numbers, by the key of an outcome, that are told without a mesh where a budget holds none."""
 
@@ -82,16 +84,18 @@ def simulate(
         try:
             return LevelChain(case or Case(scene), options, budget, workers).run()
         except OverBudgetError as late:
-            raise OverBudgetError(f"{late} {_without_mesh(scene)}") from None
+            raise OverBudgetError(f"{late} {_without_mesh(scene, SPARE * budget)}") from None
     _require_mesh(scene, fidelity)
     return run.simulate(scene, fidelity, options, case)
 
 
-def _without_mesh(scene: Scene) -> str:
-    """Return what the reduced model says of a scene, of one that has none the rigid theory."""
+def _without_mesh(scene: Scene, spare_s: float) -> str:
+    """Return what the reduced model says, or rigid theory where that takes more than ``spare_s``, s."""
     scene = replace(scene, accuracy=replace(scene.accuracy, target=None)).first_impact
     for fidelity, model in (("modal", "the reduced model"), ("rigid", "rigid theory")):
         try:
+            if fidelity == "modal" and SETUP * Case(scene).size.rod > spare_s:
+                continue
             outcome = run.simulate(scene, fidelity)
         except FemImpactError:
             continue

@@ -2,6 +2,7 @@
 
 import pytest
 
+from fem_impact.answers import simulate as simulate_module
 from fem_impact.answers.refine import forecast
 from fem_impact.answers.refine import level as level_module
 from fem_impact.answers.refine.chain import LevelChain
@@ -86,13 +87,15 @@ def test_a_level_whose_mesh_shows_that_it_takes_too_long_is_given_up_at_once():
 
 
 def test_a_pilot_that_no_budget_holds_is_not_begun(monkeypatch):
-    """The models without a mesh answer in its place, with their error."""
+    """Rigid theory answers in its place, or the reduced model where the budget spares its time."""
     begun = []
     monkeypatch.setattr(level_module, "simulate_recorded", lambda *_: begun.append(1))
     slow = replace_all(load("t5b"), {"projectile.length": "3 m", "impact.height": "0.2 m"})
-    words = r"would take about \d+ s: it is not begun\. .* reduced model says: e = .* \+- .*--fidelity modal"
-    with pytest.raises(OverBudgetError, match=words):
-        simulate(slow, budget_s=1.0)
+    reduced = r"reduced model says: e = .* \+- .*--fidelity modal"
+    for spare, says in ((0.1, "rigid theory says, of unknown error: e = "), (20.0, reduced)):
+        monkeypatch.setattr(simulate_module, "SPARE", spare)
+        with pytest.raises(OverBudgetError, match=rf"would take about \d+ s: it is not begun\. .*{says}"):
+            simulate(slow, budget_s=1.0)
     assert not begun
 
 
