@@ -144,7 +144,7 @@ def test_scenes_lists_every_shipped_material(cli):
     table, sources = out.split("\n\n", 1)
     assert [line.split()[0] for line in table.splitlines()[1:]] == list(materials())
     assert "stainless-316l (316L, AISI 316L, 1.4404" in sources
-    assert "yield_stress 190 MPa (190 MPa to 235 MPa): S: makeitfrom.com" in " ".join(sources.split())
+    assert "yield_stress 190 MPa (190 MPa to 235 MPa): makeitfrom.com" in " ".join(sources.split())
     rows = json.loads(cli("scenes", "--materials", "--json")[1])["materials"]
     assert {row["material"]: row["E_Pa"] for row in rows} == {name: m.E for name, m in materials().items()}
     assert all(row["sources"]["E"] for row in rows)

@@ -109,7 +109,7 @@ def test_every_surface_and_material_value_carries_a_source():
             source for key, _, source in rows if "material" in key and not key.endswith((".name", ".law"))
         ]
     assert len(stated) > 100
-    assert all(len(source) > 20 and source not in ("stated in the scene", STATED) for source in stated)
+    assert all(len(source) > 15 and source not in ("stated in the scene", STATED) for source in stated)
 
 
 def test_inputs_name_each_segment_and_layer_once():

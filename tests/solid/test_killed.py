@@ -69,7 +69,7 @@ def check_readable(out):
     if (out / "fields.vtkhdf").exists():
         fields = read_fields(out / "fields.vtkhdf")
         for frame in range(len(fields.times)):
-            assert fields.point_data("velocity", frame).shape == fields.points.shape
+            assert fields.point_data("displacement", frame).shape == fields.points.shape
     return len(found)
 
 

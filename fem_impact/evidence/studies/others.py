@@ -85,7 +85,7 @@ def considere_modulus(start: float, top: float) -> float:
     --------
     >>> H = considere_modulus(276e6, 310e6)
     >>> f"{H / 1e6:.0f} MPa {H * exp(276e6 / H - 1) / 1e6:.0f} MPa"
-    '465 MPa 310 MPa'
+    '466 MPa 310 MPa'
     """
     from scipy.optimize import brentq
 
