@@ -79,7 +79,11 @@ def _certain(strikes: Strikes) -> list[str]:
     if isinstance(certain, Unknown):
         return []
     known = [f"{end:.3g}" for end in ends if not isinstance(end, Unknown)]
-    between = f" The other end strikes {' to '.join(known)} times as fast in most." if len(known) == 2 else ""
+    between = (
+        f" What is not known of them lets the other end strike {' to '.join(known)} times as fast."
+        if len(known) == 2
+        else ""
+    )
     return [
         f"In rigid sequences over the stated intervals of friction, angle and speed the order of the first "
         f"{certain} is the same; later strikes are one path of many.{between}"

@@ -108,10 +108,11 @@ class Strikes:
     other_end_low: Num = key(
         "strikes_other_end_over_first_low",
         "-",
-        "strikes_other_end_over_first that a tenth of those sequences stay below.",
+        "strikes_other_end_over_first, less by as much as a tenth of those sequences stay below that of the "
+        "scene itself by rigid theory.",
     )
     other_end_high: Num = key(
-        "strikes_other_end_over_first_high", "-", "The same that a tenth of them exceed."
+        "strikes_other_end_over_first_high", "-", "The same, more by as much as a tenth of them exceed it."
     )
     gravity: Num = key("strikes_W_gravity_J", "J", "Work of gravity, all flights and contacts.")
     friction: Num = key("strikes_W_friction_J", "J", "Friction of all strikes, and of sliding between them.")

@@ -40,13 +40,14 @@ def with_spread(case: Case, strikes: Strikes) -> Strikes:
     except SceneError as error:
         none = Unknown(f"rigid theory does not follow the scene: {error.problem}")
         return replace(strikes, certain=none, spread=none, other_end_low=none, other_end_high=none)
-    ends = [strikes.other_end, *(other_end(run, case.contact.body.length) for run in runs)]
+    length = case.contact.body.length
+    ends, plain = [other_end(run, length) for run in runs], other_end(_rigid(case.scene), length)
     return replace(
         strikes,
         certain=_common([own, *runs]),
         spread=tuple(_spread(number, runs) for number in range(1, 1 + max(len(run) for run in runs))),
-        other_end_low=_quantile(ends, INNER[0]),
-        other_end_high=_quantile(ends, INNER[1]),
+        other_end_low=_moved(strikes.other_end, plain, _quantile(ends, INNER[0])),
+        other_end_high=_moved(strikes.other_end, plain, _quantile(ends, INNER[1])),
     )
 
 
@@ -122,6 +123,12 @@ def _spread(number: int, runs: Sequence[Sequence[StrikeRecord]]) -> StrikeSpread
         approach_low=float(approach[0]),
         approach_high=float(approach[1]),
     )
+
+
+def _moved(own: Num, plain: Num, to: Num) -> Num:
+    """Return a ratio moved as far as from that of the rigid body ``to`` another, or why one is not known."""
+    missing = next((one for one in (own, plain, to) if isinstance(one, Unknown)), None)
+    return missing if missing is not None else known(own) + known(to) - known(plain)
 
 
 def _quantile(ratios: Sequence[Num], share: float) -> Num:

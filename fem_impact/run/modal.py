@@ -163,7 +163,7 @@ def _dent(case: Case) -> list[str]:
     if not (case.contact.rod_yields or case.contact.barrier_yields):
         return []
     where = "tip" if rod_flows(case) else "barrier"
-    return [f"A later contact meets the dent that the first one left in the {where}."]
+    return [f"A later contact of the same strike meets the dent that the first one left in the {where}."]
 
 
 def _skins(case: Case, sheared: float, friction: float) -> tuple[Num, Num, Num]:

@@ -29,10 +29,10 @@ MOST = 40
 LOOK, LOOKS = 0.5, 1000  # rad of the fastest mode between looks at a rod that nearly touches, and most looks
 MARGIN = 1.2  # over the amplitudes of the modes together, about which a touch is looked for
 TOLD = (
-    "{} strikes are computed with modes, each on a surface that nothing has dented; what touches again "
-    "within a bending period belongs to the strike before. In flight the modes swing on, damped by the loss "
-    "factor {:g}. Strikes after {} by modes are those of a rigid body, and so are weak ones; the modes do "
-    "not feel them."
+    "{} strikes are computed with modes, each on a surface that no strike before has dented; what touches "
+    "again within a bending period belongs to the strike before. In flight the modes swing on, damped by the "
+    "loss factor {:g}. Strikes after {} by modes are those of a rigid body, and so are weak ones; the modes "
+    "do not feel them."
 )
 SMOOTH = "A rod that leaves its dent is taken to leave the surface beside it."
 

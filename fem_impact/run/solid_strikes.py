@@ -32,8 +32,8 @@ from rigid.strikes import Finish, State, next_touch
 
 TOLD = (
     "{} strikes are computed with finite elements of one rod, which keeps its dents, hardening and residual "
-    "stress; each meets a surface that nothing has dented. In flight {} modes swing on, damped by the loss "
-    "factor {:g}; what vibrates above them ends with its strike."
+    "stress; each meets a surface that no strike before has dented. In flight {} modes swing on, damped by "
+    "the loss factor {:g}; what vibrates above them ends with its strike."
 )
 ELSEWHERE = (
     "Strike {} lands {:.2g} mm beside the fine cells that are held ready: finite elements end before it."

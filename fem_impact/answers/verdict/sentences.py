@@ -16,6 +16,7 @@ from fem_impact.outcome.shares import SHARES
 from fem_impact.run.common import RESIDUAL_LIMIT
 from fem_impact.run.unusual import ROUND_OFF
 from fem_impact.scene.barrier import Barrier
+from fem_impact.scene.impact import FIRST
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.shapes import NamedShape
 from fem_impact.scene.types import Scene
@@ -247,7 +248,8 @@ def _friction(v: Verdict) -> Line:
 
 def not_covered(v: Verdict) -> tuple[str, ...]:
     """Return what the verdict does not cover: limits of the model, and of what was measured."""
-    return (*FIRST_ONLY, *texts(v.here.free.validity.limitations))
+    first = FIRST_ONLY[v.scene.impact.until != FIRST :]
+    return (*first, *texts(v.here.free.validity.limitations))
 
 
 def lines_of(titled: Iterable[Sequence[str]], indent: str) -> list[str]:
