@@ -147,8 +147,8 @@ def rows_within(depth: float, h: float, rows: int) -> float:
 
     Examples
     --------
-    >>> rows_within(0.3, 0.4, 2), rows_within(1.1, 0.4, 2)
-    (2.0, 4.0)
+    >>> [round(rows_within(depth, 0.4, 2), 9) for depth in (0.3, 1.1)]
+    [2.0, 4.0]
     """
     drawn = log2(1 + depth / h * 2**rows)
     return drawn if drawn <= rows else rows + depth / h - 1 + 0.5**rows

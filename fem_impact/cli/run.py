@@ -15,7 +15,7 @@ from fem_impact.cli.parser import CommandParser
 from fem_impact.cli.paths import checked_out, shown_path, told_kept
 from fem_impact.cli.scene_options import add_scene, changed_scene, say_kept
 from fem_impact.cli.terminal import chosen_meter, headed, limitation_lines, print_table, size_text
-from fem_impact.errors import RunError, SceneError, UsageError
+from fem_impact.errors import RunError, UsageError
 from fem_impact.files.run_directory import is_resumable
 from fem_impact.jobs.executors import cores
 from fem_impact.options import CHECKPOINT_INTERVAL, FIDELITIES, RunOptions
@@ -162,19 +162,6 @@ def _told(row: Mapping[str, Any]) -> str:
     return plain(value) if band is None else with_band(value, band)
 
 
-def _one_mesh_refused(case: Case) -> str:
-    """Return why a scene that runs on several meshes cannot run on one, empty where it can."""
-    from fem_impact.case.case import Case
-
-    if case.scene.accuracy.levels == 1:
-        return ""
-    try:
-        Case.of(case.scene)
-    except SceneError as refusal:
-        return f"{refusal.key}: {refusal.problem}"
-    return ""
-
-
 def _say_screening(case: Case, options: Options) -> None:
     """Print the closed-form screening of a case and the command of its verdict."""
     from fem_impact.answers.verdict.screening import screening
@@ -182,8 +169,6 @@ def _say_screening(case: Case, options: Options) -> None:
 
     changes = [word for change in options.changes for word in ("--set", change)]
     titled = screening_lines(screening(case.bodies), shlex.join([options.scene, *changes]))
-    if options.fidelity in ("", "solid") and (refusal := _one_mesh_refused(case)):
-        titled = (*titled[:-1], ("no verdict", f"`assess` takes one mesh at a time, and {refusal}"))
     lines = lines_of(titled, indent="")
     sys.stdout.write("\n".join(lines) + "\n")
 

@@ -45,7 +45,7 @@ INPUTS: Mapping[str, dict[str, Any]] = {
     "dry-rail": LAW,
 }
 """Changed keys of the scenes by the name of the inputs."""
-DEFAULT = "default"
+DEFAULT, EFFECT = "default", "machined-skin"
 KEYS = [quantity.key for quantity in MEASURED if quantity.name in SHOWN]
 HEAD = (
     "set",
@@ -93,16 +93,28 @@ def conclude(request: Request, results: JobResults) -> StudyReport:
         "The measured sets with a hardened skin from their hardness",
         sentences,
         [_picture(found)],
-        [Sheet("skin", "Errors of each set with every inputs", Table.of(HEAD, rows))],
+        [Sheet("skin", "Errors of each set with each of the inputs", Table.of(HEAD, rows))],
         [
             "Default: S and u_val of the study validation. Skin 1.5, skin 2: flow stress at the surface of "
             "both bodies over that of the bulk; the depth of an even layer follows from HV 163 (plate) and "
             f"235 (rod) at {LOAD} kgf, which is assumed. dry-rail: the shipped law of friction over speed.",
             "E = S - D; p: the probability of the three errors together without an error of the model, as in "
             "the study joint, with the u_input of the default inputs: that of factor and load is not in it.",
+            *_left_out(results),
         ],
         conclusions=[("skin", sentence) for sentence in sentences],
     )
+
+
+def _left_out(results: JobResults) -> list[str]:
+    """Say of which runs the layer is too thin beside the contact to count as an effect."""
+    none = [
+        name
+        for name, run in results.items()
+        if ", skin" in name and isinstance(run, Outcome) and EFFECT not in run.provenance.effects
+    ]
+    told = f"The layer is too thin beside the contact to be an effect, and left out, in: {'; '.join(none)}."
+    return [told] if none else []
 
 
 def _joint(name: str, inputs: str, request: Request, results: JobResults) -> JointError | None:
@@ -160,5 +172,7 @@ def _picture(found: Mapping[str, Mapping[str, JointError]]) -> Picture:
             )
         marks = Mark(-2.0), Mark(2.0)
         panels.append(Panel(name, "E / u_val", "", tuple(series), marks, rows=sets))
-    caption = "Errors over their uncertainty with every inputs; beyond 2 a number shows an error by itself."
+    caption = (
+        "Errors over their uncertainty with each of the inputs; beyond 2 a number shows an error by itself."
+    )
     return Picture("skin", caption, tuple(panels), columns=3)

@@ -90,7 +90,7 @@ def test_a_pilot_that_no_budget_holds_is_not_begun(monkeypatch):
     """Rigid theory answers in its place, or the reduced model where the budget spares its time."""
     begun = []
     monkeypatch.setattr(level_module, "simulate_recorded", lambda *_: begun.append(1))
-    slow = replace_all(load("t5b"), {"projectile.length": "3 m", "impact.height": "0.2 m"})
+    slow = replace_all(load("t5b"), {"accuracy.tip_size": "0.03 mm"})
     reduced = r"reduced model says: e = .* \+- .*--fidelity modal"
     for spare, says in ((0.1, "rigid theory says, of unknown error: e = "), (20.0, reduced)):
         monkeypatch.setattr(simulate_module, "SPARE", spare)
