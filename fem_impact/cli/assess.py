@@ -38,7 +38,7 @@ def add_options(parser: CommandParser) -> None:
     dropped = f'fem-impact assess --height "0.82 m" --surface machined {ROD}'
     limited = (
         'fem-impact assess t5b --for heat --limit "430 degC"',
-        'fem-impact assess t5b --for force --limit "5 kN" --uncertain impact.angle=30,50deg',
+        'fem-impact assess t5b --for force --limit "5 kN" \\\n      --uncertain impact.angle=30,50deg',
     )
     parser.state(assess, "fem-impact assess t5b", *limited, dropped)
     add_scene(parser, optional=True)

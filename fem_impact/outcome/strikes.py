@@ -109,7 +109,7 @@ class Strikes:
         "strikes_other_end_over_first_low",
         "-",
         "strikes_other_end_over_first, less by as much as a tenth of those sequences stay below that of the "
-        "scene itself by rigid theory.",
+        "scene itself as a rigid body.",
     )
     other_end_high: Num = key(
         "strikes_other_end_over_first_high", "-", "The same, more by as much as a tenth of them exceed it."

@@ -174,7 +174,7 @@ def test_the_model_of_the_earlier_constants_is_the_earlier_model():
     ):
         assert (law.yield_stress, law.slope, law.rate) == (strength, E / strength, JohnsonCook(0.022, 1.0))
         assert law.exponent == pytest.approx(exponent, rel=1e-13)
-    assert slots.skin is None
+    assert slots.rod_skin is None and slots.barrier_skin is None
     assert halves(Case(scene).bodies) == (Half(53.0, 7850 * 440.0),) * 2
     assert thermal(Case(T5B).bodies) == thermal(Case(scene).bodies)
 

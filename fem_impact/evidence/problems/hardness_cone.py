@@ -133,7 +133,10 @@ def _reference(
     metal: Metal, angle: float, friction: float, cells: int, skin: Skin | None = None
 ) -> tuple[float, float]:
     """Return the mean pressure, Pa, and the contact radius over the depth in axisymmetric elements."""
-    coarse, fine = (indent(metal, angle, friction, n, skin).coefficients() for n in (cells, 2 * cells))
+    coarse, fine = (
+        indent(metal, angle, friction, n, skin.mean if skin else None).coefficients()
+        for n in (cells, 2 * cells)
+    )
     pressure, radius = _limit(coarse, fine)
     return float(pressure), float(radius)
 

@@ -6,6 +6,7 @@ cells, force over depth squared, contact radius over depth and the mean pressure
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from math import cos, pi, sin, sqrt, tan
 
@@ -13,7 +14,8 @@ import numpy as np
 
 from fem_impact.arrays import Array, Bools, Ints
 from fem_impact.evidence.references.axisymmetric import CORNERS, Body, Metal, grid
-from fem_impact.physics.hardening import Skin
+
+Strength = Callable[[Array, Array], Array]
 
 REACH = 12.0  # half-width and depth of the body over the contact radius: 24 changes the pressure by .1 %
 FINE, GROWTH = 1.4, 1.12  # radius and depth of the equal cells over the contact radius; growth beyond
@@ -56,7 +58,7 @@ def cone_speed(metal: Metal) -> float:
 
 
 def indent(
-    metal: Metal, angle: float, friction: float = 0.0, cells: int = 10, skin: Skin | None = None
+    metal: Metal, angle: float, friction: float = 0.0, cells: int = 10, strength: Strength | None = None
 ) -> Indentation:
     """Press a cone in and return what it met.
 
@@ -66,12 +68,12 @@ def indent(
     angle : half the angle at the tip, rad
     friction : Coulomb's coefficient
     cells : over the radius of the cone at the face, at the end, which is the unit of length
-    skin : hardened layer under the face
+    strength : of a hardened layer, the mean factor of the flow stress between two depths under the face
     """
     lines = _lines(cells)
     x, corners = grid(lines, -lines[::-1])
-    strength = _strength(-x[corners, 1], skin) if skin else 1.0
-    body, found = Body(metal, x, np.zeros_like(x), corners, strength), Indentation()
+    factors = _factors(-x[corners, 1], strength) if strength else 1.0
+    body, found = Body(metal, x, np.zeros_like(x), corners, factors), Indentation()
     speed, depth = cone_speed(metal), 1 / tan(angle)
     face, axis = np.arange(len(x) - len(lines), len(x)), x[:, 0] == 0.0
     far = (x[:, 0] == lines[-1]) | (x[:, 1] == -lines[-1])
@@ -91,11 +93,11 @@ def indent(
     return found
 
 
-def _strength(under: Array, skin: Skin) -> Array:
+def _factors(under: Array, strength: Strength) -> Array:
     """Return the factor of the flow stress (points, m) of cells with corners ``under`` (4, m) the face, m."""
     bottom, top = under.max(axis=0), under.min(axis=0)
     middle = 0.5 * (bottom + top)
-    lower, upper = skin.mean(middle, bottom), skin.mean(top, middle)
+    lower, upper = strength(middle, bottom), strength(top, middle)
     return np.asarray([lower if z < 0 else upper for _, z in CORNERS])
 
 

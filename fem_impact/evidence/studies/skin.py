@@ -172,7 +172,5 @@ def _picture(found: Mapping[str, Mapping[str, JointError]]) -> Picture:
             )
         marks = Mark(-2.0), Mark(2.0)
         panels.append(Panel(name, "E / u_val", "", tuple(series), marks, rows=sets))
-    caption = (
-        "Errors over their uncertainty with each of the inputs; beyond 2 a number shows an error by itself."
-    )
+    caption = "Errors over their uncertainty with each of the inputs; beyond 2 a number shows an error alone."
     return Picture("skin", caption, tuple(panels), columns=3)
