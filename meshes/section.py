@@ -111,7 +111,7 @@ def bored_section(across: int, bore: float) -> Section:
     MeshError
         If `across` is odd or below 6, or the bore leaves too thin a wall or too small a core.
     """
-    if not SLIMMEST <= bore <= WIDEST:
+    if not SLIMMEST <= round(bore, 9) <= WIDEST:  # a quotient of stated radii is off by round-off
         raise MeshError(
             f"a bore of {bore:.3g} of the outer radius cannot be meshed: give {SLIMMEST} to {WIDEST} of it"
         )

@@ -11,8 +11,10 @@ import meshes
 import rigid
 from meshes import Zone
 from meshes.ends import POOR
+from meshes.errors import MeshError
 from meshes.hexmesh import SKIN
 from meshes.quality import quality
+from meshes.section import bored_section
 from meshes.turned import WORST
 
 
@@ -63,6 +65,12 @@ def test_a_long_tube_has_higher_cells_behind_its_tip_and_equal_slices_up_to_its_
     assert np.diff(edge[edge < R]).max() < 1.2 * 2 * R / 8
     short = meshes.turned(tube * [1, 0.3], 8, [zone, zone], bore=bore * [1, 0.3])
     assert short.slice_length == pytest.approx(2 * R / 8, rel=0.02)
+
+
+def test_the_thinnest_wall_may_be_a_quotient_of_stated_radii():
+    assert len(bored_section(16, 0.95 + 1e-16 * 8).unit)
+    with pytest.raises(MeshError, match=r"give 0\.2 to 0\.95 of it"):
+        bored_section(16, 0.951)
 
 
 def test_a_refined_tip_lies_on_the_exact_surface():
