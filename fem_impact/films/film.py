@@ -15,6 +15,7 @@ from fem_impact.errors import MissingLibraryError, ResultError
 from fem_impact.figures.style import INK, QUIET
 from fem_impact.films import frame
 from fem_impact.films.encode import best_suffix, encode, require_gl
+from fem_impact.films.layout import FrameLayout, Rectangle, SideBySideLayout
 from fem_impact.films.motion import FilmData, prepare
 from fem_impact.films.movement import FPS, WHOLE, Span, film_times, read_movement, slow_motion
 from fem_impact.films.views import CloseView, Overlay, RodPicture, needed_height
@@ -78,7 +79,7 @@ def render(
     MissingLibraryError, OutputPathError
         Off-screen drawing or the encoder is missing; the film cannot be written.
     """
-    folder, layout = Path(result_dir), frame.FrameLayout(*size)
+    folder, layout = Path(result_dir), FrameLayout(*size)
     movement, left_out = read_movement(folder)
     times = film_times(movement, field, span)
     motion = prepare(movement, field, times)
@@ -182,7 +183,7 @@ def render_side_by_side(
     path, notes = target(folders[0], out, "film-side-by-side")
     titles, made, curves, missing = zip(*map(context, folders), strict=True)
     times = film_times(max(movements, key=lambda movement: movement.end), "strain", span)
-    layout = frame.SideBySideLayout(*size, len(folders))
+    layout = SideBySideLayout(*size, len(folders))
     background = PairBackground.make(layout, motions, titles, made, curves)
     film = encode(_side_by_side_frames(background, motions, times), path, FPS)
     left_out = [left_out for _, left_out in read]
@@ -210,7 +211,7 @@ class PairBackground:
         End of each run, s.
     """
 
-    layout: frame.SideBySideLayout
+    layout: SideBySideLayout
     base: Image
     strips: tuple[frame.Strip, ...]
     ends: tuple[float, ...]
@@ -218,7 +219,7 @@ class PairBackground:
     @classmethod
     def make(
         cls,
-        layout: frame.SideBySideLayout,
+        layout: SideBySideLayout,
         motions: Sequence[FilmData],
         titles: Sequence[str],
         made: Sequence[str],
@@ -257,7 +258,7 @@ class PairBackground:
         return np.asarray(image)
 
 
-def _title(drawn: Figure, layout: frame.SideBySideLayout, view: frame.Rectangle, title: str) -> None:
+def _title(drawn: Figure, layout: SideBySideLayout, view: Rectangle, title: str) -> None:
     place = (view.left / layout.width, 1 - (view.top - 2) / layout.height)
     lines, points = frame.fitted(title, view.width, 9.5, 7.0)
     drawn.text(*place, lines, fontsize=points, color=INK, va="bottom", linespacing=1.1, parse_math=False)

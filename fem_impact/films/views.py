@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fem_impact.figures.style import INK, PALETTE, QUIET
-from fem_impact.films.frame import CLOSE_WIDTH, Rectangle, font
+from fem_impact.films.frame import CLOSE_WIDTH, font
+from fem_impact.films.layout import Rectangle
 from fem_impact.films.motion import FIELDS, FilmData, nice_factor, to_points
 
 if TYPE_CHECKING:

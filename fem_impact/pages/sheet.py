@@ -7,7 +7,7 @@ from pathlib import Path
 
 from fem_impact.answers.friction_spread import friction_spread
 from fem_impact.answers.verdict.screening import screening
-from fem_impact.answers.verdict.sentences import FIRST_ONLY, Line, screening_lines
+from fem_impact.answers.verdict.sentences import Line, never_covered, screening_lines
 from fem_impact.case.case import Case
 from fem_impact.errors import MissingLibraryError, ResultError
 from fem_impact.files.atomic import make_directory, read_text, write_text
@@ -95,7 +95,7 @@ def write_sheet(folder: Path, document: str = "", revision: str = "") -> Path:
             _dent(outcome),
         ),
         html.section("Inputs and their sources", html.table(inputs(scene), compact=False)),
-        html.section("Not covered", html.bullets((*FIRST_ONLY, *uncovered))),
+        html.section("Not covered", html.bullets((*never_covered(scene), *uncovered))),
         html.section("Signatures", html.table(_signatures())),
     )
     film = next((name for name in html.FILMS if (folder / name).is_file()), "")

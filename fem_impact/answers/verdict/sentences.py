@@ -248,8 +248,12 @@ def _friction(v: Verdict) -> Line:
 
 def not_covered(v: Verdict) -> tuple[str, ...]:
     """Return what the verdict does not cover: limits of the model, and of what was measured."""
-    first = FIRST_ONLY[v.scene.impact.until != FIRST :]
-    return (*first, *texts(v.here.free.validity.limitations))
+    return (*never_covered(v.scene), *texts(v.here.free.validity.limitations))
+
+
+def never_covered(scene: Scene) -> tuple[str, ...]:
+    """Return what no run of a scene covers; of one that is followed the later strikes are."""
+    return FIRST_ONLY[scene.impact.until != FIRST :]
 
 
 def lines_of(titled: Iterable[Sequence[str]], indent: str) -> list[str]:
