@@ -360,6 +360,7 @@ def not_reduced(bodies: Bodies) -> str:
         "a projectile with a mesh of its own": bodies.rod.own_mesh,
         "a barrier of layers": bodies.barrier.layers,
         "a plate thinner than its contact is wide": is_wider(bodies),
+        "a hardened skin": "machined-skin" in bodies.effects,
     }
     return next((what for what, holds in obstacles.items() if holds), "")
 

@@ -162,7 +162,8 @@ def _limited(options: Options) -> int:
     lines = [line for sentence in answer["lines"] for line in wrapped(sentence)]
     lines += [f"Next step: {answer['next_step']}"] if answer["next_step"] else []
     rests = [*answer["steps"], *answer["notes"]]
-    lines += ["", "What this rests on", *(line for one in rests for line in wrapped(f"- {one}", "  "))]
+    for title, told in (("What this rests on", rests), ("What it does not cover", answer["not_covered"])):
+        lines += ["", title, *(line for one in told for line in wrapped(f"- {one}", "  "))]
     print_answer(options, answer, "\n".join(lines) + "\n")
     return 0
 

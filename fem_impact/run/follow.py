@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 LATER = "Strikes of a rigid body after those of a finer model do not feel its vibration."
 SLOPE = (
     "No impact.slope is stated, so the rod's axis counts as vertical and the barrier slopes by {:.3g} "
-    'degrees, though the rod does not move along its axis. On level ground state impact.slope = "0 deg".'
+    'degrees{}. On level ground state impact.slope = "0 deg".'
 )
 PASSED = "Modes take over {:.0%} of the vibration that finite elements left; the rest counts as damped."
 CHANGE = (
@@ -63,8 +63,9 @@ def _strikes_of(
         return replace(none, until=case.scene.impact.until), ()
     strikes = course.body.strikes(course.state, course.finish, *course.held)
     impact = case.scene.impact
-    guessed = impact.slope is None and abs(impact.beside) > BESIDE
-    sloped = SLOPE.format(degrees(impact.angle)) if guessed else ""
+    beside = ", though the rod does not move along its axis" if abs(impact.beside) > BESIDE else ""
+    guessed = impact.slope is None and impact.angle != 0.0
+    sloped = SLOPE.format(degrees(impact.angle), beside) if guessed else ""
     return strikes, limitations("model", sloped, *course.told, *RULES, *course.body.doubts())
 
 

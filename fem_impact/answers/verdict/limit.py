@@ -22,11 +22,13 @@ from fem_impact.answers.validate import FRICTION, Ends, at_place, interval_of
 from fem_impact.answers.verdict.assess import BUDGET, Tell, announcing, check_means, why_stopped
 from fem_impact.answers.verdict.criteria import Bound, Criterion
 from fem_impact.answers.verdict.effect import Answer
+from fem_impact.answers.verdict.sentences import never_covered
 from fem_impact.case.case import Case
 from fem_impact.case.limits import not_reduced
 from fem_impact.errors import RunError, SceneError, UsageError
 from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import Unknown
+from fem_impact.outcome.limitation import texts
 from fem_impact.tables.text import plain
 
 if TYPE_CHECKING:
@@ -276,7 +278,8 @@ def document(v: LimitVerdict, command: str) -> dict[str, Any]:
             "no": f"at least {size} above",
             "undecided": f"up to {size} above",
         }
-        place = f"At the worst place, {at}" if at else "Here"
+        worst = "At the worst place" if v.least is not None else "Where all have their middle values"
+        place = f"{worst}, {at}" if at else "Here"
         lines.append(f"{place}: {_told(of, bound)}, {far[bound.answer(v.limit)]} the limit, by {v.by}.")
     if v.least is not None and over:
         lines.append(f"Of {v.places} places of the reduced model the least has {_in_unit(of, v.least)}.")
@@ -293,5 +296,6 @@ def document(v: LimitVerdict, command: str) -> dict[str, Any]:
         "lines": lines,
         "steps": list(v.steps),
         "notes": [*v.notes, *lacking],
+        "not_covered": [*never_covered(v.scene), *texts(Case(v.scene).limitations)],
         "next_step": f"{command} {v.more}" if v.more else None,
     }
