@@ -14,7 +14,7 @@ from fem_impact.outcome.limitation import Limitation, limitations
 from fem_impact.physics.contact import FLAT
 from fem_impact.scene import library
 from fem_impact.scene.barrier import Barrier
-from fem_impact.scene.impact import BESIDE, FIRST
+from fem_impact.scene.impact import BESIDE, FIRST, Impact
 from fem_impact.scene.own_mesh import OwnMesh
 from fem_impact.scene.shipped import replace as change
 from fem_impact.scene.strikes import Following
@@ -41,6 +41,12 @@ BONDED_LAYERS = (
     "of the rigid fidelity) know the first layer alone"
 )
 TIPS = {("A", 0.007), ("B", 0.003)}
+
+
+SLOPE = (
+    "No impact.slope is stated, so the rod's axis counts as vertical and the barrier slopes by {:.3g} "
+    'degrees{}. On level ground state impact.slope = "0 deg".'
+)
 
 
 def scene_limitations(bodies: Bodies, meshed_through: bool) -> tuple[Limitation, ...]:
@@ -72,8 +78,17 @@ def scene_limitations(bodies: Bodies, meshed_through: bool) -> tuple[Limitation,
         BONDED_LAYERS if scene.barrier.layers else "",
         thin_plate(bodies, meshed_through),
         _idealised(active),
+        _unstated_slope(scene.impact),
     )
     return (*unmeasured, *idealised)
+
+
+def _unstated_slope(impact: Impact) -> str:
+    """Say how the barrier of a followed body slopes where that follows from its angle alone."""
+    if impact.until == FIRST or impact.slope is not None or impact.angle == 0.0:
+        return ""
+    beside = ", though the rod does not move along its axis" if abs(impact.beside) > BESIDE else ""
+    return SLOPE.format(math.degrees(impact.angle), beside)
 
 
 def _masses(mesh: OwnMesh) -> list[str]:

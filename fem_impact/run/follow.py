@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from math import degrees
 from typing import TYPE_CHECKING
 
 from fem_impact.options import RunOptions
@@ -12,7 +11,6 @@ from fem_impact.outcome.limitation import Limitation, limitations
 from fem_impact.outcome.strikes import StrikeRecord, Strikes
 from fem_impact.run.certain import with_spread
 from fem_impact.run.strikes import RULES, Followed
-from fem_impact.scene.impact import BESIDE
 from rigid.strikes import Finish, State
 
 if TYPE_CHECKING:
@@ -23,10 +21,6 @@ if TYPE_CHECKING:
     from fem_impact.solid.run import SolidResult
 
 LATER = "Strikes of a rigid body after those of a finer model do not feel its vibration."
-SLOPE = (
-    "No impact.slope is stated, so the rod's axis counts as vertical and the barrier slopes by {:.3g} "
-    'degrees{}. On level ground state impact.slope = "0 deg".'
-)
 PASSED = "Modes take over {:.0%} of the vibration that finite elements left; the rest counts as damped."
 CHANGE = (
     "Strikes after the first {count} are those of the {model} model. Of strike {count} it gives "
@@ -62,11 +56,7 @@ def _strikes_of(
         none = unknown(Strikes, f"the motion after the first impact is not known: {why}")
         return replace(none, until=case.scene.impact.until), ()
     strikes = course.body.strikes(course.state, course.finish, *course.held)
-    impact = case.scene.impact
-    beside = ", though the rod does not move along its axis" if abs(impact.beside) > BESIDE else ""
-    guessed = impact.slope is None and impact.angle != 0.0
-    sloped = SLOPE.format(degrees(impact.angle), beside) if guessed else ""
-    return strikes, limitations("model", sloped, *course.told, *RULES, *course.body.doubts())
+    return strikes, limitations("model", *course.told, *RULES, *course.body.doubts())
 
 
 @dataclass(eq=False)
