@@ -79,18 +79,15 @@ def assess(options: Options) -> int:
     """Assess one scene and print the verdict, before anything else its three lines."""
     if options.question != QUESTIONS[0] or options.uncertain:
         return _limited(options)
-    from fem_impact.answers.verdict.assess import BUDGET
     from fem_impact.answers.verdict.assess import assess as assessed
     from fem_impact.answers.verdict.dropped import dropped
     from fem_impact.answers.verdict.sentences import document
-    from fem_impact.jobs.executors import cores
     from fem_impact.scene.impact import FIRST
 
     if options.limit:
         remedy = "Ask for it: --for heat, force or dent; a change by vibration is stated by --within."
         raise UsageError("has no question.", key="--limit", value=options.limit, remedy=remedy)
-    budget = stated_budget(options)
-    means = BUDGET if budget is None else budget, min(options.workers or cores(), 2)
+    means = _means(options)
     scene = named_scene(options, SHORT) or _dropped_rod(options)
     case = dropped(scene) if options.heat else None
     out = checked_out(options.out) if options.out else None
@@ -124,6 +121,15 @@ def assess(options: Options) -> int:
     return 0
 
 
+def _means(options: Options) -> tuple[float, int]:
+    """Return the budget of the finite elements, s, and how many runs go on at a time."""
+    from fem_impact.answers.verdict.assess import BUDGET
+    from fem_impact.jobs.executors import cores
+
+    budget = stated_budget(options)
+    return BUDGET if budget is None else budget, min(options.workers or cores(), 2)
+
+
 def _telling(options: Options) -> Callable[[str], None]:
     """Return what prints a sentence to a terminal that waits."""
     shown = not options.quiet and sys.stderr.isatty()
@@ -133,10 +139,8 @@ def _telling(options: Options) -> Callable[[str], None]:
 def _limited(options: Options) -> int:
     """Judge a number against its limit, over the intervals that are stated, and print the answer."""
     from fem_impact.answers.vary import read_vary
-    from fem_impact.answers.verdict.assess import BUDGET
     from fem_impact.answers.verdict.criteria import LIMITED, Criterion, Rigidity
     from fem_impact.answers.verdict.limit import document, judge
-    from fem_impact.jobs.executors import cores
     from fem_impact.scene.units import option_quantity
 
     if options.out or options.heat:
@@ -151,9 +155,8 @@ def _limited(options: Options) -> int:
     else:
         criterion = LIMITED[options.question]
         limit = option_quantity(options.limit, criterion.dimension, "--limit")
-    budget = stated_budget(options) or BUDGET
     uncertain: dict[str, Any] = dict(read_vary(text) for text in options.uncertain)
-    means = options.fidelity, budget, min(options.workers or cores(), 2)
+    means = options.fidelity, *_means(options)
     found = judge(scene, criterion, limit, uncertain, *means, tell=_telling(options))
     given = "question", "limit", "uncertain", "within"
     answer = document(

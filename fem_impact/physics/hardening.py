@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from itertools import pairwise
 from math import log, log1p, sqrt
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,6 +16,7 @@ from fem_impact.scene.material import JohnsonCookRate
 
 if TYPE_CHECKING:
     from fem_impact.scene.material import Material
+    from fem_impact.scene.material_fields import SkinShape
 
 
 TABOR, TABOR_STRAIN = 3.0, 0.08  # hardness over the flow stress at this plastic strain
@@ -60,9 +61,6 @@ def rate_law(metal: Material) -> RateLaw | None:
     if isinstance(rate, JohnsonCookRate):
         return JohnsonCook(rate.C / (1 + rate.C * log(rate.tested / rate.reference)), rate.tested)
     return CowperSymonds(rate.D, rate.q) if rate else None
-
-
-SkinShape = Literal["even", "exponential"]
 
 
 @dataclass(frozen=True, slots=True)

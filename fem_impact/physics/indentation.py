@@ -15,13 +15,15 @@ again). No constant comes from an impact or from a measured hardness.
 from __future__ import annotations
 
 from math import exp, log, log1p, pi, sqrt
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fem_impact.physics.hardening import KGF_PER_MM2, TABOR_STRAIN, HardeningLaw, Skin, SkinShape
+from fem_impact.physics.hardening import KGF_PER_MM2, TABOR_STRAIN, HardeningLaw, Skin
 
-G = 9.80665  # N/kgf
+if TYPE_CHECKING:
+    from fem_impact.scene.material_fields import SkinShape
+
 FACES = 0.927  # projected area over that of the faces of Vickers' pyramid
 REACH, SPREADS = 0.3, 1.3
 FRICTION = 0.1  # between the pyramid and the metal
@@ -57,7 +59,7 @@ class HardnessTest(NamedTuple):
         >>> print(round(1e3 * HardnessTest(163, 30).radius, 3))
         0.233
         """
-        return sqrt(self.load * G / (pi * self.pressure))
+        return sqrt(self.load * KGF_PER_MM2 * 1e-6 / (pi * self.pressure))
 
 
 def vickers(E: float, law: HardeningLaw, friction: float = FRICTION) -> float:

@@ -206,10 +206,8 @@ class LevelChain:
         then = self.following
         if then is None:
             return None
-        for splits in (
-            then,
-            self.done[-1].splits + 1,
-        ):  # a smaller step where the budget does not hold the larger
+        smaller = self.done[-1].splits + 1  # where the budget does not hold the larger step
+        for splits in (then, smaller):
             if self.spent_s + self.forecast_s(splits) <= self.budget_s:
                 return splits
         if self.options.progress is not None:
