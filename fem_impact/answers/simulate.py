@@ -34,7 +34,7 @@ def compiled(scene: Scene, fidelity: str) -> Case:
         _require_mesh(scene, fidelity)
         return Case.of(scene, fidelity)
     case = Case(scene)
-    LevelMeshes(case).pilot()
+    _ = LevelMeshes.of(case).pilot
     if scene.accuracy.tip_size is not None:
         case.require_memory()  # of the last level, whose cells are stated
     return case

@@ -153,7 +153,7 @@ def test_a_side_that_lands_asks_for_levels_or_a_restitution_or_the_reduced_model
     with pytest.raises(SceneError, match=r"on several meshes \(accuracy\.levels above 1\)"):
         Case.of(changed(stated, "accuracy.levels", 1), "solid")
     assert Case.of(replace(stated, restitution=0.5), "rigid")
-    assert LevelChain(Case(stated)).meshes.pilot()
+    assert LevelChain(Case(stated)).meshes.pilot
 
 
 @pytest.mark.parametrize("way", ["height", "speed"])

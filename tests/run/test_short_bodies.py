@@ -20,7 +20,7 @@ def test_a_pin_that_lands_flat_leaves_when_its_wave_is_back_and_the_record_holds
             "effects": ["vibration", "barrier-rigid"],
         }
     )
-    case = LevelChain(Case.of(scene)).meshes.pilot()
+    case = LevelChain(Case.of(scene)).meshes.pilot
     outcome, record = simulate_recorded(case.scene, "solid", case=case)
     site = record.sites[0]
     assert site.end - site.start == pytest.approx(case.bodies.stretching_period, rel=0.25)

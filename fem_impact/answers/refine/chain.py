@@ -123,7 +123,7 @@ class LevelChain:
             As `run`.
         """
         if not self.done:
-            require_pilot(self.meshes.pilot().size.time, self._limit_s)
+            require_pilot(self.meshes.pilot.size.time, self._limit_s)
         splits = self._next if self.done else self.meshes.first
         while splits is not None:
             try:
@@ -148,7 +148,7 @@ class LevelChain:
     @cached_property
     def meshes(self) -> LevelMeshes:
         """The meshes of the levels."""
-        return LevelMeshes(self.case)
+        return LevelMeshes.of(self.case)
 
     @property
     def _limit_s(self) -> float:
@@ -272,13 +272,12 @@ class LevelChain:
         last = bool(self.done) and splits >= self.finest
         scene = self.meshes.at(splits)
         before = known = self.done[-1].record if self.done else self.meshes.expected(splits)
-        # each level tells all it finds: the next one may have to be compared with it
-        scene = replace(scene, accuracy=replace(scene.accuracy, unresolved="report"))
-        if not last:
-            scene = replace(scene, save=replace(scene.save, frames=0, strain_samples=0))
+        if last:
+            scene = replace(scene, save=self.scene.save)
         scenes, begun = self._sharing(scene), now()
         for repeats in range(MOST_REPEATS + 1):
-            cases = [Case.of(one, "solid", before) for one in scenes]
+            planned = [] if self.done or repeats else [self.meshes.pilot]
+            cases = planned + [Case.of(one, "solid", before) for one in scenes[len(planned) :]]
             runs = in_turns(
                 [
                     partial(simulate_level, case, self._options(splits, repeats, number, begun))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from math import log2
 
 from fem_impact.case.bodies import Bodies
@@ -29,8 +29,15 @@ class LevelMeshes:
 
     case: Case
 
+    @classmethod
+    @lru_cache(maxsize=1)
+    def of(cls, case: Case) -> LevelMeshes:
+        """Return those of a case, the same ones again for the case that was asked for last."""
+        return cls(case)
+
+    @cached_property
     def pilot(self) -> Case:
-        """Return the case of the first level.
+        """The case of the first level.
 
         Raises
         ------
@@ -75,15 +82,19 @@ class LevelMeshes:
         return max(0, round(log2(base / level_size(self._bodies, radius))))
 
     def at(self, splits: int) -> Scene:
-        """Return the scene on cells that are split so often; rod and barrier are split alike."""
+        """Return the scene on cells that are split so often; rod and barrier are split alike.
+
+        It tells all it finds, as the next level may have to be compared with it, and stores no frames.
+        """
         sizes = zip(self._cells, self._splits, strict=True)
         rod, barrier = (cell / 2 ** (usual + splits - self.usual) for cell, usual in sizes)
         # a user's cells may be larger than a scene may state: they are left as they are
         rod = min(rod, self.case.scene.projectile.diameter / 4)
-        accuracy = replace(self.case.scene.accuracy, tip_size=rod, target=None)
+        scene = self.case.scene
+        accuracy = replace(scene.accuracy, tip_size=rod, target=None, unresolved="report")
         if self._bodies.contact.compliant:
             accuracy = replace(accuracy, barrier_size=barrier)
-        return replace(self.case.scene, accuracy=accuracy)
+        return replace(scene, accuracy=accuracy, save=replace(scene.save, frames=0, strain_samples=0))
 
     def expected(self, splits: int) -> ContactRecord:
         """Return what may touch on cells that are split so often."""

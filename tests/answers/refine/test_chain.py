@@ -92,7 +92,7 @@ def test_columns_of_the_barrier_are_narrow_where_the_contact_ended(quick):
 
 def test_rods_that_do_not_yield_have_no_thin_rows():
     elastic = replace_all(QUICK, {"effects": ["auto", "-rod-plasticity"]})
-    assert LevelChain(Case(elastic)).meshes.pilot().zones.rod_rows == 0
+    assert LevelChain(Case(elastic)).meshes.pilot.zones.rod_rows == 0
 
 
 def test_flow_and_contact_stay_in_the_zones_of_the_last_level(quick):
