@@ -6,8 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-from fem_impact import load, replace_all
-from fem_impact.scene.types import Scene
+from fem_impact import Scene, load, replace_all
 
 Expected = Literal["closed", "refused", "detected"]
 Changes = Mapping[str, Any]
@@ -144,9 +143,7 @@ _CASES = (
     ),
     HardCase("soft-rod", "rod 1e-3 as stiff", {**_material(ROD, **SOFT), "accuracy.max_time": "2 ms"}),
     HardCase(
-        "stiff-barrier",
-        "barrier 1e3 as stiff",
-        {**_material(ROD, **WEAK), **_material(BARRIER, E="1e13 Pa")},
+        "stiff-barrier", "barrier 1e3 as stiff", {**_material(ROD, **WEAK), **_material(BARRIER, E="1e13 Pa")}
     ),
     HardCase(
         "light-barrier",

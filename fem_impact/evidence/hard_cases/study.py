@@ -9,19 +9,18 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
+from fem_impact import Case, RunOptions
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.errors import ResultError, RunError, SceneError
 from fem_impact.evidence.hard_cases.scenes import CASES, HardCase
 from fem_impact.files.atomic import make_directory
 from fem_impact.jobs.job import Failure, JobKind
-from fem_impact.options import RunOptions
 from fem_impact.run.program import source_digest
 from fem_impact.tables.table import Cell, Column, Table
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from fem_impact.case.case import Case
     from fem_impact.solid.model import Model
     from fem_impact.solid.run import SolidResult
 

@@ -11,7 +11,7 @@ from math import pi
 
 import numpy as np
 
-from fem_impact.case.case import Case
+from fem_impact import Case
 from fem_impact.evidence.problems import setups as steel
 from fem_impact.evidence.problems.bodies import rigid_of
 from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values, within

@@ -33,7 +33,7 @@ from math import inf, pi, sin, sqrt
 import numpy as np
 
 import rigid
-from fem_impact.case.case import Case
+from fem_impact import Case
 from fem_impact.errors import SceneError
 from fem_impact.evidence.problems import setups
 from fem_impact.evidence.problems.discretisation import BarMesh, contact_error, lean_error, radiation_error

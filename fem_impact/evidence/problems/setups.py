@@ -8,7 +8,7 @@ from tempfile import TemporaryDirectory
 import meshio
 import numpy as np
 
-from fem_impact.case.case import Case
+from fem_impact import Case, Scene
 from fem_impact.evidence.problems.problem import Values, within
 from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.fields import Element
@@ -19,7 +19,7 @@ from fem_impact.scene.parameter import Parameter
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.shapes import NamedShape
 from fem_impact.scene.surface import Surface
-from fem_impact.scene.types import Accuracy, Save, Scene
+from fem_impact.scene.types import Accuracy, Save
 from fem_impact.solid.build import build
 from fem_impact.solid.model import Model
 from meshes import HexMesh

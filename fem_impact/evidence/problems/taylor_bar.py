@@ -81,13 +81,7 @@ def _model(p: Values, slices: float) -> Model:
     )
     metal = p["E"], p["nu"], p["rho"]
     body = FreeBody(
-        meshes.RodMesh.plain(bar.mesh),
-        points,
-        velocity,
-        *metal,
-        law=law,
-        yields=yields,
-        friction=0.0,
+        meshes.RodMesh.plain(bar.mesh), points, velocity, *metal, law=law, yields=yields, friction=0.0
     )
     model = body_model(body)
     return replace(model, steps={"rod": CAUTION * model.step})

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fem_impact import load, replace_all
+from fem_impact import Scene, load, replace_all
 from fem_impact.answers.compare import MEASURED, ComparedQuantity
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.evidence.studies.declared import DeclaredSweep, Runs, table_of
@@ -20,8 +20,6 @@ from rigid.experiments import Statistic, measured_set
 
 if TYPE_CHECKING:
     import pandas
-
-    from fem_impact.scene.types import Scene
 
 
 SETS = ("t5b", "t6-17")  # by default: the short rod in slow drops, at 45 and at 17 degrees

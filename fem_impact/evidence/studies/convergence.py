@@ -7,16 +7,15 @@ from dataclasses import astuple
 from statistics import fmean
 from typing import Any
 
+from fem_impact import Unknown, known, load, replace_all
 from fem_impact.answers.refine.extrapolate import MeshRuns, level_limits
 from fem_impact.answers.refine.work import Levels, LevelsJob
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.evidence.studies.order import limit
 from fem_impact.figures.panels import Panel, Picture, Series
 from fem_impact.jobs.job import Failure
-from fem_impact.outcome.keys import Unknown, known
 from fem_impact.outcome.record import KEY_TABLE
 from fem_impact.outcome.shares import shares
-from fem_impact.scene.shipped import load, replace_all
 from fem_impact.tables.table import Cell, Table
 
 Row = dict[str, Any]

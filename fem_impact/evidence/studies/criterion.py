@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fem_impact import Outcome, known
 from fem_impact.answers.refine.work import Levels, LevelsJob
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.answers.verdict.effect import solid_effect
@@ -21,14 +22,7 @@ from fem_impact.evidence.studies.criterion_findings import (
     crossing,
     exponent,
 )
-from fem_impact.evidence.studies.rod_runs import (
-    RodRun,
-    among,
-    as_table,
-    contacts,
-    longest_first,
-    run_table,
-)
+from fem_impact.evidence.studies.rod_runs import RodRun, among, as_table, contacts, longest_first, run_table
 from fem_impact.evidence.studies.rod_theory import spring_bounce, static_restitution, whole_ratio
 from fem_impact.evidence.studies.rods import (
     BODY,
@@ -41,8 +35,6 @@ from fem_impact.evidence.studies.rods import (
     length_of,
 )
 from fem_impact.jobs.job import Failure, Job
-from fem_impact.outcome.keys import known
-from fem_impact.outcome.record import Outcome
 from fem_impact.tables.table import Table
 from rigid import LIMIT
 

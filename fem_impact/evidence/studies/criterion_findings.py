@@ -206,7 +206,7 @@ def static_give(upright: DataFrame) -> list[str]:
         "elastically stores part of the energy and returns it, so that less is left for plastic flow and e "
         "is larger than that of a rigid rod. This quasi-static bending alone gives e within "
         f"{(short.e - short.e_static_give).abs().max():.3f}. Long rods vibrate instead; e at "
-        f"{near.angle_deg.iloc[-1]:g} degrees: {'; '.join(values)}.",
+        f"{near.angle_deg.iloc[-1]:g} degrees: {'; '.join(values)}."
     ]
 
 

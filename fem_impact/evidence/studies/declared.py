@@ -6,15 +6,13 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from fem_impact import Outcome, Scene
 from fem_impact.answers.report import Request, StudyReport
 from fem_impact.jobs.job import Job
 from fem_impact.jobs.run import JobResults
-from fem_impact.outcome.record import Outcome
 
 if TYPE_CHECKING:
     import pandas
-
-    from fem_impact.scene.types import Scene
 
 
 Runs = Mapping[str, Mapping[str, Outcome]]

@@ -8,23 +8,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from fem_impact import load, replace_all
+from fem_impact import Case, Outcome, Scene, known, load, replace_all
 from fem_impact.answers.report import Request, Sheet, StudyReport
-from fem_impact.case.case import Case
 from fem_impact.case.cells import widest_tip_size
 from fem_impact.case.choose import all_effects
 from fem_impact.case.effects.registry import BARRIERS, NAMES
 from fem_impact.evidence.studies.declared import DeclaredSweep, Runs
-from fem_impact.outcome.keys import known, or_none
-from fem_impact.outcome.record import Outcome
+from fem_impact.outcome.keys import or_none
 from fem_impact.scene.types import MEASURED_SETS
 from fem_impact.tables.table import Cell, Table
-
-if TYPE_CHECKING:
-    from fem_impact.scene.types import Scene
-
 
 TIP = 0.8e-3  # m, tip size: coarse, the same for both runs of a pair
 WITHIN_E, WITHIN_VIB, LEAST_VIB = 0.02, 0.1, 1e-4  # accepted changes: of e, of E_vib, of E_0
@@ -173,7 +167,7 @@ def _report(runs: Runs) -> StudyReport:
             "With the effects that the program chooses, "
             f"{len(rows) - len(beyond)} of {len(rows)} scenes give what all effects on give, within {limits}"
             + (f"; beyond: {', '.join(beyond)}" if beyond else "")
-            + f". {len(cheaper)} take less processor time.",
+            + f". {len(cheaper)} take less processor time."
         ],
         sheets=[
             Sheet("ablation", "Auto beside everything on, on the same coarse mesh.", Table.of(columns, rows)),

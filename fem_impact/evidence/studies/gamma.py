@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fem_impact import Scene, load
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.evidence.studies import gamma_figures as figures
 from fem_impact.evidence.studies.gamma_figures import plain_line
@@ -38,7 +39,6 @@ from fem_impact.evidence.studies.rods import (
 )
 from fem_impact.jobs.job import Job
 from fem_impact.jobs.run import JobResults
-from fem_impact.scene.shipped import load
 from fem_impact.tables.table import Table
 from fem_impact.tables.text import rounded_up
 from rigid import LIMIT
@@ -46,7 +46,6 @@ from rigid import LIMIT
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-    from fem_impact.scene.types import Scene
 
 SETS = ("t3-machined", "t4", "t5b")  # tip B at 45 degrees, one of each rod
 BETWEEN = (10.0, 14.0, 23.0, LIMIT, 35.0, 45.0, 70.0, 85.0, 100.0, 120.0)  # beside the paper's rods

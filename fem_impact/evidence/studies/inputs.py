@@ -11,27 +11,21 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from math import degrees, hypot, log, radians
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from fem_impact import replace_all
+from fem_impact import Case, Outcome, Scene, known, replace_all
 from fem_impact.answers.compare import COMPARED, MEASURED, UNSEEN, ComparisonRow
 from fem_impact.answers.refine.level_meshes import LevelMeshes
-from fem_impact.case.case import Case
 from fem_impact.case.effects.plasticity import hardening_of
 from fem_impact.jobs.job import Failure, Job
-from fem_impact.outcome.keys import Num, known
-from fem_impact.outcome.record import Outcome
+from fem_impact.outcome.keys import Num
 from fem_impact.physics.hardening import TABOR_STRAIN, rate_gain, tabor_stress
 from fem_impact.scene.library import intervals_of
 from fem_impact.scene.material import JohnsonCookRate
 from rigid import Errors
 from rigid.experiments import MeasuredSet
-
-if TYPE_CHECKING:
-    from fem_impact.scene.types import Scene
-
 
 ONE_MESH = "one-mesh"  # name of the run that inputs are changed in
 ANGLE = radians(0.5)  # half the range of the inclination (assumed)

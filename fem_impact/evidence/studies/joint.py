@@ -18,11 +18,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fem_impact import load, replace_all
+from fem_impact import Outcome, Scene, load, replace_all
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.answers.v_and_v import COVERAGE, joint
 from fem_impact.arrays import Array
@@ -32,13 +31,9 @@ from fem_impact.evidence.studies.validated import NAMES, outputs, unit_sample
 from fem_impact.figures.panels import Mark, Panel, Picture, Series
 from fem_impact.jobs.job import Job
 from fem_impact.jobs.run import JobResults
-from fem_impact.outcome.record import Outcome
 from fem_impact.scene.types import MEASURED_SETS
 from fem_impact.tables.table import Table
 from rigid.experiments import measured_set
-
-if TYPE_CHECKING:
-    from fem_impact.scene.types import Scene
 
 SIZE, QUICK_SIZE = 64, 8  # runs of a set's sample
 FEWEST = 6  # finished runs that tell how changes belong together

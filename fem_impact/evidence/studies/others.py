@@ -11,10 +11,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib.resources import files
 from math import cos, exp, radians, sin, sqrt
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from fem_impact import Scene, Unknown
 from fem_impact.answers.refine.extrapolate import level_limits
 from fem_impact.answers.refine.work import Levels, LevelsJob
 from fem_impact.answers.report import Request, Sheet, StudyReport
@@ -24,13 +25,9 @@ from fem_impact.evidence.problems import taylor_bar
 from fem_impact.evidence.studies.joint import LEVEL
 from fem_impact.figures.panels import Mark, Panel, Picture, Series
 from fem_impact.jobs.job import Failure
-from fem_impact.outcome.keys import Unknown
 from fem_impact.scene.library import material
 from fem_impact.scene.read import read_dict
 from fem_impact.tables.table import Table
-
-if TYPE_CHECKING:
-    from fem_impact.scene.types import Scene
 
 SPEED, RADIUS = 3.9, 2.5e-3  # of the spheres, m/s and m
 READ = {"e_t": 0.003, "Omega": 7.0}

@@ -11,21 +11,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.stats import qmc
 
-from fem_impact import load, replace_all
+from fem_impact import Outcome, Scene, Unknown, load, replace_all
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.evidence.studies.declared import DeclaredSweep, table_of
 from fem_impact.evidence.studies.rods import BODY, length_of
 from fem_impact.figures.panels import Panel, Picture, Series
-from fem_impact.outcome.keys import Key, Unknown
-from fem_impact.outcome.record import KEY_TABLE, Outcome
+from fem_impact.outcome.keys import Key
+from fem_impact.outcome.record import KEY_TABLE
 from fem_impact.scene.types import MEASURED_SETS
 from fem_impact.tables.table import Table
 from rigid.slenderness import EXPONENT
 
 if TYPE_CHECKING:
     import pandas
-
-    from fem_impact.scene.types import Scene
 
 
 SEED = 20260301  # of the hypercube

@@ -10,16 +10,15 @@ from dataclasses import dataclass, replace
 from itertools import chain
 from typing import TYPE_CHECKING, Any
 
+from fem_impact import Outcome, load, replace_all, simulate
 from fem_impact.answers.refine.extrapolate import vibration_floor
-from fem_impact.answers.simulate import simulate
 from fem_impact.evidence.studies.rods import DroppedRod
 from fem_impact.jobs.job import Failure, Job
 from fem_impact.jobs.run import JobResults
 from fem_impact.outcome.groups import ContactInterval
 from fem_impact.outcome.keys import or_none
-from fem_impact.outcome.record import KEY_TABLE, Outcome
+from fem_impact.outcome.record import KEY_TABLE
 from fem_impact.outcome.shares import shares
-from fem_impact.scene.shipped import load, replace_all
 from fem_impact.tables.table import Table
 
 if TYPE_CHECKING:

@@ -12,8 +12,8 @@ from math import pi, sqrt
 
 import numpy as np
 
+from fem_impact import Case
 from fem_impact.arrays import Array
-from fem_impact.case.case import Case
 from fem_impact.evidence.references.hertz import SPAN
 from fem_impact.evidence.references.oblique import ObliqueRod, oblique_rod
 from fem_impact.evidence.studies.rods import DroppedRod, length_of

@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from math import cos, radians, sin
 
+from fem_impact import Scene, load, replace_all
 from fem_impact.evidence.references.free_modes import bending_period
 from fem_impact.scene.impact import Impact
 from fem_impact.scene.library import surfaces
 from fem_impact.scene.material_fields import FlowLaw
-from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.surface import Surface
-from fem_impact.scene.types import Save, Scene
+from fem_impact.scene.types import Save
 from rigid.slenderness import EXPONENT
 
 PAPER_RODS = {"0.24 m": 0.24, "0.12 m": 0.12, "0.08 m": 0.08}

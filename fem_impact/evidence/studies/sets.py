@@ -10,10 +10,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from fem_impact import load, replace_all
+from fem_impact import Outcome, known, load, replace_all, simulate
 from fem_impact.answers.compare import COMPARED, ComparisonRow, compare
 from fem_impact.answers.report import Request, Sheet, StudyReport
-from fem_impact.answers.simulate import simulate
 from fem_impact.evidence.studies.inputs import (
     DESCRIPTIONS,
     INPUT_CHANGES,
@@ -24,8 +23,7 @@ from fem_impact.evidence.studies.inputs import (
 )
 from fem_impact.jobs.job import Job
 from fem_impact.jobs.run import JobResults
-from fem_impact.outcome.keys import known, or_none
-from fem_impact.outcome.record import Outcome
+from fem_impact.outcome.keys import or_none
 from fem_impact.outcome.shares import ADDED, EnergyShare, shares
 from fem_impact.run.tests import tests_of
 from fem_impact.scene.types import MEASURED_SETS

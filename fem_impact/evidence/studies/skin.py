@@ -8,27 +8,20 @@ none is printed. No impact enters. Which point agrees best is shown; to take it 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from fem_impact import load, replace_all
+from fem_impact import Outcome, Scene, Unknown, load, replace_all, simulate
 from fem_impact.answers.compare import MEASURED
 from fem_impact.answers.report import Request, Sheet, StudyReport
-from fem_impact.answers.simulate import simulate
 from fem_impact.evidence.studies import joint
 from fem_impact.evidence.studies.joint import LEVEL, JointError, of_set, stored_rows
 from fem_impact.evidence.studies.reach import SHOWN
 from fem_impact.figures.panels import Mark, Panel, Picture, Series
 from fem_impact.jobs.job import Job
 from fem_impact.jobs.run import JobResults
-from fem_impact.outcome.keys import Unknown
-from fem_impact.outcome.record import Outcome
 from fem_impact.tables.table import Table
-
-if TYPE_CHECKING:
-    from fem_impact.scene.types import Scene
-
 
 LOAD = 30  # kgf, assumed: the paper prints none
 

@@ -14,14 +14,13 @@ from typing import Any
 
 import numpy as np
 
-from fem_impact import load, replace_all
+from fem_impact import Outcome, load, replace_all
 from fem_impact.answers.compare import MEASURED, compare
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.arrays import Array
 from fem_impact.evidence.studies.sets import set_job
 from fem_impact.jobs.job import Job
 from fem_impact.jobs.run import JobResults
-from fem_impact.outcome.record import Outcome
 from fem_impact.run.tests import tests_of
 from fem_impact.tables.table import Cell, Table
 from rigid.experiments import MeasuredSet, measured_set

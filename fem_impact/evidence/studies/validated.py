@@ -9,14 +9,12 @@ from math import hypot, sqrt
 import numpy as np
 from scipy.stats import qmc
 
-from fem_impact import load
+from fem_impact import Outcome, known, load
 from fem_impact.answers.compare import MEASURED, verdict
 from fem_impact.answers.v_and_v import COVERAGE, Comparison
 from fem_impact.arrays import Array
 from fem_impact.evidence.studies.inputs import UNCERTAIN_INPUTS, sample_values
 from fem_impact.evidence.studies.response import ResponseSurface
-from fem_impact.outcome.keys import known
-from fem_impact.outcome.record import Outcome
 from rigid import Errors
 from rigid.experiments import MeasuredSet, derived_columns, measured_set
 from rigid.uncertainty import sensitivities

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from fem_impact import load, replace_all
+from fem_impact import Outcome, Unknown, load, replace_all
 from fem_impact.answers.report import Request, StudyReport
 from fem_impact.evidence.studies.inputs import UNCERTAIN_INPUTS, changes, one_mesh, sample_values
 from fem_impact.evidence.studies.response import fit
@@ -29,8 +29,6 @@ from fem_impact.evidence.studies.validated import (
 from fem_impact.evidence.studies.validation_report import study_report
 from fem_impact.jobs.job import Job
 from fem_impact.jobs.run import JobResults
-from fem_impact.outcome.keys import Unknown
-from fem_impact.outcome.record import Outcome
 from fem_impact.scene.types import MEASURED_SETS
 from rigid.experiments import measured_set
 
