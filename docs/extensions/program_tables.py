@@ -14,7 +14,7 @@ from fem_impact.case.effects.registry import EFFECTS
 from fem_impact.cli.parser import build_parser, every_command
 from fem_impact.cli.study import REPORT, STUDIES
 from fem_impact.errors import EXIT_CODES
-from fem_impact.evidence.problems.catalogue import PROBLEMS, problem
+from fem_impact.evidence.problems.problem import PROBLEMS, problem
 from fem_impact.outcome.keys import markdown_table
 from fem_impact.outcome.record import KEYS
 from fem_impact.pages.bibliography import references

@@ -9,8 +9,7 @@ from fem_impact.cli.page import checked_page, write_page
 from fem_impact.cli.parser import CommandParser
 from fem_impact.cli.terminal import print_json, print_table
 from fem_impact.errors import RunError, UsageError
-from fem_impact.evidence.problems.catalogue import PROBLEMS, page, problem
-from fem_impact.evidence.problems.problem import Verification
+from fem_impact.evidence.problems.problem import PROBLEMS, Verification, page, problem
 from fem_impact.tables.table import Table
 from fem_impact.tables.text import wrapped
 

@@ -14,7 +14,7 @@ import numpy as np
 from calculix import Strike, run
 
 from fem_impact.evidence.problems.bodies import placed
-from fem_impact.evidence.problems.catalogue import problem, verify
+from fem_impact.evidence.problems.problem import problem, verify
 from fem_impact.evidence.problems.square_bars import ANGLE, SPEED, square_bar
 from fem_impact.fem.elements import lumped_mass
 

@@ -1,4 +1,7 @@
-"""The hard cases as a study: each is computed and judged by itself; the report is their table."""
+"""The hard cases as a study: each is computed and judged by itself; the report is their table.
+
+Judged are balances of energy and momentum, and the sign of friction work, which every run must obey.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +12,8 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
+import numpy as np
+
 from fem_impact import Case, RunOptions
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.errors import ResultError, RunError, SceneError
@@ -16,13 +21,78 @@ from fem_impact.evidence.hard_cases.scenes import CASES, HardCase
 from fem_impact.files.atomic import make_directory
 from fem_impact.jobs.job import Failure, JobKind
 from fem_impact.run.program import source_digest
-from fem_impact.tables.table import Cell, Column, Table
+from fem_impact.tables.table import Cell, Column, Table, read_csv
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from fem_impact.solid.model import Model
     from fem_impact.solid.run import SolidResult
+
+
+LEDGER = 1e-3  # of E_0: most that the ledger may miss, to either side
+FED = 1e-6  # of E_0: most that friction may give back between two rows of the history
+MOMENTUM = 1e-3  # of the momentum at the start plus the impulse
+SPIN = 2e-3  # of the same for angular momentum, whose best-fit angle holds to second order only
+
+
+@dataclass(frozen=True, slots=True)
+class Balance:
+    """The balances of a run, each as a share.
+
+    Attributes
+    ----------
+    residual : largest miss of the ledger over E_0, growth : largest gain of energy over E_0
+    fed : largest energy that friction gave between two rows over E_0
+    momentum, spin : misses of linear and angular momentum over their size
+    """
+
+    residual: float
+    growth: float
+    fed: float
+    momentum: float
+    spin: float
+
+    def faults(self) -> list[str]:
+        """Return a sentence for each balance that does not hold."""
+        limits = (
+            (self.residual, LEDGER, "the ledger misses {:.1e} of E_0"),
+            (self.growth, LEDGER, "the energy grew by {:.1e} of E_0"),
+            (self.fed, FED, "friction fed {:.1e} of E_0"),
+            (self.momentum, MOMENTUM, "momentum misses {:.1e}"),
+            (self.spin, SPIN, "angular momentum misses {:.1e}"),
+        )
+        return [sentence.format(value) for value, most, sentence in limits if not value <= most]
+
+
+def balance(result: SolidResult, history: Path) -> Balance:
+    """Return the balances of a finished or stopped run."""
+    table = read_csv(history)
+    E_0 = result.E_0
+    heat = table.numbers("W_friction_J")
+    # what linear and angular momentum about the origin miss of the contact's impulses
+    motion, impact, view = result.motion, result.case.scene.impact, result.view
+    x = result.model.start[0][view.places]
+    centre = view.mass @ x / view.mass.sum()
+    weight = (result.case.slots.gravity or 0.0) * result.time
+    down = weight * np.array([-np.sin(impact.angle), -np.cos(impact.angle)])
+    middle = 0.5 * (centre + np.asarray(motion.centre))  # mean place of the mass centre
+    moment = motion.mass * (middle[2] * down[0] - middle[0] * down[1])
+    p = 2 * result.model.book.impulse
+    m = motion.mass
+    gained = m * (np.array([motion.V_t - impact.v_t, motion.V_n - impact.v_n]) - down)
+    size = m * float(np.hypot(impact.v_t, impact.v_n)) + float(np.abs(p[:2]).sum())
+    before = motion.inertia * impact.omega + m * (centre[2] * impact.v_t - centre[0] * impact.v_n)
+    turned = motion.spin - before + p[2] - moment
+    arm = float(np.linalg.norm(centre))
+    momentum, spin = float(np.linalg.norm(gained - p[:2])) / size, abs(float(turned)) / (size * arm)
+    return Balance(
+        residual=result.worst / E_0,
+        growth=float(np.max(-table.numbers("residual_J"), initial=0.0)) / E_0,
+        fed=float(np.max(-np.diff(heat), initial=0.0)) / E_0,
+        momentum=momentum,
+        spin=spin,
+    )
 
 
 CHECKPOINT_INTERVAL = 10.0  # s of wall time
@@ -141,7 +211,6 @@ def model_of(case: HardCase, planned: Case) -> Model:
 
 def _judged(result: SolidResult, out: Path) -> HardCaseResult:
     """Write the outcome of a run, which then holds no NaN, and judge its balances."""
-    from fem_impact.evidence.hard_cases.judge import balance
     from fem_impact.files.run_directory import CHECKPOINT
     from fem_impact.outcome.keys import known
     from fem_impact.run.solid import reduce
@@ -160,7 +229,7 @@ def _judged(result: SolidResult, out: Path) -> HardCaseResult:
 
 def _bounced(bounces: int) -> HardCaseResult:
     """Judge the bounces of a bar between two walls, by the problem of `fem-impact verify bar`."""
-    from fem_impact.evidence.problems.catalogue import verify
+    from fem_impact.evidence.problems.problem import verify
 
     done = verify("bar", {"bounces": bounces})
     checks = {check.name: check for check in done.checks}

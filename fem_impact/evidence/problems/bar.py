@@ -12,7 +12,7 @@ import meshes
 from fem_impact.evidence.problems import setups
 from fem_impact.evidence.problems.bodies import rigid_of
 from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values, within
-from fem_impact.evidence.problems.watch import ForceRecorder, Until
+from fem_impact.evidence.problems.setups import ForceRecorder, Until
 from fem_impact.evidence.references.rod_end import FOLLOWED, BarImpact, bar_speed, chain_restitution, strike
 from fem_impact.scene.impact import Impact
 from fem_impact.scene.parameter import Parameter

@@ -25,7 +25,7 @@ from fem_impact.errors import RunError, SceneError
 from fem_impact.evidence.problems import setups as steel
 from fem_impact.evidence.problems.bodies import Block, FreeBody, body_model, placed
 from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values
-from fem_impact.evidence.problems.watch import ForceRecorder
+from fem_impact.evidence.problems.setups import ForceRecorder
 from fem_impact.evidence.references.axisymmetric import Metal
 from fem_impact.evidence.references.cone import FROM, REACH, Indentation, cone_speed, indent
 from fem_impact.physics.hardening import KGF_PER_MM2, TABOR, TABOR_STRAIN, Hardening, Skin, power_hardening

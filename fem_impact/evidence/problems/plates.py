@@ -12,6 +12,7 @@ from math import exp, log, sqrt
 
 from fem_impact.evidence.problems import setups
 from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values, within
+from fem_impact.evidence.problems.setups import TipImpact, run_strike
 from fem_impact.evidence.problems.spheres import (
     MARGIN,
     StruckPlate,
@@ -22,7 +23,6 @@ from fem_impact.evidence.problems.spheres import (
     small_contact,
     sphere_model,
 )
-from fem_impact.evidence.problems.watch import TipImpact, run_strike
 from fem_impact.evidence.references.zener import PlateImpact, zener_impact
 from fem_impact.physics.plate import plate_impedance, pulse_wave
 from fem_impact.scene.barrier import Barrier

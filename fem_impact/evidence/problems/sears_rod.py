@@ -32,8 +32,8 @@ from fem_impact.errors import SceneError
 from fem_impact.evidence.problems import setups
 from fem_impact.evidence.problems.discretisation import contact_error
 from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values, within
+from fem_impact.evidence.problems.setups import run_strike
 from fem_impact.evidence.problems.spheres import MARGIN
-from fem_impact.evidence.problems.watch import run_strike
 from fem_impact.evidence.references.hertz import contact_modulus
 from fem_impact.evidence.references.rod_end import AxialImpact, bar_speed, end_law, rod_impact, sears
 from fem_impact.fem.flight import flight

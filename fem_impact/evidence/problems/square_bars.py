@@ -41,7 +41,7 @@ from fem_impact.arrays import Array
 from fem_impact.evidence.problems import setups
 from fem_impact.evidence.problems.bodies import rigid_of
 from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values, within
-from fem_impact.evidence.problems.watch import Until
+from fem_impact.evidence.problems.setups import Until
 from fem_impact.evidence.references.bricks import Bar, rebound, spring_force, wall_stress
 from fem_impact.evidence.references.rod_end import bar_speed
 from fem_impact.physics.contact import pressure_speed

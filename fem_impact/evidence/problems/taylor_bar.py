@@ -35,7 +35,7 @@ from fem_impact.arrays import Array
 from fem_impact.evidence.problems import setups as steel
 from fem_impact.evidence.problems.bodies import FreeBody, body_model, placed
 from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values, within
-from fem_impact.evidence.problems.watch import Until, follow
+from fem_impact.evidence.problems.setups import Until, follow
 from fem_impact.evidence.references.axisymmetric import Metal, taylor_bar
 from fem_impact.evidence.references.rod_end import bar_speed
 from fem_impact.physics.hardening import linear_hardening

@@ -14,8 +14,8 @@ import numpy as np
 from fem_impact.evidence.problems import setups
 from fem_impact.evidence.problems.bodies import rigid_of
 from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values, within
+from fem_impact.evidence.problems.setups import Until, follow
 from fem_impact.evidence.problems.spheres import ball_mass
-from fem_impact.evidence.problems.watch import Until, follow
 from fem_impact.evidence.references.hertz import (
     MEAN,
     contact_modulus,

@@ -22,7 +22,6 @@ from fem_impact.evidence.studies.criterion_findings import (
     crossing,
     exponent,
 )
-from fem_impact.evidence.studies.rod_runs import RodRun, among, as_table, contacts, longest_first, run_table
 from fem_impact.evidence.studies.rod_theory import spring_bounce, static_restitution, whole_ratio
 from fem_impact.evidence.studies.rods import (
     BODY,
@@ -32,7 +31,13 @@ from fem_impact.evidence.studies.rods import (
     STATES,
     TIP,
     DroppedRod,
+    RodRun,
+    among,
+    as_table,
+    contacts,
     length_of,
+    longest_first,
+    run_table,
 )
 from fem_impact.jobs.job import Failure, Job
 from fem_impact.tables.table import Table

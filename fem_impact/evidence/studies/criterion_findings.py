@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fem_impact.arrays import Array
-from fem_impact.evidence.studies.rod_runs import VIBRATION
 from fem_impact.evidence.studies.rod_theory import blind_ratio
-from fem_impact.evidence.studies.rods import BODY, PAPER_RODS, DroppedRod, length_of
+from fem_impact.evidence.studies.rods import BODY, PAPER_RODS, VIBRATION, DroppedRod, length_of
 from rigid import LIMIT
 from rigid.slenderness import EXPONENT
 

@@ -14,28 +14,26 @@ from fem_impact import Scene, load
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.evidence.studies import gamma_figures as figures
 from fem_impact.evidence.studies.gamma_figures import plain_line
-from fem_impact.evidence.studies.rod_runs import (
+from fem_impact.evidence.studies.rods import (
     CLOSE,
+    DROP_NOTES,
+    KINDS,
     LEAST,
+    MODAL_NOTE,
+    PAPER_RODS,
+    PLAIN,
     RESTITUTION,
+    STATES,
     VIBRATION,
+    DroppedRod,
     RodRun,
     among,
     as_table,
     cut_job,
+    length_of,
     longest_first,
     points_of,
     run_table,
-)
-from fem_impact.evidence.studies.rods import (
-    DROP_NOTES,
-    KINDS,
-    MODAL_NOTE,
-    PAPER_RODS,
-    PLAIN,
-    STATES,
-    DroppedRod,
-    length_of,
 )
 from fem_impact.jobs.job import Job
 from fem_impact.jobs.run import JobResults

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fem_impact.arrays import Array
-from fem_impact.evidence.studies.rod_runs import VIBRATION, among
-from fem_impact.evidence.studies.rods import BODY, KINDS, PAPER_RODS, PLAIN, STATES
+from fem_impact.evidence.studies.rods import BODY, KINDS, PAPER_RODS, PLAIN, STATES, VIBRATION, among
 from fem_impact.figures.panels import Look, Mark, Panel, Picture, Series
 from fem_impact.outcome.shares import shares
 from rigid import LIMIT, slenderness

@@ -26,8 +26,7 @@ from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.answers.v_and_v import COVERAGE, joint
 from fem_impact.arrays import Array
 from fem_impact.evidence.studies.inputs import changes, sample_values
-from fem_impact.evidence.studies.reach import SHOWN
-from fem_impact.evidence.studies.validated import NAMES, outputs, unit_sample
+from fem_impact.evidence.studies.validated import NAMES, SHOWN, outputs, unit_sample
 from fem_impact.figures.panels import Mark, Panel, Picture, Series
 from fem_impact.jobs.job import Job
 from fem_impact.jobs.run import JobResults

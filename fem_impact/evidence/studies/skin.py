@@ -17,7 +17,7 @@ from fem_impact.answers.compare import MEASURED
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.evidence.studies import joint
 from fem_impact.evidence.studies.joint import LEVEL, JointError, of_set, stored_rows
-from fem_impact.evidence.studies.reach import SHOWN
+from fem_impact.evidence.studies.validated import SHOWN
 from fem_impact.figures.panels import Mark, Panel, Picture, Series
 from fem_impact.jobs.job import Job
 from fem_impact.jobs.run import JobResults

@@ -1,9 +1,14 @@
-"""A measured set beside its runs, in the terms of ASME V&V 20: error and standard uncertainties."""
+"""A measured set beside its runs, in the terms of ASME V&V 20: error and standard uncertainties.
+
+Response surfaces give its results as polynomials of the uncertain inputs, fitted to a sample of runs, and how
+far the inputs reach towards a measurement that the model misses.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import combinations_with_replacement
 from math import hypot, sqrt
 
 import numpy as np
@@ -13,12 +18,76 @@ from fem_impact import Outcome, known, load
 from fem_impact.answers.compare import MEASURED, verdict
 from fem_impact.answers.v_and_v import COVERAGE, Comparison
 from fem_impact.arrays import Array
+from fem_impact.errors import RunError
 from fem_impact.evidence.studies.inputs import UNCERTAIN_INPUTS, sample_values
-from fem_impact.evidence.studies.response import ResponseSurface
 from rigid import Errors
 from rigid.experiments import MeasuredSet, derived_columns, measured_set
 from rigid.uncertainty import sensitivities
 from rigid.uncertainty.estimate import MOTION
+
+SPARE = 1.3  # runs over coefficients that a surface of second order needs
+
+
+@dataclass(frozen=True, slots=True)
+class ResponseSurface:
+    """Least-squares polynomials in inputs scaled to 0 ... 1 (Box & Wilson 1951, J. R. Stat. Soc. B 13, 1-45).
+
+    Attributes
+    ----------
+    coefficients : (terms, quantities) float64
+    order : 1 or 2
+    error : (quantities,) float64, root mean square error at runs that the fit was not given, by leaving out
+        one run after the other (PRESS: Allen 1974, doi:10.1080/00401706.1974.10489157)
+    """
+
+    coefficients: Array
+    order: int
+    error: Array
+
+    def __call__(self, unit: Array) -> Array:
+        """Return the quantities (n, quantities) at inputs (n, d) scaled to 0 ... 1."""
+        values: Array = _terms(unit, self.order) @ self.coefficients
+        return values
+
+
+def fit(unit: Array, values: Array) -> ResponseSurface:
+    """Return the surfaces through runs: of second order where there are enough of them, else of first.
+
+    Parameters
+    ----------
+    unit : (n, d) float64, inputs scaled to 0 ... 1
+    values : (n, quantities) float64
+
+    Raises
+    ------
+    RunError
+        There are too few runs for a surface of first order.
+
+    Examples
+    --------
+    >>> x = np.linspace(0, 1, 9)[:, None]
+    >>> surface = fit(x, 3 * x**2)
+    >>> surface.order, float(surface(np.array([[0.3]]))[0, 0].round(6))
+    (2, 0.27)
+    """
+    runs, inputs = unit.shape
+    full = (inputs + 1) * (inputs + 2) // 2
+    order = 2 if runs >= SPARE * full else 1
+    terms = _terms(unit, order)
+    if runs <= terms.shape[1]:
+        raise RunError(f"{runs} finished runs are too few for {inputs} uncertain inputs.")
+    q, r = np.linalg.qr(terms)
+    coefficients = np.linalg.solve(r, q.T @ values)
+    left_out = (values - terms @ coefficients) / (1 - np.sum(q**2, axis=1))[:, None]
+    return ResponseSurface(coefficients, order, np.sqrt(np.mean(left_out**2, axis=0)))
+
+
+def _terms(unit: Array, order: int) -> Array:
+    """Return the columns 1, x_i and, for second order, x_i x_j, with x = 2 unit - 1."""
+    x = 2 * unit - 1
+    pairs = combinations_with_replacement(range(x.shape[1]), 2) if order == 2 else ()
+    return np.column_stack([np.ones(len(x)), x, *(x[:, i] * x[:, j] for i, j in pairs)])
+
 
 SEED = 20260101  # of all samples
 DRAWN = 1024  # points at which a response surface is evaluated
@@ -121,3 +190,80 @@ def tracking_uncertainty(measured: MeasuredSet) -> dict[str, float]:
     slopes = sensitivities(lambda **v: {**v, **derived_columns(v, **measured.body, mass=measured.mass)}, at)
     sd = {name: Errors().tracking_sd * value for name, value in at.items()}
     return {q: hypot(*(float(by[name] * sd[name]) for name in by)) for q, by in slopes.items()}
+
+
+PLACES = np.linspace(0.0, 1.0, 21)  # of one input over its interval
+SHOWN = ("e", "mu", "Omega")
+MISS = "miss by"
+
+
+@dataclass(frozen=True, slots=True)
+class Reach:
+    """What inputs can do about the error of one quantity, in its unit.
+
+    Attributes
+    ----------
+    missed : the comparison
+    name, place : of the single input that brings the model nearest to the tests, and where in its interval,
+        0 to 1
+    change : by that input
+    low, high : smallest and largest change by all inputs at once
+    """
+
+    missed: Comparison
+    name: str
+    place: float
+    change: float
+    low: float
+    high: float
+
+    @property
+    def left(self) -> float:
+        """Error that all inputs together leave, 0 where they reach the measured mean."""
+        E = self.missed.E
+        return E + float(np.clip(-E, self.low, self.high))
+
+    @property
+    def sentence(self) -> str:
+        """What it would take."""
+        ends = {0.0: "at its lower end", 1.0: "at its upper end"}
+        where = ends.get(self.place, f"at {100 * self.place:.0f} % of its interval")
+        unit = " rad/s" if self.missed.quantity == "Omega" else ""
+        told = (
+            f"{self.missed.quantity} is off by {self.missed.E:+.2g}{unit}; {self.name} {where} alone changes "
+            f"it by {self.change:+.2g}, all inputs together by {self.low:+.2g} to {self.high:+.2g}"
+        )
+        return f"{told}, which leaves {self.left:+.2g} to what is not among them" if self.left else told
+
+
+def misses(found: ValidatedSet) -> list[Comparison]:
+    """Return comparisons of e, mu and Omega that show an error of the model or miss the scatter."""
+    return [
+        c for c in found.comparisons if c.quantity in SHOWN and (c.in_error or c.scatter.startswith(MISS))
+    ]
+
+
+def reach(found: ValidatedSet, missed: Comparison) -> Reach:
+    """Return what the inputs of a set, each inside its interval, can do about a missed quantity."""
+    at, nominal = NAMES.index(missed.quantity), nominal_place(found.name)
+    before = found.surface(nominal)[0, at]
+    single = np.repeat(nominal, len(UNCERTAIN_INPUTS) * len(PLACES), axis=0)
+    for i in range(len(UNCERTAIN_INPUTS)):
+        single[i * len(PLACES) : (i + 1) * len(PLACES), i] = PLACES
+    changes = found.surface(single)[:, at] - before
+    best = int(np.abs(missed.E + changes).argmin())
+    every = found.all_inputs[:, at] - before
+    return Reach(
+        missed,
+        UNCERTAIN_INPUTS[best // len(PLACES)].name,
+        float(PLACES[best % len(PLACES)]),
+        float(changes[best]),
+        float(every.min()),
+        float(every.max()),
+    )
+
+
+def reach_sentences(found: ValidatedSet) -> list[str]:
+    """Return one sentence on the missed quantities of a set; none where nothing is missed."""
+    parts = [reach(found, missed).sentence for missed in misses(found)]
+    return [f"{found.name}: {'; '.join(parts)}."] if parts else []

@@ -7,30 +7,42 @@ inputs, the share of each input in it, and the spread from test to test.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from scipy.stats import sobol_indices, uniform, wasserstein_distance
 
 from fem_impact import Outcome, Unknown, load, replace_all
-from fem_impact.answers.report import Request, StudyReport
+from fem_impact.answers.compare import MEASURED
+from fem_impact.answers.report import Request, Sheet, StudyReport
+from fem_impact.answers.v_and_v import COVERAGE, Comparison
+from fem_impact.arrays import Array
 from fem_impact.evidence.studies.inputs import UNCERTAIN_INPUTS, changes, one_mesh, sample_values
-from fem_impact.evidence.studies.response import fit
 from fem_impact.evidence.studies.sets import set_job
 from fem_impact.evidence.studies.validated import (
     DRAWN,
     KEYS,
+    MISS,
+    NAMES,
+    OUTPUTS,
+    SEED,
+    SHOWN,
     ValidatedSet,
     compared,
+    fit,
     nominal_place,
     outputs,
+    reach_sentences,
     scaled,
     unit_sample,
 )
-from fem_impact.evidence.studies.validation_report import study_report
+from fem_impact.figures.panels import Look, Mark, Panel, Picture, Series
 from fem_impact.jobs.job import Job
 from fem_impact.jobs.run import JobResults
 from fem_impact.scene.types import MEASURED_SETS
-from rigid.experiments import measured_set
+from fem_impact.tables.table import Cell, Table
+from rigid.experiments import correlations, measured_set
 
 SIZE, QUICK_SIZE = 64, 16  # runs of a set's sample
 FEWEST = 2 * len(UNCERTAIN_INPUTS)  # finished runs of a sample
@@ -86,3 +98,242 @@ def _validated(name: str, request: Request, results: JobResults) -> ValidatedSet
     u_input = np.sqrt(np.mean((every - nominal_values) ** 2, axis=0))
     comparisons = compared(measured, S, [bands[key] for key in KEYS], u_input)
     return ValidatedSet(name, measured, surface, S - nominal_values, every, tests, comparisons)
+
+
+AXES = {"e": "e", "mu": "mu", "Omega": "Omega, rad/s"}
+TITLES = {**dict(zip(NAMES, (q.name for q in MEASURED), strict=True)), "E_vib_over_E_0": "E_vib/E_0"}
+SOBOL_POINTS = 1024
+TERMS = (len(UNCERTAIN_INPUTS) + 1) * (len(UNCERTAIN_INPUTS) + 2) // 2  # of a surface of second order
+
+
+def study_report(sets: Sequence[ValidatedSet]) -> StudyReport:
+    """Return the study of the validated sets."""
+    compared = [c for study_set in sets for c in study_set.comparisons]
+    sentences = _verdict_sentences(compared)
+    takes = [_surface_sentence(sets)] if sets else []
+    takes += [sentence for study_set in sets for sentence in reach_sentences(study_set)]
+    return StudyReport(
+        "validation",
+        "Validation: error of the model, and how well it is known (ASME V&V 20)",
+        [*sentences, *takes],
+        [_errors(compared), *(_distributions(sets, name) for name in SHOWN)] if sets else (),
+        [
+            _comparison_sheet(compared),
+            _cause_sheet(sets),
+            _spread_sheet(sets),
+            _correlation_sheet(sets),
+            _surface_sheet(sets),
+        ],
+        [
+            "S is the limit of the levels of a run at the nominal inputs, D the measured mean, E = S - D.",
+            "u_num is half of their band; u_input the root mean square change from the nominal "
+            "inputs, some of which stand at the end of their interval, over all inputs at once, each uniform "
+            "over its interval, on one coarse mesh; u_D the standard error of the mean and of the tracked "
+            "velocities. They are taken as independent.",
+            "The verdict says whether E +- 2 u_val leaves out zero. The column beside the tests counts no "
+            "inputs: does S, with its band, lie in the 95 % interval of the measured mean, or within two "
+            "standard deviations of single tests (as in the study of the sets).",
+            "What it would take for a miss of e, mu or Omega comes from the response surfaces, each input "
+            "inside its interval; what they leave needs an effect or an input that is not stated.",
+            f"The model's error lies in E +- {COVERAGE:g} u_val (ASME V&V 20-2009, section 6).",
+            *(
+                f"{i.name}: {i.description}" + ("" if i.varies else "; one value for all tests of a set")
+                for i in UNCERTAIN_INPUTS
+            ),
+        ],
+        ["sobol", "qmc"],
+        [("errors", sentence) for sentence in sentences],
+    )
+
+
+def _verdict_sentences(compared: Sequence[Comparison]) -> list[str]:
+    """Return how many comparisons show an error of the model, and what limits them."""
+    if not compared:
+        return ["No set could be compared: see the failed runs."]
+    shown = [c for c in compared if c.in_error]
+    by_set = {c.set: sum(d.set == c.set for d in shown) for c in shown}
+    where = ", ".join(f"{name} {count}" for name, count in by_set.items())
+    missed = sum(c.scatter.startswith(MISS) for c in compared)
+    parts = {name: sum(getattr(c, name) == max(c.u_num, c.u_input, c.u_D) for c in compared) for name in U}
+    limits = ", ".join(f"{U[name]} in {count}" for name, count in parts.items())
+    wrong = f"; {len(shown)} do: {where}" if shown else ""
+    return [
+        f"{len(compared) - len(shown)} of {len(compared)} measured numbers show no error of the model beyond "
+        f"what its mesh, its inputs and the tests leave open{wrong}. S is computed, D measured, E = S - D; "
+        f"an error shows where E +- {COVERAGE:g} u_val leaves out zero.",
+        f"The largest uncertainty is {limits} comparisons. {missed} of the same numbers miss the scatter of "
+        "single tests by more than two standard deviations, where inputs are not counted.",
+    ]
+
+
+def _surface_sentence(sets: Sequence[ValidatedSet]) -> str:
+    """Return how well the response surfaces give runs that they were not fitted to."""
+    at = [NAMES.index(name) for name in SHOWN]
+    off = [
+        100 * study_set.surface.error[i] / study_set.comparisons[i].u_input for study_set in sets for i in at
+    ]
+    return (
+        "What each miss of e, mu and Omega would take, by response surfaces that give runs left out of them "
+        f"within {np.median(off):.0f} % of u_input (median; worst {max(off):.0f} %):"
+    )
+
+
+U = {"u_num": "the mesh", "u_input": "the inputs", "u_D": "the measurement"}
+
+
+def _errors(compared: Sequence[Comparison]) -> Picture:
+    """Return the error and its interval of every set, one panel a quantity."""
+    sets = tuple(dict.fromkeys(c.set for c in compared))
+    panels = []
+    for name in SHOWN:
+        rows = [c for c in compared if c.quantity == name]
+        at = np.array([sets.index(c.set) for c in rows], dtype=float)
+        widths = [COVERAGE * c.u_val for c in rows]
+        errors = Series("E = S - D, ± 2 u_val", at, [c.E for c in rows], "points", 0, widths)
+        panels.append(
+            Panel(f"Error of {name}", "set", AXES[name], (errors,), levels=(Mark(0.0),), names=sets)
+        )
+    caption = "Error of the model and the interval that contains it, set by set."
+    return Picture("errors", caption, tuple(panels), 1)
+
+
+def _distributions(sets: Sequence[ValidatedSet], name: str) -> Picture:
+    """Return the distribution of a quantity in each set: model over all inputs, test to test, measured."""
+    at, panels = NAMES.index(name), []
+    for study_set in sets:
+        model, tests = (
+            values[:, at] + study_set.shift[at] for values in (study_set.all_inputs, study_set.tests)
+        )
+        series = (
+            _steps("model, all inputs", model, "line", 5),
+            _steps("model, test to test", tests, "dashed", 0),
+            _steps("measured tests", study_set.measured.recomputed()[name], "points", 1),
+        )
+        panels.append(Panel(study_set.name, AXES[name], "share below", series))
+    caption = f"{name}: share of tests below a value, computed and measured."
+    return Picture(f"distribution-{name}", caption, tuple(panels), 3)
+
+
+def _steps(label: str, values: Array, look: Look, colour: int) -> Series:
+    """Return the empirical distribution of values, at most 64 points of it."""
+    ordered = np.sort(values)
+    rank = (np.arange(len(ordered)) + 0.5) / len(ordered)
+    every = slice(None, None, max(1, len(ordered) // 64))
+    return Series(label, ordered[every], rank[every], look, colour)
+
+
+def _comparison_sheet(compared: Sequence[Comparison]) -> Sheet:
+    head = ("set", "quantity", "S", "D", "E", "u_num", "u_input", "u_D", "u_val", "low", "high", "verdict")
+    rows = [
+        (
+            *(c.set, c.quantity, c.S, c.D, c.E, c.u_num, c.u_input, c.u_D, c.u_val),
+            *(*c.interval, c.verdict, c.scatter),
+        )
+        for c in compared
+    ]
+    return Sheet(
+        "validation",
+        "Error of the model E = S - D and its uncertainty",
+        Table.of((*head, "beside the tests"), rows),
+    )
+
+
+def _cause_sheet(sets: Sequence[ValidatedSet]) -> Sheet:
+    """Return the share of each input in the variance of each quantity: total Sobol indices."""
+    names = [i.name for i in UNCERTAIN_INPUTS]
+    rows: list[tuple[Cell, ...]] = [
+        (study_set.name, TITLES[output], float(error), *map(float, shares))
+        for study_set in sets
+        for output, shares, error in zip(
+            OUTPUTS, _total_indices(study_set), study_set.surface.error, strict=True
+        )
+        if output in (*SHOWN, "E_vib_over_E_0")
+    ]
+    caption = (
+        "Share of each input in the variance of the results (total Sobol index of the response surface), and "
+        "the surface's own error"
+    )
+    return Sheet("causes", caption, Table.of(("set", "quantity", "surface_error", *names), rows))
+
+
+def _total_indices(study_set: ValidatedSet) -> Array:
+    """Return total Sobol indices (outputs, inputs), none below zero."""
+    sample = sobol_indices(
+        func=lambda unit: study_set.surface(unit.T).T,
+        n=SOBOL_POINTS,
+        dists=[uniform()] * len(UNCERTAIN_INPUTS),
+        rng=np.random.default_rng(SEED),
+    )
+    return np.asarray(np.maximum(sample.total_order, 0.0))
+
+
+def _spread_sheet(sets: Sequence[ValidatedSet]) -> Sheet:
+    """Return spreads by test-to-test inputs and by all, the measured one, and the area metric."""
+    rows: list[tuple[Cell, ...]] = []
+    for study_set in sets:
+        measured = study_set.measured.recomputed()
+        for at, name in enumerate(OUTPUTS):
+            model, tests = (
+                values[:, at] + study_set.shift[at] for values in (study_set.all_inputs, study_set.tests)
+            )
+            seen = measured.get(name)
+            tested: tuple[Cell, ...] = (None, None, None)
+            if seen is not None:
+                area = wasserstein_distance(seen, model)
+                tested = (float(seen.mean()), float(seen.std(ddof=1)), float(area))
+            moments = (float(f) for v in (tests, model) for f in (v.mean(), v.std(ddof=1)))
+            rows.append((study_set.name, TITLES[name], *moments, *tested))
+    head = (
+        "set",
+        "quantity",
+        "mean_tests",
+        "sd_tests",
+        "mean_all",
+        "sd_all",
+        "measured_mean",
+        "measured_sd",
+        "area",
+    )
+    caption = (
+        "Mean and standard deviation over the inputs that vary from test to test, over all inputs, measured; "
+        "area between computed and measured distributions (area metric, in the unit of the quantity)"
+    )
+    return Sheet("spread", caption, Table.of(head, rows))
+
+
+def _correlation_sheet(sets: Sequence[ValidatedSet]) -> Sheet:
+    rows = []
+    for study_set in sets:
+        tests = {name: study_set.tests[:, NAMES.index(name)] for name in SHOWN}
+        measured = {name: study_set.measured.recomputed()[name] for name in SHOWN}
+        model = correlations(tests)
+        for pair, seen in correlations(measured).items():
+            rows.append((study_set.name, ", ".join(pair), model[pair].r, seen.r, seen.low, seen.high, seen.n))
+    head = ("set", "pair", "model_r", "measured_r", "measured_low", "measured_high", "tests")
+    caption = "Correlation within a set, with Fisher's 95 % interval of the measured one"
+    return Sheet("correlations", caption, Table.of(head, rows))
+
+
+def _surface_sheet(sets: Sequence[ValidatedSet]) -> Sheet:
+    """Return the response surfaces of e, mu and Omega, from which other constants can be judged."""
+    rows: list[tuple[Cell, ...]] = []
+    for study_set in sets:
+        for at in (NAMES.index(name) for name in SHOWN):
+            c, coefficients = study_set.comparisons[at], study_set.surface.coefficients[:, at]
+            known = (c.D, c.u_num, c.u_D, study_set.surface.error[at], study_set.shift[at])
+            second = np.zeros(TERMS - len(coefficients))  # of a surface of first order
+            rows.append((study_set.name, c.quantity, *map(float, (*known, *coefficients, *second))))
+    head = (
+        "set",
+        "quantity",
+        "D",
+        "u_num",
+        "u_D",
+        "surface_error",
+        "shift",
+        *(f"c{i}" for i in range(TERMS)),
+    )
+    caption = (
+        "Coefficients of the response surfaces (1, x_i, x_i x_j, with x from -1 to 1 over each interval)"
+    )
+    return Sheet("surfaces", caption, Table.of(head, rows), shown=False)

@@ -11,9 +11,15 @@ from fem_impact.answers.report import Request
 from fem_impact.case.case import Case
 from fem_impact.case.zones import face_reach
 from fem_impact.errors import ResultError, RunError, SceneError
-from fem_impact.evidence.hard_cases.judge import Balance, balance
 from fem_impact.evidence.hard_cases.scenes import CASES
-from fem_impact.evidence.hard_cases.study import HardCaseJob, HardCaseResult, conclude, model_of
+from fem_impact.evidence.hard_cases.study import (
+    Balance,
+    HardCaseJob,
+    HardCaseResult,
+    balance,
+    conclude,
+    model_of,
+)
 from fem_impact.jobs.job import Failure
 from fem_impact.options import RunOptions
 from fem_impact.outcome.limitation import texts

@@ -9,7 +9,7 @@ import pytest
 
 import meshes
 from fem_impact.evidence.problems.bodies import FreeBody, body_model
-from fem_impact.evidence.problems.catalogue import verify
+from fem_impact.evidence.problems.problem import verify
 from fem_impact.evidence.problems.waves import Probe, frequencies
 from fem_impact.evidence.references.free_modes import cylinder_frequencies
 from fem_impact.fem.eigen import rod_modes

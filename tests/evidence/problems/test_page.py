@@ -4,8 +4,7 @@ import re
 from pathlib import Path
 
 from fem_impact.cli.main import main
-from fem_impact.evidence.problems.catalogue import HEAD, PROBLEMS, page
-from fem_impact.evidence.problems.problem import Check, ProblemCost, Verification
+from fem_impact.evidence.problems.problem import HEAD, PROBLEMS, Check, ProblemCost, Verification, page
 
 PAGE = Path(__file__).parents[3] / "docs" / "evidence" / "verification.md"
 

@@ -7,8 +7,7 @@ import pytest
 
 from fem_impact.cli.main import main
 from fem_impact.errors import SceneError, UsageError
-from fem_impact.evidence.problems.catalogue import PROBLEMS, problem, verify
-from fem_impact.evidence.problems.problem import Check, Problem, Solved
+from fem_impact.evidence.problems.problem import PROBLEMS, Check, Problem, Solved, problem, verify
 from fem_impact.scene.parameter import Parameter
 
 LENGTH = Parameter("length", "of it", "length", 0.02, 2.0, default=0.24)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from fem_impact.evidence.problems.catalogue import verify
+from fem_impact.evidence.problems.problem import verify
 
 
 def test_one_strike_and_a_few_bounces():

@@ -4,7 +4,7 @@ import pytest
 
 from fem_impact.errors import SceneError
 from fem_impact.evidence.problems import hardness_cone
-from fem_impact.evidence.problems.catalogue import verify
+from fem_impact.evidence.problems.problem import verify
 from fem_impact.evidence.references.cone import indent
 
 VALUES = hardness_cone.PROBLEM.values({})

@@ -5,8 +5,8 @@ from math import cos, radians, sin
 import pytest
 
 from fem_impact.errors import SceneError
-from fem_impact.evidence.problems.catalogue import verify
 from fem_impact.evidence.problems.oblique_rod import NAMES
+from fem_impact.evidence.problems.problem import verify
 
 SHORT = {"length": "80 mm", "v_n": 2.97, "v_t": 2.97}
 BRIEF = {"length": "50 mm", "v_n": 8.0, "max_time": 1e-5}

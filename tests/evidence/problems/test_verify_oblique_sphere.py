@@ -4,7 +4,7 @@ from math import atan
 
 import pytest
 
-from fem_impact.evidence.problems.catalogue import verify
+from fem_impact.evidence.problems.problem import verify
 
 COARSE = {"cells": 2.3, "across": 8}
 

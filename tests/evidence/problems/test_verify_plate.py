@@ -3,7 +3,7 @@
 import pytest
 
 from fem_impact.errors import SceneError
-from fem_impact.evidence.problems.catalogue import verify
+from fem_impact.evidence.problems.problem import verify
 
 
 def held(values):

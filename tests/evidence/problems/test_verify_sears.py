@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fem_impact.evidence.problems.catalogue import problem, verify
+from fem_impact.evidence.problems.problem import problem, verify
 from fem_impact.evidence.problems.sears_rod import rod_model
 from fem_impact.evidence.references.hertz import contact_modulus
 from fem_impact.evidence.references.rod_end import sears

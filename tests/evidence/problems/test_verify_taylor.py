@@ -3,7 +3,7 @@
 import pytest
 
 from fem_impact.errors import RunError, SceneError
-from fem_impact.evidence.problems.catalogue import verify
+from fem_impact.evidence.problems.problem import verify
 
 COARSE = {"slices": 20, "across": 6}
 PERFECT = {"E": "110 GPa", "nu": 0.3, "rho": 8970, "yield_stress": "314 MPa", "hardening": 0.0}

@@ -2,7 +2,7 @@
 
 import pytest
 
-from fem_impact.evidence.problems.catalogue import problem, verify
+from fem_impact.evidence.problems.problem import problem, verify
 from fem_impact.evidence.problems.thornton_tip import judged_slope
 
 

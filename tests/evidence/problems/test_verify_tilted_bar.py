@@ -3,7 +3,7 @@
 import pytest
 
 from fem_impact.errors import SceneError
-from fem_impact.evidence.problems.catalogue import verify
+from fem_impact.evidence.problems.problem import verify
 
 HARD, SPRINGS = "normal rebound, hard contact", "normal rebound, springs of public codes"
 

@@ -5,9 +5,9 @@ import pytest
 
 from fem_impact.errors import SceneError
 from fem_impact.evidence.problems.bodies import rigid_of
-from fem_impact.evidence.problems.catalogue import problem, verify
+from fem_impact.evidence.problems.problem import problem, verify
+from fem_impact.evidence.problems.setups import run_strike
 from fem_impact.evidence.problems.spheres import ball_mass, plain_hertz, sphere_model
-from fem_impact.evidence.problems.watch import run_strike
 
 
 def errors(found):

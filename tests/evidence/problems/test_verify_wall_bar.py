@@ -3,7 +3,7 @@
 import pytest
 
 from fem_impact.errors import SceneError
-from fem_impact.evidence.problems.catalogue import verify
+from fem_impact.evidence.problems.problem import verify
 
 OTHER = {"length": "0.12 m", "side": "15 mm", "E": "70 GPa", "nu": 0.4, "rho": 2700, "cells": 6, "speed": 7.0}
 

@@ -4,7 +4,7 @@ from math import pi
 
 import pytest
 
-from fem_impact.evidence.problems.catalogue import verify
+from fem_impact.evidence.problems.problem import verify
 
 
 def test_waves():

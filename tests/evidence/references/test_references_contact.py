@@ -10,8 +10,11 @@ from scipy.optimize import brentq
 from fem_impact.evidence.references import oblique, rod_edge
 from fem_impact.evidence.references.finite_sphere import (
     ball_excess,
+    ball_impact,
+    ball_modes,
     ball_shear,
     braked,
+    modes_of_order,
     pole_load,
     surface_shape,
 )
@@ -21,7 +24,6 @@ from fem_impact.evidence.references.oblique import ObliqueRod, oblique_drop, obl
 from fem_impact.evidence.references.rod_edge import edge_excess
 from fem_impact.evidence.references.rod_end import end_excess, end_law, rod_impact, sears
 from fem_impact.evidence.references.sphere import oblique_ball, oblique_sphere
-from fem_impact.evidence.references.vibrating_ball import ball_impact, ball_modes, modes_of_order
 from fem_impact.evidence.references.waves import radiated_energy, radiation_resistance, shear_resistance
 
 R, RHO, E = 9.5e-3, 7850.0, 210e9

@@ -31,7 +31,6 @@ from fem_impact.evidence.studies.criterion import (
     solid_rows,
 )
 from fem_impact.evidence.studies.criterion_findings import HERTZ, crossing, exponent, solid_onsets
-from fem_impact.evidence.studies.rod_runs import run_table
 from fem_impact.evidence.studies.rod_theory import (
     blind_ratio,
     contact_time,
@@ -39,7 +38,7 @@ from fem_impact.evidence.studies.rod_theory import (
     spring_drop,
     static_restitution,
 )
-from fem_impact.evidence.studies.rods import PAPER_RODS, STATES, DroppedRod, length_of
+from fem_impact.evidence.studies.rods import PAPER_RODS, STATES, DroppedRod, length_of, run_table
 from fem_impact.jobs.job import Failure, Job
 from fem_impact.modal.impact import solve
 from fem_impact.modal.rod import modal_rod

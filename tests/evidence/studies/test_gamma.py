@@ -23,15 +23,18 @@ from fem_impact.evidence.studies.gamma import (
     plan,
     share,
 )
-from fem_impact.evidence.studies.rod_runs import (
+from fem_impact.evidence.studies.rods import (
     FIRST,
+    PAPER_RODS,
     SLACK,
+    STATES,
+    DroppedRod,
     RodRun,
     cut_job,
+    length_of,
     points_of,
     run_table,
 )
-from fem_impact.evidence.studies.rods import PAPER_RODS, STATES, DroppedRod, length_of
 from fem_impact.jobs.job import Failure
 from fem_impact.scene.library import surfaces
 from fem_impact.scene.shipped import load

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fem_impact.errors import RunError
-from fem_impact.evidence.studies.order import limit
+from fem_impact.evidence.studies.convergence import limit
 
 SIZES = np.array([3.0, 2.25, 1.8, 1.5, 1.0])
 

@@ -25,9 +25,15 @@ from fem_impact.evidence.studies.inputs import (
     rates,
     sample_values,
 )
-from fem_impact.evidence.studies.reach import reach, reach_sentences
-from fem_impact.evidence.studies.response import fit
-from fem_impact.evidence.studies.validated import KEYS, NAMES, nominal_place, unit_sample
+from fem_impact.evidence.studies.validated import (
+    KEYS,
+    NAMES,
+    fit,
+    nominal_place,
+    reach,
+    reach_sentences,
+    unit_sample,
+)
 from fem_impact.evidence.studies.validation import conclude, plan
 from fem_impact.jobs.job import Failure
 from fem_impact.outcome.record import KEY_TABLE
