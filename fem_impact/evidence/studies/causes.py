@@ -13,6 +13,7 @@ from fem_impact import Scene, load, replace_all
 from fem_impact.answers.compare import MEASURED, ComparedQuantity
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.evidence.studies.declared import DeclaredSweep, Runs, table_of
+from fem_impact.evidence.studies.report_parts import rests_on
 from fem_impact.evidence.studies.sets import QUICK
 from fem_impact.figures.panels import Panel, Picture, Series
 from fem_impact.tables.table import Table
@@ -64,10 +65,7 @@ def _report(runs: Runs) -> StudyReport:
         [_answer(table), *sentences] if rows else ["No set has all its runs: see those that failed."],
         [_picture(table)] if rows else (),
         [Sheet("causes", "Results by step; measured mean and its 95 % interval", Table.of(head, rows))],
-        [
-            "One run a step, all on the same mesh at one place of the barrier's grid: no band of meshes.",
-            "What rate, hardness and skin stand for is told in docs/explanation/inputs.md.",
-        ],
+        rests_on("causes"),
         conclusions=[("causes", sentence) for sentence in sentences],
     )
 

@@ -20,6 +20,7 @@ from fem_impact.answers.refine.work import Levels, LevelsJob
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.arrays import Array
 from fem_impact.errors import RunError
+from fem_impact.evidence.studies.report_parts import rests_on
 from fem_impact.figures.panels import Panel, Picture, Series
 from fem_impact.jobs.job import Failure
 from fem_impact.outcome.record import KEY_TABLE
@@ -161,10 +162,7 @@ def conclude(request: Request, results: Results) -> StudyReport:
         [*_answer(rows), *(_sentence(row) for row in rows if row["quantity"] in STATED), *_held(rows)],
         (Picture("convergence", CAPTION, panels),) if rows else (),
         (_sheet(rows),),
-        (
-            "Levels are those of a run and one finer, each made from the record of the one before.",
-            "Order, limit and band: Eca and Hoekstra 2014, doi:10.1016/j.jcp.2014.01.006.",
-        ),
+        rests_on("convergence"),
         ("convergence",),
         [("convergence", _sentence(row)) for row in rows if row["quantity"] == "e"],
     )

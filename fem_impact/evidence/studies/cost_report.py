@@ -11,6 +11,7 @@ from fem_impact.answers.cost.measure import PLACES, CostStudy
 from fem_impact.answers.refine.extrapolate import quantity_limits
 from fem_impact.answers.refine.quantities import TARGETED
 from fem_impact.answers.report import Sheet, StudyReport
+from fem_impact.evidence.studies.report_parts import rests_on
 from fem_impact.figures.panels import Look, Mark, Panel, Picture, Series
 from fem_impact.tables.table import Cell, Table
 from fem_impact.tables.text import plain
@@ -30,20 +31,6 @@ LOOKS: dict[str, tuple[str, Look, str]] = {
     "two places": ("levels, two places of the grid", "triangles", "green"),
 }
 """Label, look and colour of each kind of setting."""
-GUIDE = (
-    "The error of levels is the half-width of the band that they tell, or their distance from the limit of "
-    "the finest levels at two places where that is more: levels may agree by chance. That of a model without "
-    "a mesh is its distance from that limit and the half-width of the limit.",
-    "Errors are divided by the value of the quantity, at least by 0.05 of e and by 0.5 % of E_0 of an "
-    "energy: 2 % of E_vib are then at least 1e-4 of E_0.",
-    "A time is the processor time of all levels with their set-up, on one core; two free cores take about "
-    "half of it where levels have two places.",
-    "Levels are those of a default run, and finer ones after it. With two places of the barrier's grid, half "
-    "a cell apart, the scatter by the place is known, and bands are about a third as wide.",
-    "Without savings no small elements are made heavier, but those of the thin rows at the surface "
-    "(`accuracy.mass_scaling = 1`), and the finest cells fill all of the zone that may yield "
-    '(`accuracy.fine_zone = "even"`).',
-)
 
 
 def scene_report(
@@ -57,7 +44,7 @@ def scene_report(
         [" ".join(answers(cost, names, target, budget)), *_failed(cost)],
         [_picture({cost.scene.id: cost.settings}, names, panels)],
         [Sheet(name, caption, table) for name, caption, table in cost_tables(cost, names)],
-        GUIDE,
+        rests_on("cost"),
     )
 
 
@@ -95,7 +82,7 @@ def paper_report(costs: Mapping[str, CostStudy]) -> StudyReport:
         [answer, *(sentence for cost in costs.values() for sentence in _failed(cost))],
         [_picture(shown, TARGETED, panels)],
         [_price_sheet(costs), _setting_sheet(costs), _level_sheet(costs)],
-        GUIDE,
+        rests_on("cost"),
         conclusions=[(FIGURE, answer)],
     )
 

@@ -22,11 +22,10 @@ from fem_impact.evidence.studies.criterion_findings import (
     crossing,
     exponent,
 )
+from fem_impact.evidence.studies.report_parts import rests_on
 from fem_impact.evidence.studies.rod_theory import spring_bounce, static_restitution, whole_ratio
 from fem_impact.evidence.studies.rods import (
     BODY,
-    DROP_NOTES,
-    MODAL_NOTE,
     PAPER_RODS,
     STATES,
     TIP,
@@ -69,18 +68,6 @@ BLIND, ENDS = "over friction", "elastic, by finite elements"
 """Families of elastic rods over friction, and of those that confirm the modal fidelity."""
 Results = Mapping[str, Outcome | Levels | Failure]
 
-ASSUMPTIONS = (
-    *DROP_NOTES,
-    MODAL_NOTE,
-    "Yielding, contaminated and machined: finite elements, both rods on the same levels of meshes; the band "
-    "is that of the difference of e with and without vibration. All other families: modes, without a band.",
-    "Error of rigid theory: change of e, at the worst of the angles from 1 to 80 degrees, against a "
-    "rod that cannot vibrate on the same contact. At 0 degrees a flat face has no one contact point.",
-    "Linear spring: bending and stretching modes of the slender rod, one stiffness for all rods, as "
-    "long a contact as Hertz' for 19 mm, gamma 26.45, 45 degrees, 2.1 m/s; solved exactly.",
-    "T1: first bending period. tau: contact time of the rod that cannot vibrate, at the angle of its "
-    "largest error; or of its whole mass, falling at full speed onto the contact of 45 degrees.",
-)
 ANGLES_CSV = "contact gamma diameter_m angle_deg e e_rigid band_of_change T1_over_tau".split()
 RODS_CSV = "contact gamma diameter_m length_m T1_over_tau T1_over_tau_whole error_of_e spread_of_e".split()
 GIVE_CSV = "gamma angle_deg e_rigid e_static_give e_vibrating".split()
@@ -245,7 +232,7 @@ def conclude(request: Request, results: Results) -> StudyReport:
             Sheet("static_give", GIVE_CAPTION, as_table(upright[GIVE_CSV]), shown=False),
             Sheet("curves", "Every rod and angle", as_table(angles[ANGLES_CSV]), shown=False),
         ],
-        ASSUMPTIONS,
+        [*rests_on("dropped rods"), *rests_on("criterion")],
         ["modal", "thornton", "slenderness"],
         [(name, sentence) for name, group in sentences.items() for sentence in group],
     )

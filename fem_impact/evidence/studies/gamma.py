@@ -14,12 +14,11 @@ from fem_impact import Scene, load
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.evidence.studies import gamma_figures as figures
 from fem_impact.evidence.studies.gamma_figures import plain_line
+from fem_impact.evidence.studies.report_parts import rests_on
 from fem_impact.evidence.studies.rods import (
     CLOSE,
-    DROP_NOTES,
     KINDS,
     LEAST,
-    MODAL_NOTE,
     PAPER_RODS,
     PLAIN,
     RESTITUTION,
@@ -56,17 +55,6 @@ QUICK_REDUCED = REDUCED[::11]
 PLACES = 2  # of the barrier's grid, of a rod that can vibrate
 ONE_PERCENT = 0.01  # of E_0: beyond it vibration counts as large
 ALIKE = 0.1  # m^-0.3815, difference of gammas that are called one
-
-NOTES = (
-    *DROP_NOTES,
-    "The paper's rods have tip B here, as in its Tables 3 to 6; tip A (nose) of Table 2 is another contact.",
-    "Finite elements run as users run them, on levels from coarse to fine; limits of vanishing elements and "
-    "their bands are those of the levels.",
-    "tau: contact time of the same rod if it could not vibrate. T1: first bending period.",
-    "Measured sets: their own scenes, with their own speeds, as in the study of the sets; the curve is that "
-    "of one speed, 2.1 m/s.",
-    MODAL_NOTE,
-)
 
 
 def line(quick: bool) -> list[DroppedRod]:
@@ -158,7 +146,7 @@ def conclude(request: Request, results: JobResults) -> StudyReport:
         sentences,
         pictures,
         sheets,
-        NOTES,
+        [*rests_on("dropped rods"), *rests_on("gamma")],
         ["modal", "thornton", "slenderness"],
         [("vibration", sentence) for sentence in sentences],
     )

@@ -13,11 +13,9 @@ how their changes belong together, and the tests of a set, how their means do.
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
-from importlib.resources import files
 
 import numpy as np
 
@@ -26,11 +24,11 @@ from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.answers.v_and_v import COVERAGE, joint
 from fem_impact.arrays import Array
 from fem_impact.evidence.studies.inputs import changes, sample_values
+from fem_impact.evidence.studies.report_parts import asked_sets, data_rows, error_panel, rests_on
 from fem_impact.evidence.studies.validated import NAMES, SHOWN, outputs, unit_sample
 from fem_impact.figures.panels import Mark, Panel, Picture, Series
 from fem_impact.jobs.job import Job
 from fem_impact.jobs.run import JobResults
-from fem_impact.scene.types import MEASURED_SETS
 from fem_impact.tables.table import Table
 from rigid.experiments import measured_set
 
@@ -102,17 +100,13 @@ def _scaled(covariance: Array, u: Array) -> Array:
 
 def plan(request: Request, results: JobResults) -> list[Job]:
     """Return runs of the reduced model: each set as stated, and over the sample of its inputs."""
-    return [job for name in sets(request) for job in (_nominal(name), *_sample(name, request))]
+    return [job for name in asked_sets(request) for job in (_nominal(name), *_sample(name, request))]
 
 
 def conclude(request: Request, results: JobResults) -> StudyReport:
     """Return the study: each set's distance, and what it is made of."""
-    found = [
-        one
-        for name in sets(request)
-        if (one := of_set(name, request, results, stored_rows()[name])) is not None
-    ]
-    return report_of(found)
+    of_sets = (of_set(name, request, results, stored_rows()[name]) for name in asked_sets(request))
+    return report_of([one for one in of_sets if one is not None])
 
 
 def report_of(found: Sequence[JointError]) -> StudyReport:
@@ -131,15 +125,7 @@ def report_of(found: Sequence[JointError]) -> StudyReport:
         sentences,
         [_picture(found)] if found else (),
         [Sheet("joint", "Joint error of each set", Table.of(HEAD, rows))],
-        [
-            "e, mu, Omega: E = S - D. D2 is their distance of Mahalanobis, p its probability without an "
-            f"error of the model (three degrees of freedom); below {LEVEL:g} the set is rejected. Alone: "
-            f"numbers beyond {COVERAGE:g} u_val. Shares: what of D2 is each number's, given the others; "
-            "below 0 where it makes the others likelier.",
-            "S, D and their uncertainties are those of the validation study by finite elements; that inputs "
-            "move e, mu and Omega together is taken from the reduced model, and that measured means do, from "
-            "the tests of the set.",
-        ],
+        rests_on("joint", LEVEL=LEVEL, COVERAGE=COVERAGE),
         conclusions=[("joint", sentence) for sentence in sentences],
     )
 
@@ -170,23 +156,16 @@ def _picture(found: Sequence[JointError]) -> Picture:
 
     sets, at = tuple(one.set for one in found), np.arange(len(found), dtype=float)
     limit = float(chi2.isf(LEVEL, len(SHOWN)))
-    alone = tuple(
-        Series(name, [one.E[k] / one.u[k] for one in found], at, "points", k) for k, name in enumerate(SHOWN)
-    )
+    alone = {name: [(i, one.E[k] / one.u[k]) for i, one in enumerate(found)] for k, name in enumerate(SHOWN)}
     together = Series("D2", [one.distance for one in found], at, "points", 3)
     panels = (
-        Panel("One by one", "E / u_val", "", alone, (Mark(-COVERAGE), Mark(COVERAGE)), rows=sets),
+        error_panel("One by one", sets, alone),
         Panel("Together", "D2", "", (together,), (Mark(limit, f"{100 * LEVEL:.0f} %"),), rows=sets),
     )
     caption = (
         "Errors over their uncertainty, one by one (beyond 2: an error) and together (right of the line)."
     )
     return Picture("joint", caption, panels, columns=2)
-
-
-def sets(request: Request) -> tuple[str, ...]:
-    """Return the requested sets; by default all, or one of the quick study."""
-    return request.ids or (("t5b",) if request.quick else MEASURED_SETS)
 
 
 def _nominal(name: str) -> Job:
@@ -224,8 +203,7 @@ def of_set(
 @cache
 def stored_rows() -> dict[str, list[dict[str, float]]]:
     """Return of each set a row a number of `SHOWN`, by finite elements."""
-    text = files("fem_impact.evidence.studies").joinpath("data", "validation.csv").read_text(encoding="utf-8")
-    rows = {(row["set"], row["quantity"]): row for row in csv.DictReader(text.splitlines())}
+    rows = {(row["set"], row["quantity"]): row for row in data_rows("validation.csv")}
     keys = "S", "D", "u_num", "u_input", "u_D"
     return {
         name: [{key: float(rows[name, quantity][key]) for key in keys} for quantity in SHOWN]

@@ -6,10 +6,8 @@ sphere is a scene. Nothing is fitted: strengths are those of the library, fricti
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from importlib.resources import files
 from math import cos, exp, radians, sin, sqrt
 from typing import Any
 
@@ -23,7 +21,8 @@ from fem_impact.answers.v_and_v import COVERAGE, Comparison, joint
 from fem_impact.arrays import Array
 from fem_impact.evidence.problems import taylor_bar
 from fem_impact.evidence.studies.joint import LEVEL
-from fem_impact.figures.panels import Mark, Panel, Picture, Series
+from fem_impact.evidence.studies.report_parts import comparison_table, data_rows, error_panel, rests_on
+from fem_impact.figures.panels import Picture
 from fem_impact.jobs.job import Failure
 from fem_impact.scene.library import material
 from fem_impact.scene.read import read_dict
@@ -91,7 +90,7 @@ def considere_modulus(start: float, top: float) -> float:
 
 def rods() -> tuple[Rod, ...]:
     """Return the rods in the order of the file."""
-    rows = csv.reader(_lines("taylor_rods.csv")[1:])
+    rows = ([*row.values()] for row in data_rows("taylor_rods.csv"))
     return tuple(
         Rod(series, metal, *(float(cell or "nan") for cell in cells)) for series, metal, *cells in rows
     )
@@ -100,17 +99,10 @@ def rods() -> tuple[Rod, ...]:
 def spheres() -> dict[str, tuple[str, float, float]]:
     """Return quantity, angle, degrees, and measured value of each point, by the name of its job."""
     names = {"e_t": "e_t", "omega_rad_s": "Omega"}
-    points = [(r["quantity"], float(r["impact_angle_deg"]), float(r["value"])) for r in _points()]
+    points = [
+        (r["quantity"], float(r["impact_angle_deg"]), float(r["value"])) for r in data_rows("kharaz2001.csv")
+    ]
     return {f"{names[q]} at {at:.1f} deg": (names[q], at, value) for q, at, value in points if q in names}
-
-
-def _points() -> list[dict[str, str]]:
-    return list(csv.DictReader(_lines("kharaz2001.csv")))
-
-
-def _lines(name: str) -> list[str]:
-    text = files("fem_impact.evidence.studies").joinpath("data", name).read_text(encoding="utf-8")
-    return [line for line in text.splitlines() if not line.startswith("#")]
 
 
 def sphere_scene(angle: float) -> Scene:
@@ -227,12 +219,7 @@ def conclude(request: Request, results: Results) -> StudyReport:
 
 def report_of(found: Sequence[OthersSeries]) -> StudyReport:
     """Return the study of series."""
-    columns = ("S", "D", "E", "u_num", "u_input", "u_D", "u_val")
-    rows = [
-        (one.set, one.quantity, *(getattr(one, name) for name in columns), *one.interval, one.verdict)
-        for series in found
-        for one in series.comparisons
-    ]
+    every = [one for series in found for one in series.comparisons]
     table = [
         (
             *(series.name, len(series.comparisons), sum(one.in_error for one in series.comparisons)),
@@ -253,26 +240,9 @@ def report_of(found: Sequence[OthersSeries]) -> StudyReport:
                 "Each series",
                 Table.of(("series", "numbers", "in error", "mean E/D", "D2", "p", "jointly"), table),
             ),
-            Sheet(
-                "others",
-                "Every number: E = S - D",
-                Table.of(("series", "number", *columns, "low", "high", "verdict"), rows),
-            ),
+            Sheet("others", "Every number: E = S - D", comparison_table(every, ("series", "number"))),
         ],
-        [
-            "Rods: read as numbers in a public repository that stores them with the names of their authors "
-            "(HighRateExptData), not in the publications. The wall is rigid and without friction, the law "
-            "linear and without rate. u_input: root mean square change over a flow stress from the library's "
-            f"up to {FASTER['aluminium-6061-t6']:g} (6061-T6) or {FASTER['steel-4340']:g} (4340) times it; "
-            "u_D: scatter about their own curve over rho v^2. No uncertainty of speeds was found.",
-            "Spheres: Kharaz, Gorham and Salman 2001, points that others read off the figures; u_D is that "
-            "of the reading. No interval of an input was found: u_input is 0. Friction 0.092 is quoted with "
-            "the tests, whose sliding rebounds, over 30 degrees, gave it: those are no test of it. "
-            "By momentum a sphere that leaves with e_t spins with 2.5 (1 - e_t) v_t / R: at 39 and 60 "
-            "degrees the published points contradict each other by 6 and 13 %, more than their reading.",
-            "D2: distance of Mahalanobis of all errors of a series; p: its probability without an error of "
-            f"the model, below {LEVEL:g} the series is rejected.",
-        ],
+        rests_on("others", LEVEL=LEVEL, aluminium=FASTER["aluminium-6061-t6"], steel=FASTER["steel-4340"]),
         conclusions=[("others", sentence) for sentence in sentences],
     )
 
@@ -290,18 +260,11 @@ def _sentence(series: OthersSeries) -> str:
 
 
 def _picture(found: Sequence[OthersSeries]) -> Picture:
-    names = tuple(series.name for series in found)
-    points = tuple(
-        Series(
-            name,
-            [one.E / one.u_val for one in series.comparisons],
-            [at] * len(series.comparisons),
-            "points",
-            at,
-        )
-        for at, (name, series) in enumerate(zip(names, found, strict=True))
-    )
-    panel = Panel("Errors", "E / u_val", "", points, (Mark(-COVERAGE), Mark(COVERAGE)), rows=names)
+    errors = {
+        series.name: [(at, one.E / one.u_val) for one in series.comparisons]
+        for at, series in enumerate(found)
+    }
+    panel = error_panel("Errors", tuple(errors), errors)
     return Picture(
         "others", "Errors over their uncertainty; beyond 2 the model has one.", (panel,), columns=1
     )

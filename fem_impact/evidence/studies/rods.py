@@ -59,14 +59,6 @@ PLAIN = {"yielding": "machined", "elastic": "frictionless"}
 """Surface state, by kind of contact, at which other inputs are changed and the partition is drawn."""
 
 BODY, TIP = 0.019, 0.003  # m: diameter and edge radius of the paper's rods
-DROP_NOTES = (
-    "Dropped without spin: v_n = -v cos(alpha), v_t = -v sin(alpha); no gravity during the impact.",
-    "Tip B (the edge of the face meets the plate), edge radius 3 mm on 19 mm and in proportion to other "
-    "diameters; steels of the paper.",
-    "Elastic drops: neither body yields, whatever the pressure. Yielding drops have every effect that the "
-    "scene calls for.",
-)
-MODAL_NOTE = "Modal: a round contact of the same sqrt(R1 R2); each outcome tells its error."
 
 
 def length_of(gamma: float, diameter: float = BODY) -> float:

@@ -17,8 +17,9 @@ from fem_impact.answers.compare import MEASURED
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.evidence.studies import joint
 from fem_impact.evidence.studies.joint import LEVEL, JointError, of_set, stored_rows
+from fem_impact.evidence.studies.report_parts import asked_sets, error_panel, rests_on
 from fem_impact.evidence.studies.validated import SHOWN
-from fem_impact.figures.panels import Mark, Panel, Picture, Series
+from fem_impact.figures.panels import Picture
 from fem_impact.jobs.job import Job
 from fem_impact.jobs.run import JobResults
 from fem_impact.tables.table import Table
@@ -26,15 +27,15 @@ from fem_impact.tables.table import Table
 LOAD = 30  # kgf, assumed: the paper prints none
 
 
-def _skin(factor: float) -> dict[str, Any]:
-    return {f"{body}.material.skin": {"factor": factor, "load": LOAD} for body in ("projectile", "barrier")}
-
-
 LAW = {"surface.sliding_law": "dry-rail"}
+SKIN_2, SKIN_1_5 = (
+    {f"{body}.material.skin": {"factor": factor, "load": LOAD} for body in ("projectile", "barrier")}
+    for factor in (2.0, 1.5)
+)
 INPUTS: Mapping[str, dict[str, Any]] = {
-    "skin 2": _skin(2.0),
-    "skin 1.5": _skin(1.5),
-    "skin 2, dry-rail": _skin(2.0) | LAW,
+    "skin 2": SKIN_2,
+    "skin 1.5": SKIN_1_5,
+    "skin 2, dry-rail": SKIN_2 | LAW,
     "dry-rail": LAW,
 }
 """Changed keys of the scenes by the name of the inputs."""
@@ -52,8 +53,8 @@ HEAD = (
 
 def plan(request: Request, results: JobResults) -> list[Job]:
     """Return a run by finite elements a set and inputs, and those of the reduced model by the study joint."""
-    runs = [_job(name, inputs) for inputs in INPUTS for name in joint.sets(request)]
-    first = len(joint.sets(request))
+    runs = [_job(name, inputs) for inputs in INPUTS for name in asked_sets(request)]
+    first = len(asked_sets(request))
     return [*runs[:first], *joint.plan(request, results), *runs[first:]]
 
 
@@ -68,7 +69,7 @@ def conclude(request: Request, results: JobResults) -> StudyReport:
         name: {
             inputs: one for inputs in (DEFAULT, *INPUTS) if (one := _joint(name, inputs, request, results))
         }
-        for name in joint.sets(request)
+        for name in asked_sets(request)
     }
     rows = [
         (
@@ -88,11 +89,7 @@ def conclude(request: Request, results: JobResults) -> StudyReport:
         [_picture(found)],
         [Sheet("skin", "Errors of each set with each of the inputs", Table.of(HEAD, rows))],
         [
-            "Default: S and u_val of the study validation. Skin 1.5, skin 2: flow stress at the surface of "
-            "both bodies over that of the bulk; the depth of an even layer follows from HV 163 (plate) and "
-            f"235 (rod) at {LOAD} kgf, which is assumed. dry-rail: the shipped law of friction over speed.",
-            "E = S - D; p: the probability of the three errors together without an error of the model, as in "
-            "the study joint, with the u_input of the default inputs: that of factor and load is not in it.",
+            *rests_on("skin", LOAD=LOAD),
             *_left_out(results),
         ],
         conclusions=[("skin", sentence) for sentence in sentences],
@@ -148,22 +145,16 @@ def _sentences(found: Mapping[str, Mapping[str, JointError]]) -> list[str]:
 
 def _picture(found: Mapping[str, Mapping[str, JointError]]) -> Picture:
     """Return E / u_val of each number, a panel each, of every inputs by sets."""
-    sets, panels = tuple(found), []
+    panels = []
     for at, name in enumerate(SHOWN):
-        series = []
-        for colour, inputs in enumerate((DEFAULT, *INPUTS)):
-            places = [k for k, one in enumerate(found.values()) if inputs in one]
-            errors = [found[sets[k]][inputs] for k in places]
-            series.append(
-                Series(
-                    inputs,
-                    [one.E[at] / one.u[at] for one in errors],
-                    np.array(places, float),
-                    "points",
-                    colour,
-                )
-            )
-        marks = Mark(-2.0), Mark(2.0)
-        panels.append(Panel(name, "E / u_val", "", tuple(series), marks, rows=sets))
+        errors = {
+            inputs: [
+                (k, one[inputs].E[at] / one[inputs].u[at])
+                for k, one in enumerate(found.values())
+                if inputs in one
+            ]
+            for inputs in (DEFAULT, *INPUTS)
+        }
+        panels.append(error_panel(name, tuple(found), errors))
     caption = "Errors over their uncertainty with each of the inputs; beyond 2 a number shows an error alone."
     return Picture("skin", caption, tuple(panels), columns=3)

@@ -19,6 +19,7 @@ from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.answers.v_and_v import COVERAGE, Comparison
 from fem_impact.arrays import Array
 from fem_impact.evidence.studies.inputs import UNCERTAIN_INPUTS, changes, one_mesh, sample_values
+from fem_impact.evidence.studies.report_parts import asked_sets, comparison_table, rests_on
 from fem_impact.evidence.studies.sets import set_job
 from fem_impact.evidence.studies.validated import (
     DRAWN,
@@ -40,7 +41,6 @@ from fem_impact.evidence.studies.validated import (
 from fem_impact.figures.panels import Look, Mark, Panel, Picture, Series
 from fem_impact.jobs.job import Job
 from fem_impact.jobs.run import JobResults
-from fem_impact.scene.types import MEASURED_SETS
 from fem_impact.tables.table import Cell, Table
 from rigid.experiments import correlations, measured_set
 
@@ -50,18 +50,13 @@ FEWEST = 2 * len(UNCERTAIN_INPUTS)  # finished runs of a sample
 
 def plan(request: Request, results: JobResults) -> list[Job]:
     """Return the jobs of the requested sets: the run of each, and its sample."""
-    return [job for name in _sets(request) for job in (_nominal(name, request), *_sample(name, request))]
+    return [job for name in asked_sets(request) for job in (_nominal(name, request), *_sample(name, request))]
 
 
 def conclude(request: Request, results: JobResults) -> StudyReport:
     """Return the study: comparison errors, their uncertainties, and what causes them."""
-    sets = [study_set for name in _sets(request) if (study_set := _validated(name, request, results))]
+    sets = [study_set for name in asked_sets(request) if (study_set := _validated(name, request, results))]
     return study_report(sets)
-
-
-def _sets(request: Request) -> tuple[str, ...]:
-    """Return the requested sets; by default all, or one of the quick study."""
-    return request.ids or (("t5b",) if request.quick else MEASURED_SETS)
 
 
 def _nominal(name: str, request: Request) -> Job:
@@ -118,24 +113,18 @@ def study_report(sets: Sequence[ValidatedSet]) -> StudyReport:
         [*sentences, *takes],
         [_errors(compared), *(_distributions(sets, name) for name in SHOWN)] if sets else (),
         [
-            _comparison_sheet(compared),
+            Sheet(
+                "validation",
+                "Error of the model E = S - D and its uncertainty",
+                comparison_table(compared, ("set", "quantity", "beside the tests")),
+            ),
             _cause_sheet(sets),
             _spread_sheet(sets),
             _correlation_sheet(sets),
             _surface_sheet(sets),
         ],
         [
-            "S is the limit of the levels of a run at the nominal inputs, D the measured mean, E = S - D.",
-            "u_num is half of their band; u_input the root mean square change from the nominal "
-            "inputs, some of which stand at the end of their interval, over all inputs at once, each uniform "
-            "over its interval, on one coarse mesh; u_D the standard error of the mean and of the tracked "
-            "velocities. They are taken as independent.",
-            "The verdict says whether E +- 2 u_val leaves out zero. The column beside the tests counts no "
-            "inputs: does S, with its band, lie in the 95 % interval of the measured mean, or within two "
-            "standard deviations of single tests (as in the study of the sets).",
-            "What it would take for a miss of e, mu or Omega comes from the response surfaces, each input "
-            "inside its interval; what they leave needs an effect or an input that is not stated.",
-            f"The model's error lies in E +- {COVERAGE:g} u_val (ASME V&V 20-2009, section 6).",
+            *rests_on("validation", COVERAGE=COVERAGE),
             *(
                 f"{i.name}: {i.description}" + ("" if i.varies else "; one value for all tests of a set")
                 for i in UNCERTAIN_INPUTS
@@ -220,22 +209,6 @@ def _steps(label: str, values: Array, look: Look, colour: int) -> Series:
     rank = (np.arange(len(ordered)) + 0.5) / len(ordered)
     every = slice(None, None, max(1, len(ordered) // 64))
     return Series(label, ordered[every], rank[every], look, colour)
-
-
-def _comparison_sheet(compared: Sequence[Comparison]) -> Sheet:
-    head = ("set", "quantity", "S", "D", "E", "u_num", "u_input", "u_D", "u_val", "low", "high", "verdict")
-    rows = [
-        (
-            *(c.set, c.quantity, c.S, c.D, c.E, c.u_num, c.u_input, c.u_D, c.u_val),
-            *(*c.interval, c.verdict, c.scatter),
-        )
-        for c in compared
-    ]
-    return Sheet(
-        "validation",
-        "Error of the model E = S - D and its uncertainty",
-        Table.of((*head, "beside the tests"), rows),
-    )
 
 
 def _cause_sheet(sets: Sequence[ValidatedSet]) -> Sheet:

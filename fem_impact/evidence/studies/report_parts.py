@@ -1,0 +1,55 @@
+"""What the reports of several studies share: the texts that they rest on, data files, errors side by side."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Mapping, Sequence
+from importlib.resources import files
+
+from fem_impact.answers.report import Request
+from fem_impact.answers.v_and_v import COVERAGE, Comparison
+from fem_impact.figures.panels import Mark, Panel, Series
+from fem_impact.scene.types import MEASURED_SETS
+from fem_impact.tables.table import Table
+
+COMPARED = ("S", "D", "E", "u_num", "u_input", "u_D", "u_val")
+"""Columns of a comparison, by the names of ASME V&V 20."""
+
+
+def _data(name: str) -> str:
+    return files("fem_impact.evidence.studies").joinpath("data", name).read_text(encoding="utf-8")
+
+
+def data_rows(name: str) -> list[dict[str, str]]:
+    """Return the rows of a CSV file of the folder ``data``, without its comments."""
+    return [*csv.DictReader(line for line in _data(name).splitlines() if not line.startswith("#"))]
+
+
+def rests_on(study: str, **numbers: object) -> list[str]:
+    """Return what the report of a study rests on: texts of data/rests_on.md, with these numbers in them."""
+    text = _data("rests_on.md").split(f"## {study}\n")[1].split("\n## ")[0]
+    return [" ".join(item.split()).format(**numbers) for item in text.split("\n- ")[1:]]
+
+
+def asked_sets(request: Request) -> tuple[str, ...]:
+    """Return the requested measured sets; by default all, or t5b if quick."""
+    return request.ids or (("t5b",) if request.quick else MEASURED_SETS)
+
+
+def comparison_table(compared: Sequence[Comparison], names: tuple[str, ...]) -> Table:
+    """Return one row a comparison; ``names`` are those of set, quantity and, where asked for, the scatter."""
+    rows = [
+        (c.set, c.quantity, *(getattr(c, name) for name in COMPARED), *c.interval, c.verdict, c.scatter)
+        for c in compared
+    ]
+    head = (*names[:2], *COMPARED, "low", "high", "verdict", *names[2:])
+    return Table.of(head, [row[: len(head)] for row in rows])
+
+
+def error_panel(title: str, rows: Sequence[str], errors: Mapping[str, Sequence[tuple[int, float]]]) -> Panel:
+    """Return errors over their uncertainty, a colour a name, each by the number of its row."""
+    series = tuple(
+        Series(name, [error for _, error in of], [float(row) for row, _ in of], "points", colour)
+        for colour, (name, of) in enumerate(errors.items())
+    )
+    return Panel(title, "E / u_val", "", series, (Mark(-COVERAGE), Mark(COVERAGE)), rows=tuple(rows))
