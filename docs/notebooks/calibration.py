@@ -22,8 +22,7 @@ import numpy as np
 import pandas
 
 from fem_impact.evidence.studies.inputs import UNCERTAIN_INPUTS
-from fem_impact.evidence.studies.validated import ResponseSurface
-from fem_impact.evidence.studies.validated import DRAWN, FRICTION, SEED, scaled, unit_sample
+from fem_impact.evidence.studies.validated import DRAWN, FRICTION, SEED, ResponseSurface, scaled, unit_sample
 from rigid.experiments import measured_set
 
 table = pandas.read_csv("surfaces.csv")
