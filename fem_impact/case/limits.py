@@ -9,6 +9,7 @@ from dataclasses import replace
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.effects.slots import ModelSpec
 from fem_impact.case.plates import is_wider, thin_plate
+from fem_impact.case.shaft import shaft_flows
 from fem_impact.errors import SceneError
 from fem_impact.outcome.limitation import Limitation, limitations
 from fem_impact.physics.contact import FLAT
@@ -377,7 +378,7 @@ def not_reduced(bodies: Bodies) -> str:
         "a plate thinner than its contact is wide": is_wider(bodies),
         "a hardened skin": "machined-skin" in bodies.effects,
     }
-    return next((what for what, holds in obstacles.items() if holds), "")
+    return next((what for what, holds in obstacles.items() if holds), shaft_flows(bodies))
 
 
 def require_own_mesh(bodies: Bodies, fidelity: str) -> None:

@@ -13,7 +13,16 @@ from fem_impact.outcome.limitation import limitations
 from fem_impact.outcome.record import Outcome
 from fem_impact.progress import Progress
 from fem_impact.run.assemble import ImpactEnd, Reduction
-from fem_impact.run.common import HARDER, MASSIVE, RESIDUAL_LIMIT, UNBENT, apart, plastic_shares, rod_flows
+from fem_impact.run.common import (
+    HARDER,
+    MASSIVE,
+    RESIDUAL_LIMIT,
+    UNBENT,
+    apart,
+    plastic_shares,
+    rod_flows,
+    shaft_left_out,
+)
 from fem_impact.run.modal_error import half_widths, place_of, sentence
 
 HALVINGS = 2  # of the time step
@@ -80,6 +89,7 @@ def reduce(case: Case, result: ModalResult) -> Outcome:
             "model",
             *ASSUMPTIONS,
             *_dent(case),
+            shaft_left_out(case),
             LAID if result.laid else "",
             LEVEL if turns else "",
             tilted if turned > TILT_TOLD else "",

@@ -19,7 +19,7 @@ from fem_impact.physics.contact_law import restitution as thornton
 from fem_impact.physics.flash import closed_form
 from fem_impact.physics.viscous import viscous_restitution
 from fem_impact.run.assemble import ImpactEnd, Reduction
-from fem_impact.run.common import MASSIVE, after, heat, plastic_shares
+from fem_impact.run.common import MASSIVE, after, heat, plastic_shares, shaft_left_out
 
 if TYPE_CHECKING:
     from fem_impact.case.case import Case
@@ -81,7 +81,9 @@ def rigid_outcome(case: Case) -> Outcome:
         peak_force=Unknown(UNKNOWN),
         choices=Unknown(UNKNOWN),
         unmeshed=UNKNOWN,
-        limited=limitations("model", loss.source, *ASSUMPTIONS, _sharp(case), *plate, *heated),
+        limited=limitations(
+            "model", loss.source, *ASSUMPTIONS, _sharp(case), shaft_left_out(case), *plate, *heated
+        ),
     )
 
 

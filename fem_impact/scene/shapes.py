@@ -153,6 +153,14 @@ class Profile:
             )
         if self.points[-1][0] <= 0.0:
             raise SceneError("has no length: its last z is 0.", key="profile")
+        for number, (before, after) in enumerate(pairwise(self.points), 2):
+            if before[1] == after[1] == 0.0:
+                raise SceneError(
+                    "leaves no body between it and the point before: both lie on the axis.",
+                    key=f"profile[{number}]",
+                    value=f"z = {after[0] * 1e3:.4g} mm, radius 0",
+                    remedy="A row is [z, radius]: first the distance from the tip.",
+                )
 
     def outline(self) -> Array:
         """Return vertices (k, 2), (rho, z), m, of the outer surface from the axis at the tip to the tail."""

@@ -156,6 +156,10 @@ def test_points_carry_the_unit_of_their_column(tmp_path):
         ({"profile": [["0 mm", "1 mm"], ["20 mm", "2 mm"], ["10 mm", "2 mm"]]}, r"profile\[3\].*behind"),
         ({"profile": [["5 mm", "1 mm"], ["20 mm", "2 mm"]]}, "must start at z = 0"),
         ({"profile": POINTS, "profile_smooth": 1}, "must be true or false"),
+        (
+            {"profile": [["0 mm", "0 mm"], ["4 mm", "0 mm"], ["4 mm", "80 mm"]]},
+            r"profile\[2\] = .z = 4 mm, radius 0.*both lie on the axis",
+        ),
         ({**OGIVE, "bore": [["0 mm", "9.6 mm"], ["100 mm", "9.6 mm"]]}, "leaves no wall"),
         (
             {**OGIVE, "bore": "8 mm"},

@@ -1,0 +1,33 @@
+"""Whether the shaft of a projectile flows along its length, which only finite elements compute."""
+
+from __future__ import annotations
+
+from math import cos, pi, sqrt
+from typing import TYPE_CHECKING
+
+from fem_impact.physics.stepped_beam import sections
+
+if TYPE_CHECKING:
+    from fem_impact.case.bodies import Bodies
+
+
+def shaft_flows(bodies: Bodies) -> str:
+    """Say that the axial stress of the strike would pass the yield stress of the shaft; empty if it does not.
+
+    The stress is that of a plane wave, rho c0 v along the axis (G. I. Taylor, Proc. R. Soc. A 194 (1948) 289,
+    doi:10.1098/rspa.1948.0081), or, where that is less, the estimated force of the contact over the smallest
+    section of the first half, one diameter behind the tip. Bending is not in it.
+    """
+    contact, size, rod = bodies.contact, bodies.estimate, bodies.contact.rod
+    stress = sqrt(rod.E * rod.rho) * max(contact.approach, 0.0) * cos(contact.angle)
+    if not contact.rod_yields or stress < rod.yield_stress:
+        return ""
+    shaft = sections(bodies.rod)
+    behind = (shaft.z[:-1] >= contact.body.diameter) & (shaft.z[1:] <= 0.5 * bodies.rod.length)
+    if behind.any():
+        force = size.pressure * pi * size.a_t * size.a_b * cos(contact.angle)
+        stress = min(stress, force * rod.E / float(shaft.EA[behind].min()))
+    if stress < rod.yield_stress:
+        return ""
+    told = f"{stress / 1e6:.3g} MPa over {rod.yield_stress / 1e6:.3g} MPa"
+    return f"a shaft that would yield along its length (axial stress, estimated: {told})"
