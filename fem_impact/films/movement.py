@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -29,6 +30,11 @@ class Movement:
 
     fields: FieldFile
     waves: Waves | None = None
+    _read: Callable[[str, int], np.ndarray] = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        """Keep what was read last: a picture asks several times for the frames around it."""
+        object.__setattr__(self, "_read", lru_cache(maxsize=8)(self.fields.point_data))
 
     @property
     def ringing(self) -> Ringing | None:
@@ -67,7 +73,7 @@ class Movement:
 
     def velocities(self, time: float) -> np.ndarray:
         """Return the velocities ``(n, 3)``, m/s, of all points: those of a parabola through three frames."""
-        times, read = self.fields.times, self.fields.point_data
+        times, read = self.fields.times, self._read
         first = int(np.clip(np.searchsorted(times, time) - 1, 0, max(len(times) - 3, 0)))
         near = times[first : first + 3]
         if len(near) == 1:
@@ -79,7 +85,7 @@ class Movement:
 
     def point_data(self, name: str, time: float) -> np.ndarray:
         """Return stored point data at a time, the last ones after the last frame."""
-        return self._between_frames(self.fields.point_data, name, time)
+        return self._between_frames(self._read, name, time)
 
     def cell_data(self, name: str, time: float) -> np.ndarray:
         """Return stored cell data at a time, the last ones after the last frame."""

@@ -12,7 +12,7 @@ import numpy as np
 
 from fem_impact.arrays import Array
 from fem_impact.case.case import Case
-from fem_impact.fem.kernels import compiled_before
+from fem_impact.fem.kernels import compiled_before, kernel
 from fem_impact.fem.sliding import speed_table
 from fem_impact.modal.groove import WORK
 from fem_impact.modal.landing import height_of
@@ -267,6 +267,12 @@ def _energies(rod: ModalRod, now: ModalState) -> Array:
     return np.asarray(0.5 * (now.rate**2 + (rod.omega * now.q) ** 2))
 
 
+@kernel
+def _spent(held: Touched, work_t: Array) -> tuple[float, float, float, float]:
+    """Return `spent`, kept on disk: what is inlined would be compiled anew, 2 s, in each process."""
+    return spent(held, work_t)
+
+
 def _result(
     case: Case,
     rod: ModalRod,
@@ -279,7 +285,7 @@ def _result(
     """Return the result of a march, ``over`` or cut off, that ``took`` wall and processor time, s."""
     scene, now, tally, clock = case.scene, course.now, course.tally, course.clock
     motion, energies = now.rigid[:3], _energies(rod, now)
-    plastic, friction, held_n, held_t = spent(course.held, course.held.work_t)
+    plastic, friction, held_n, held_t = _spent(course.held, course.held.work_t)
     viscous = tally[SUM.viscous]
     if over:  # a viscous dent that is left swells without a push, and what springs held has slipped
         viscous, held_n = viscous + held_n, 0.0
