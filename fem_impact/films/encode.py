@@ -32,8 +32,8 @@ FAST = ["-preset", "veryfast"]
 
 WEBP: dict[str, Any] = {"quality": 75, "method": 0, "kmin": 0, "kmax": 0}
 """Options of WebP. Key frames after the first are left out: a film that starts at its first frame needs
-none, and each is encoded twice. Of 36 frames, beside method 2 at quality 80: .66 of the processor time, 1.21 of
-the bytes, 38.2 for 38.5 dB of signal over error."""
+none, and each is encoded twice. Of 36 frames, beside method 2 at quality 80: .66 of the time, 1.21 of the
+bytes, 38.2 for 38.5 dB of signal over error."""
 
 WINDOW = {"VTK_DEFAULT_OPENGL_WINDOW": "vtkEGLRenderWindow"}
 """Environment that makes VTK draw off screen."""
