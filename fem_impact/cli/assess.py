@@ -26,6 +26,7 @@ from fem_impact.errors import UsageError
 from fem_impact.tables.text import wrapped
 
 if TYPE_CHECKING:
+    from fem_impact.figures.panels import Picture
     from fem_impact.scene.types import Scene
 
 QUESTIONS = ("rigid", "heat", "force", "dent")
@@ -76,33 +77,53 @@ def add_options(parser: CommandParser) -> None:
 
 
 def assess(options: Options) -> int:
-    """Assess one scene and print the verdict, before anything else its three lines."""
-    if options.question != QUESTIONS[0] or options.uncertain:
-        return _limited(options)
-    from fem_impact.answers.verdict.assess import assess as assessed
-    from fem_impact.answers.verdict.dropped import dropped
-    from fem_impact.answers.verdict.sentences import document
-    from fem_impact.scene.impact import FIRST
-
-    if options.limit:
-        remedy = "Ask for it: --for heat, force or dent; a change by vibration is stated by --within."
-        raise UsageError("has no question.", key="--limit", value=options.limit, remedy=remedy)
-    means = _means(options)
-    scene = named_scene(options, SHORT) or _dropped_rod(options)
-    case = dropped(scene) if options.heat else None
+    """Assess one scene and print the verdict, before anything else the lines of its box."""
+    limited = options.question != QUESTIONS[0] or bool(options.uncertain)
+    _refuse(options, limited)
     out = checked_out(options.out) if options.out else None
+    scene = named_scene(options, SHORT) or _dropped_rod(options)
     if out is not None:
         from fem_impact.files.run_directory import refuse_other_scene
         from fem_impact.scene.write import to_toml
 
         refuse_other_scene(out / "scene.toml", to_toml(scene))
-
     try:
-        of, change = _within(options)
-        verdict = assessed(scene, options.fidelity, change, *means, tell=_telling(options), of=of)
+        answer, picture = (_limited if limited else _rigid)(options, scene)
     except KeyboardInterrupt:
         remedy = "--budget bounds the time of the next one, --fidelity modal takes seconds."
         raise KeyboardInterrupt(f"an assessment that is stopped keeps nothing: {remedy}") from None
+    if out is not None:
+        from fem_impact.pages.run_page import write_verdict
+
+        answer["page"] = str(write_verdict(scene, answer, out, picture))
+    print_answer(options, answer, _text(answer))
+    return 0
+
+
+def _refuse(options: Options, limited: bool) -> None:
+    """Refuse options that the question has no use for (UsageError)."""
+    of_limits = options.question != QUESTIONS[0]
+    unused = {
+        "--limit": (options.limit, not of_limits, "Ask for it: --for heat, force or dent."),
+        "--within": (options.within, of_limits, "Leave it out: --limit states what is allowed."),
+        "--heat": (options.heat, limited, "Leave it out: it is of the verdict of one scene on rigid theory."),
+    }
+    for key, (value, refused, remedy) in unused.items():
+        if value and refused:
+            raise UsageError("has no question here.", key=key, value=value, remedy=remedy)
+
+
+def _rigid(options: Options, scene: Scene) -> tuple[dict[str, Any], Picture]:
+    """Return the verdict on rigid theory as plain JSON, and the design chart with its point."""
+    from fem_impact.answers.verdict.assess import assess as assessed
+    from fem_impact.answers.verdict.chart import chart
+    from fem_impact.answers.verdict.dropped import dropped
+    from fem_impact.answers.verdict.sentences import document
+    from fem_impact.scene.impact import FIRST
+
+    case = dropped(scene) if options.heat else None
+    of, change = _within(options)
+    verdict = assessed(scene, options.fidelity, change, *_means(options), tell=_telling(options), of=of)
     # without the options that the next step may add
     answer = document(verdict, command_line(options, "assess", *SHORT, *SHAPE, "within"))
     if scene.impact.until != FIRST:
@@ -113,12 +134,7 @@ def assess(options: Options) -> int:
         from fem_impact.answers.verdict.transfer import transfer
 
         answer["transfer"] = transfer(case)
-    if out is not None:
-        from fem_impact.pages.run_page import write_verdict
-
-        answer["page"] = str(write_verdict(verdict, answer, out))
-    print_answer(options, answer, _text(answer))
-    return 0
+    return answer, chart(verdict)
 
 
 def _means(options: Options) -> tuple[float, int]:
@@ -136,18 +152,13 @@ def _telling(options: Options) -> Callable[[str], None]:
     return lambda sentence: print(sentence, file=sys.stderr) if shown else None
 
 
-def _limited(options: Options) -> int:
-    """Judge a number against its limit, over the intervals that are stated, and print the answer."""
+def _limited(options: Options, scene: Scene) -> tuple[dict[str, Any], None]:
+    """Return the verdict on a number and its limit, over the intervals that are stated, as plain JSON."""
     from fem_impact.answers.vary import read_vary
     from fem_impact.answers.verdict.criteria import LIMITED, Criterion, Rigidity
     from fem_impact.answers.verdict.limit import document, judge
     from fem_impact.scene.units import option_quantity
 
-    if options.out or options.heat:
-        key = "--out" if options.out else "--heat"
-        remedy = "Leave it out: --json prints all of the answer."
-        raise UsageError("belongs to the verdict of one scene on rigid theory.", key=key, remedy=remedy)
-    scene = named_scene(options, SHORT) or _dropped_rod(options)
     criterion: Criterion
     if options.question == QUESTIONS[0]:
         of, limit = _within(options)
@@ -159,16 +170,8 @@ def _limited(options: Options) -> int:
     means = options.fidelity, *_means(options)
     found = judge(scene, criterion, limit, uncertain, *means, tell=_telling(options))
     given = "question", "limit", "uncertain", "within"
-    answer = document(
-        found, command_line(options, "assess", *SHORT, *SHAPE, *given).replace("--question", "--for")
-    )
-    lines = [line for sentence in answer["lines"] for line in wrapped(sentence)]
-    lines += [f"Next step: {answer['next_step']}"] if answer["next_step"] else []
-    rests = [*answer["steps"], *answer["notes"]]
-    for title, told in (("What this rests on", rests), ("What it does not cover", answer["not_covered"])):
-        lines += ["", title, *(line for one in told for line in wrapped(f"- {one}", "  "))]
-    print_answer(options, answer, "\n".join(lines) + "\n")
-    return 0
+    command = command_line(options, "assess", *SHORT, *SHAPE, *given).replace("--question", "--for")
+    return document(found, command), None
 
 
 def _dropped_rod(options: Options) -> Scene:
@@ -203,6 +206,7 @@ def _text(answer: dict[str, Any]) -> str:
     from fem_impact.answers.verdict.sentences import lines_of
 
     lines = [line for title, sentence in answer["box"] for line in wrapped(f"{title} {sentence}")]
+    lines += wrapped(f"Missing: {answer['missing']}") if answer["missing"] else []
     lines += [f"Next step: {answer['next_step']}"] if answer["next_step"] else []
     if "sequence" in answer:
         lines += ["", "The strikes that follow"]

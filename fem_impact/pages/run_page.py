@@ -11,12 +11,11 @@ from pathlib import Path
 from typing import Any
 
 from fem_impact.answers.friction_spread import FrictionSpread, friction_spread
-from fem_impact.answers.verdict.assess import Verdict
-from fem_impact.answers.verdict.chart import chart
 from fem_impact.answers.verdict.screening import screening
 from fem_impact.answers.verdict.sentences import Line, screening_lines
 from fem_impact.case.case import Case
 from fem_impact.errors import ResultError, RunError, SceneError, UsageError
+from fem_impact.figures.panels import Picture
 from fem_impact.figures.runs import partition_picture
 from fem_impact.figures.still import draw
 from fem_impact.figures.strikes import accounts_picture, path_picture
@@ -24,7 +23,7 @@ from fem_impact.figures.style import percent
 from fem_impact.files.atomic import make_directory, read_text, write_text
 from fem_impact.files.digests import signed
 from fem_impact.outcome.keys import Key, Unknown, or_none
-from fem_impact.outcome.record import KEY_TABLE, KEYS, Outcome
+from fem_impact.outcome.record import KEY_TABLE, KEYS, Outcome, utc_now
 from fem_impact.outcome.strike_text import strikes_table, told
 from fem_impact.pages import html, sections
 from fem_impact.pages.html import Markup
@@ -58,8 +57,8 @@ def screening_box(scene: Scene, name: str) -> Markup:
     return verdict_box(screening_lines(screening(Case(scene).bodies), name))
 
 
-def write_verdict(verdict: Verdict, document: dict[str, Any], out: Path) -> Path:
-    """Write ``verdict.html``, ``verdict.json``, ``scene.toml`` and the design chart; return the page's path.
+def write_verdict(scene: Scene, document: dict[str, Any], out: Path, picture: Picture | None) -> Path:
+    """Write ``verdict.html``, ``verdict.json``, ``scene.toml`` and a chart, if any; return the page's path.
 
     Raises
     ------
@@ -67,38 +66,36 @@ def write_verdict(verdict: Verdict, document: dict[str, Any], out: Path) -> Path
         matplotlib or plotly is not installed.
     """
     make_directory(out)
-    write_text(out / "scene.toml", to_toml(verdict.scene))
+    write_text(out / "scene.toml", to_toml(scene))
     write_text(out / "verdict.json", json.dumps(signed(document), indent=1, allow_nan=False) + "\n")
-    picture, figures = chart(verdict), make_directory(out / "figures")
-    draw(picture, figures / f"{picture.name}.png")
-    return write_text(out / "verdict.html", verdict_page(verdict, document, html.figure(picture, figures)))
+    charted: tuple[Markup, ...] = ()
+    if picture is not None:
+        figures = make_directory(out / "figures")
+        draw(picture, figures / f"{picture.name}.png")
+        charted = (html.section("This scene among other rods", html.figure(picture, figures)),)
+    return write_text(out / "verdict.html", _verdict_page(scene, document, charted))
 
 
-def verdict_page(verdict: Verdict, document: dict[str, Any], charted: Markup) -> str:
+def _verdict_page(scene: Scene, document: dict[str, Any], charted: Iterable[Markup]) -> str:
     """Return the page: verdict and what it rests on, chart, inputs with sources, what it does not cover."""
-    scene, free = verdict.scene, verdict.here.free
     basis = (
         Markup(f"<strong>{markup(title)}</strong>: {markup(sentence)}")
         for title, sentence in document["basis"]
     )
-    following = [("Next step:", document["next_step"])] if document["next_step"] else []
+    following = [("Missing:", document["missing"]), ("Next step:", document["next_step"])]
     body = (
-        verdict_box([*document["box"], *following], verdict.answer),
+        verdict_box([*document["box"], *(line for line in following if line[1])], document["answer"]),
         html.section("What the verdict rests on", html.bullets(basis)),
-        html.section("This scene among other rods", charted),
+        *charted,
         html.section("Inputs and their sources", html.table(inputs(scene))),
         html.section("What the verdict does not cover", html.bullets(document["not_covered"])),
         html.section("Statement of the scene", Markup(f"<pre>{escape(to_toml(scene))}</pre>")),
         html.section("Signatures", html.paragraph(SIGNATURES)),
-        html.sources(free.provenance.effects),
+        html.sources(Case(scene).active),
     )
     versions = html.versions_text(document["versions"])
-    footer = (
-        f"Computed {free.provenance.created_utc} with {versions}. Digest of the scene "
-        f"{document['scene_digest']}."
-    )
-    lead = f"{scene.title}. Change of {verdict.here.of} that may be neglected: {verdict.tolerance:g}."
-    return html.page(f"May rigid theory be used: {scene.id}", "verdict", lead, footer, body)
+    footer = f"Computed {utc_now()} with {versions}. Digest of the scene {document['scene_digest']}."
+    return html.page(f"{document['box'][0][0]} {scene.id}", "verdict", f"{scene.title}.", footer, body)
 
 
 def _keys(*path: str) -> list[Key]:

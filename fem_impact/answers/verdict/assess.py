@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import isclose
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fem_impact.answers.refine.budget import LONGER, about_s
-from fem_impact.answers.refine.chain import LevelChain
 from fem_impact.answers.refine.level import LevelRun
 from fem_impact.answers.verdict.effect import (
     Answer,
@@ -18,20 +16,17 @@ from fem_impact.answers.verdict.effect import (
     largest,
     modal_effect,
     modal_pair,
-    pair_of,
     solid_effect,
     unfinished,
     untargeted,
 )
+from fem_impact.answers.verdict.levels import Tell, by_levels
 from fem_impact.answers.verdict.reliability import CHANGED, known_error
 from fem_impact.answers.verdict.screening import Screening, screening
 from fem_impact.answers.verdict.twins import inclined, twins
 from fem_impact.case.case import Case
 from fem_impact.case.limits import not_reduced
 from fem_impact.errors import RunError, SceneError
-from fem_impact.options import RunOptions
-from fem_impact.progress import Notice, Progress
-from fem_impact.tables.text import plain
 
 if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
@@ -44,11 +39,7 @@ BUDGET = 60.0
 FIDELITIES = ("auto", "modal", "solid")
 ANGLES = tuple(np.radians(np.arange(5.0, 81.0, 5.0)))
 """Inclinations among which the worst one is looked for, rad."""
-LEAST_LEVELS = 2
-"""Levels that an answer needs: one alone cannot estimate its own error."""
-
 LACKING = "There is no reduced model of {}: finite elements alone answer."
-Tell = Callable[[str], object]
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -94,6 +85,17 @@ class Verdict:
     def answer(self) -> Answer:
         """May rigid theory be used at the scene's inclination."""
         return self.here.answer(self.tolerance)
+
+    @property
+    def missing(self) -> str:
+        """What an undecided answer lacks, empty of a decided one."""
+        size, band = abs(self.here.value), self.here.band
+        if self.answer != "undecided":
+            return ""
+        return (
+            f"an error below {abs(self.tolerance - size):.2g} instead of {band:.2g}; or a change of "
+            f"{size + band:.2g} that may be neglected."
+        )
 
     @property
     def worst(self) -> VibrationEffect | None:
@@ -151,16 +153,25 @@ def assess(
     quick, notes = _quick(scene, of, tell) if reduced else (None, [LACKING.format(lacking)])
     screened = screening(bodies)
     steps = [f"rigid theory: T1/tau = {screened.ratio:.2f}, {screened.published}"]
-    steps += [_step("the reduced model", quick, tolerance)] if quick else []
+    steps += [f"the reduced model: {_told(quick)}: {quick.answer(tolerance)}"] if quick else []
     for step in steps:
         tell(step)
-    here, used, more = quick, "modal", "--fidelity solid"
+    here, used, more = quick, "modal", finite_elements(budget_s)
     # where nothing like the scene was computed both ways, the reduced model's error is not known well enough
     unlike = quick is not None and not known_error(scene).alike
     open_still = quick is None or unlike or quick.answer(tolerance) == "undecided"
     if fidelity == "solid" or (fidelity == "auto" and open_still):
-        allowed, falls_back = (of, tolerance), fidelity == "auto" and quick is not None
-        solid, told, more = _solid(scene, allowed, budget_s, workers, falls_back, tell, steps)
+
+        def estimate(levels: Sequence[LevelRun]) -> VibrationEffect | None:
+            return solid_effect([level.runs for level in levels], of)
+
+        pair, means = twins(untargeted(scene)), (budget_s, workers)
+        try:
+            solid, told, more = by_levels(pair, estimate, _told, tolerance, means, tell, steps)
+        except (SceneError, RunError) as refused:
+            if fidelity == "solid" or quick is None:
+                raise
+            solid, told, more = None, [f"Finite elements have no answer here: {refused}"], ""
         here, used = (solid, "solid") if solid else (quick, "modal")
         notes += told
         more = f"--fidelity solid {more}" if more and fidelity == "solid" else more
@@ -183,6 +194,15 @@ def assess(
     )
 
 
+def _told(effect: VibrationEffect) -> str:
+    return f"{effect.of} changes by {effect.told}"
+
+
+def finite_elements(budget_s: float) -> str:
+    """Return the options that let finite elements answer, with the wall time, s, that these may take."""
+    return f'--fidelity solid --budget "{budget_s:g} s"'
+
+
 def _quick(scene: Scene, of: str, tell: Tell) -> tuple[VibrationEffect | None, list[str]]:
     """Return what the reduced model says, None where it has no answer; and notes."""
     tell("the reduced model, at this inclination and at others ...")
@@ -190,14 +210,6 @@ def _quick(scene: Scene, of: str, tell: Tell) -> tuple[VibrationEffect | None, l
     if failed := unfinished(pair, of):
         return None, [f"The reduced model has no answer here: {failed}"]
     return modal_effect(scene, pair, of), []
-
-
-def _step(by: str, effect: VibrationEffect | None, tolerance: float, took_s: float | None = None) -> str:
-    """Say what a step found, and in which wall time, s, if that is told."""
-    time = "" if took_s is None else f" in {about_s(took_s)}"
-    if effect is None:
-        return f"{by}{time}: no band yet"
-    return f"{by}{time}: {effect.of} changes by {effect.told}: {effect.answer(tolerance)}"
 
 
 def check_means(fidelity: str, budget_s: float) -> None:
@@ -216,88 +228,6 @@ def _check(tolerance: float, of: str) -> None:
     if not 0.0 < tolerance < 1.0:
         remedy = "It is the change that may be neglected: give one such as 0.05."
         raise SceneError("must lie between 0 and 1.", key="tolerance", value=tolerance, remedy=remedy)
-
-
-def _solid(
-    scene: Scene,
-    allowed: tuple[str, float],
-    budget_s: float,
-    workers: int,
-    falls_back: bool,
-    tell: Tell,
-    steps: list[str],
-) -> tuple[VibrationEffect | None, list[str], str]:
-    """Return what finite elements say, None where the budget allows too few levels or no run gives an e.
-
-    Notes on it follow, and the options with which another level would run. ``falls_back``: the reduced model
-    has an answer, which counts where finite elements have none. A sentence on each level is added to
-    ``steps``; ``allowed`` is the change of what that may be neglected.
-    """
-    of, tolerance = allowed
-
-    def decides(levels: Sequence[LevelRun]) -> bool:
-        effect = solid_effect([level.runs for level in levels], of)
-        return effect is not None and effect.answer(tolerance) != "undecided"
-
-    free, stiff = twins(untargeted(scene))
-    options = RunOptions(progress=announcing(tell))
-    levels = LevelChain(Case(free), options, budget_s, workers, decides, stiff)
-    try:
-        levels.refine()
-    except (SceneError, RunError) as refused:
-        if not falls_back:
-            raise
-        return None, [f"Finite elements have no answer here: {refused}"], ""
-    for number, level in enumerate(levels.done, 1):
-        by = f"finite elements, level {number}, cells of {plain(1e3 * level.size, 2)} mm"
-        steps.append(
-            _step(by, solid_effect([one.runs for one in levels.done[:number]], of), tolerance, level.wall_s)
-        )
-        tell(steps[-1])
-    effect = solid_effect([level.runs for level in levels.done], of)
-    if effect is not None and effect.answer(tolerance) != "undecided":
-        return effect, [], ""
-    note, more = why_stopped(levels)
-    return effect, [*note, *([] if effect else [_nothing(levels.done, of)])], more
-
-
-def announcing(tell: Tell) -> Callable[[Progress | Notice], None]:
-    """Return what takes the progress of finite elements and tells when each level begins."""
-    begun = set[str]()
-
-    def announce(progress: Progress | Notice) -> None:
-        if isinstance(progress, Progress) and progress.note not in begun:
-            begun.add(progress.note)
-            tell(f"finite elements, {progress.note} ...")
-
-    return announce
-
-
-def _nothing(levels: Sequence[LevelRun], of: str) -> str:
-    """Say why levels tell nothing of the change of a number."""
-    failed = unfinished(pair_of(levels[-1].runs), of)
-    if failed:
-        return f"Finite elements have no answer here: {failed}"
-    if len(levels) < LEAST_LEVELS:
-        return "One level of finite elements alone does not tell its error."
-    return "The last level of finite elements does not resolve the contact."
-
-
-def why_stopped(levels: LevelChain) -> tuple[list[str], str]:
-    """Return a note on why no other level runs, and the options with which one would."""
-    if levels.failed:
-        return [f"Finite elements give no result on level {len(levels.done) + 1}: {levels.failed}"], ""
-    then = levels.following
-    if then is None:
-        return ["No finer level is tried."], ""
-    more_s, spent_s = levels.forecast_s(then), levels.spent_s
-    left_s, enough = max(levels.budget_s - spent_s, 0.0), about_s(spent_s + LONGER * more_s)
-    note = (
-        f"Level {len(levels.done) + 1}, finer, would take about {about_s(more_s)} more, and "
-        f"{plain(left_s, 2)} s are left of the budget of {levels.budget_s:g} s. For it give "
-        f'--budget "{enough}".'
-    )
-    return [note], f'--budget "{enough}"'
 
 
 def _over_angles(

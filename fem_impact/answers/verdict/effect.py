@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import inf
 from typing import TYPE_CHECKING, Literal
 
 from fem_impact.answers.refine.extrapolate import (
@@ -32,8 +31,8 @@ REDUCED, MESHES = "the reduced model", "meshes of finite elements"
 """What a change of e rests on."""
 
 COUNTS = (
-    " The band of the vibration energy is at least {:.2g} % of E_0, by which its two independent counts (by "
-    "modes and without them) or the energy balance of the finer mesh are off."
+    " The band of a share of the energy is at least {:.2g} % of E_0, by which two independent counts of the "
+    "vibration (by modes and without them) or the energy balance of the finer mesh are off."
 )
 
 THIN_PLATE = (
@@ -62,7 +61,7 @@ class VibrationEffect:
     of : which number, of `CHANGED`
     angle : rad
     value : the number with vibration less that of the twin that cannot vibrate
-    band : half-width that should hold the error of ``value``; inf where nothing is known of that error
+    band : half-width that should hold the error of ``value``
     E_vib, E_vib_band : energy of vibration over E_0, and its half-width
     free, stiff : the outcomes, of the finest mesh where there are several
     source : where value and band come from, as a sentence
@@ -96,9 +95,7 @@ class VibrationEffect:
     @property
     def told(self) -> str:
         """Value and band as text."""
-        return (
-            f"{self.value:+.3f} ± {self.band:.3f}" if self.band < inf else f"{self.value:+.3f}, error unknown"
-        )
+        return f"{self.value:+.3f} ± {self.band:.3f}"
 
     def answer(self, tolerance: float) -> Answer:
         """Say whether rigid theory may be used if the number may be off by ``tolerance``."""
@@ -124,13 +121,13 @@ def modal_pair(scene: Scene) -> Pair:
 def modal_effect(scene: Scene, pair: Pair, of: str = "e") -> VibrationEffect:
     """Return what the reduced model says of the change of a number, with its known error.
 
-    Shares of E_0 have the half-widths that the run itself tells, where those are wider: these know how unlike
-    the scene is to those that both models computed.
+    Shares of E_0 have the half-widths that the run itself tells; all plastic work that of the shares beside
+    it together, with which it adds up to one.
     """
     error, bodies = known_error(untargeted(scene)), Case(scene).bodies
     thin = half_space_error(bodies) * abs(known(pair[0].restitution.edge.e)) if is_thin(bodies) else 0.0
-    told = {share.key.path[-1]: pair[0].estimate(share.key)[1] or 0.0 for share in SHARES}
-    shares = {name: max(half, told.get(name, 0.0)) for name, half in error.shares.items()}
+    halves = {share.key.path[-1]: pair[0].estimate(share.key)[1] for share in SHARES}
+    shares = {name: half for name, half in halves.items() if half is not None}
     return VibrationEffect(
         of,
         scene.impact.angle,
@@ -143,7 +140,7 @@ def modal_effect(scene: Scene, pair: Pair, of: str = "e") -> VibrationEffect:
         REDUCED,
         REDUCED,
         f"known error of {REDUCED}",
-        shares,
+        {**shares, "plastic": sum(shares.values())},
     )
 
 
@@ -163,8 +160,9 @@ def solid_effect(levels: Sequence[MeshRuns], of: str = "e") -> VibrationEffect |
     changes, wide = [[_difference(pair_of(level), of)] for level in used], [level.wide for level in used]
     value, band = level_limit([level.size for level in used], changes, wide)
     E_vib, E_vib_band = (of[VIBRATION.name] for of in (limits, bands))
+    floor = vibration_floor(free)
     errors = {
-        key.path[-1]: abs(limits[key.name] - known(key.of(free))) + bands[key.name]
+        key.path[-1]: max(abs(limits[key.name] - known(key.of(free))) + bands[key.name], floor)
         for key in (*(share.key for share in SHARES), KEY_TABLE["W_skin_over_E_0"])
         if key.name in bands
     }
@@ -180,7 +178,7 @@ def solid_effect(levels: Sequence[MeshRuns], of: str = "e") -> VibrationEffect |
         f"Finite elements on {len(levels)} levels, the last two with cells of {_size(coarse)} and "
         f"{_size(fine)} at the contact; the band is {ONE_RUN:g} times the range of the limits of all orders "
         "of convergence from 3/4 up, as each mesh runs once, and at least half of the change before."
-        + COUNTS.format(100 * vibration_floor(free)),
+        + COUNTS.format(100 * floor),
         MESHES,
         MESHES,
         f"band of the {MESHES}",

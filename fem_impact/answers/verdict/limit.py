@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
+from functools import partial
 from itertools import product
 from math import inf
 from time import perf_counter
@@ -15,35 +16,36 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fem_impact.answers.refine.budget import about_s
-from fem_impact.answers.refine.chain import LevelChain
-from fem_impact.answers.refine.level import LevelRun
 from fem_impact.answers.validate import FRICTION, Ends, at_place, interval_of
-from fem_impact.answers.verdict.assess import BUDGET, Tell, announcing, check_means, why_stopped
+from fem_impact.answers.verdict.assess import BUDGET, LACKING, check_means, finite_elements
 from fem_impact.answers.verdict.criteria import Bound, Criterion
 from fem_impact.answers.verdict.effect import Answer
-from fem_impact.answers.verdict.sentences import never_covered
+from fem_impact.answers.verdict.levels import Tell, by_levels
+from fem_impact.answers.verdict.sentences import case_sentence, never_covered
 from fem_impact.case.case import Case
 from fem_impact.case.limits import not_reduced
 from fem_impact.errors import RunError, SceneError, UsageError
-from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.limitation import texts
+from fem_impact.outcome.record import installed_versions
+from fem_impact.scene.write import digest
 from fem_impact.tables.text import plain
 
 if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
 
-PLACES = {0: 1, 1: 21, 2: 7, 3: 5, 4: 3}
+PLACES = {1: 21, 2: 7, 3: 5, 4: 3}
 """Values of each of so many intervals at which the reduced model looks."""
 CONFIRMED = (
     "Finite elements ran where the reduced model has its largest number and its least; as much as it is too "
     "low at one of them it counts as too low at all places."
 )
 UNCONFIRMED = (
-    "At the worst place finite elements stay below the limit, but elsewhere the number may pass it if the "
-    "reduced model is as much too low there as where they ran, or it has no answer there."
+    "finite elements at more places than the worst and the mildest, for as much as the reduced model is too "
+    "low there it may be too low elsewhere: assess parts of the intervals, or a limit with more margin."
 )
+Place = tuple[float, ...]
+"""A place in the intervals, each from 0 to 1."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,6 +78,20 @@ class LimitVerdict:
     steps: tuple[str, ...]
     notes: tuple[str, ...]
     more: str
+
+    @property
+    def missing(self) -> str:
+        """What an undecided answer lacks, empty of a decided one."""
+        if self.answer != "undecided":
+            return ""
+        if self.bound is not None and self.bound.answer(self.limit) == "undecided":
+            high = _in_unit(self.criterion, self.bound.high)
+            return (
+                f"a smaller error: the limit lies within that of the number; or a limit of at least {high}."
+            )
+        if self.not_known:
+            return f"an answer at some places of the intervals: {self.not_known}"
+        return UNCONFIRMED
 
     @property
     def margin(self) -> float | None:
@@ -113,43 +129,44 @@ def judge(
     check_means(fidelity, budget_s)
     scene = scene.first_impact
     intervals = [interval_of(key, ends) for key, ends in (_stated(scene) | dict(uncertain or {})).items()]
-    if len(intervals) not in PLACES:
-        problem, remedy = f"states {len(intervals)} intervals.", f"Give at most {max(PLACES)}."
-        raise UsageError(problem, key="uncertain", remedy=remedy)
-    steps, notes, more = list[str](), list[str](), ""
+    scenes = _places(scene, intervals)
+    steps, notes, more = list[str](), list[str](), finite_elements(budget_s)
     lacking = not_reduced(Case(scene).bodies)
-    if not lacking:
-        tell(f"the reduced model at {PLACES[len(intervals)] ** len(intervals)} places ...")
-    found = {} if lacking and fidelity != "modal" else _scanned(scene, criterion, intervals)
+    if lacking:
+        notes.append(LACKING.format(lacking))
+    else:
+        tell(f"the reduced model at {len(scenes)} places ...")
+    found = {} if lacking and fidelity != "modal" else _scanned(scenes, criterion)
     known = {place: one for place, one in found.items() if isinstance(one, Bound)}
     why = next((one.reason for one in found.values() if isinstance(one, Unknown)), "")
-    notes += [f"There is no reduced model of {lacking}: finite elements alone answer."] if lacking else []
     worst = max(known, key=lambda place: known[place].value, default=(0.5,) * len(intervals))
-    bound, by = known.get(worst), "the reduced model"
+    mildest = min(known, key=lambda place: known[place].value, default=worst)
+    bound, by, told = known.get(worst), "the reduced model", partial(_told, criterion)
     answer = _together([one.answer(limit) for one in known.values()], bool(why) or not known)
     if bound is not None:
         where = f" at the worst of {len(known)} places" if intervals else ""
-        steps.append(f"{by}: {_told(criterion, bound)}{where}: {answer}")
+        steps.append(f"{by}: {told(bound)}{where}: {answer}")
         tell(steps[-1])
     open_still = answer == "undecided" or not all(one.alike for one in known.values())
     if fidelity == "solid" or (fidelity == "auto" and open_still):
-        mildest = min(known, key=lambda place: known[place].value, default=worst)
-        end, solids = perf_counter() + budget_s, dict[tuple[float, ...], Bound]()
-        for place in (worst, mildest):
-            if place in solids or any(one.answer(limit) != "yes" for one in solids.values()):
+        end, solids = perf_counter() + budget_s, dict[Place, Bound]()
+        for place in dict.fromkeys((worst, mildest)):
+            if any(one.answer(limit) != "yes" for one in solids.values()):
                 continue
-            at = at_place(scene, intervals, np.array(place)) if intervals else scene
             means = max(end - perf_counter(), 1.0), workers
-            solid, told, more = _solid(at, criterion, limit, means, tell, steps)
-            notes += told
-            if solid is not None:
-                solids[place] = solid
+            try:
+                pair = criterion.meshed(scenes[place])
+                solid, said, more = by_levels(pair, criterion.solid, told, limit, means, tell, steps)
+            except (SceneError, RunError) as refused:
+                solid, said, more = None, [f"Finite elements have no answer here: {refused}"], ""
+            notes += said
+            solids |= {} if solid is None else {place: solid}
         if worst in solids:
             bound, by = solids[worst], "finite elements"
             answer = _together([one.answer(limit) for one in solids.values()], mildest not in solids)
             if answer == "yes" and intervals:
                 answer = _everywhere(solids, known, limit, bool(why))
-                notes.append(CONFIRMED if answer == "yes" else UNCONFIRMED)
+                notes += [CONFIRMED] if answer == "yes" else []
     if bound is None and not steps:
         raise RunError(" ".join([*notes, why]))
     return LimitVerdict(
@@ -179,16 +196,30 @@ def _stated(scene: Scene) -> dict[str, Ends]:
     return {} if low == high else {FRICTION: (low, high)}
 
 
-def _scanned(
-    scene: Scene, criterion: Criterion, intervals: Sequence[tuple[str, float, float, str]]
-) -> dict[tuple[float, ...], Bound | Unknown]:
-    """Return the number by the reduced model at places, each from 0 to 1 of the intervals."""
-    shares, found = np.linspace(0.0, 1.0, PLACES[len(intervals)]).tolist(), {}
-    for place in product(shares, repeat=len(intervals)):
+def _places(scene: Scene, intervals: Sequence[tuple[str, float, float, str]]) -> dict[Place, Scene]:
+    """Return the scenes at places over the intervals, of odd numbers: their middle is one of them.
+
+    What is stated wrongly is found here, before any run (SceneError, UsageError).
+    """
+    if not intervals:
+        return {(): scene}
+    if len(intervals) not in PLACES:
+        problem, remedy = f"states {len(intervals)} intervals.", f"Give at most {max(PLACES)}."
+        raise UsageError(problem, key="uncertain", remedy=remedy)
+    shares = np.linspace(0.0, 1.0, PLACES[len(intervals)]).tolist()
+    return {
+        place: at_place(scene, intervals, np.array(place)) for place in product(shares, repeat=len(intervals))
+    }
+
+
+def _scanned(scenes: Mapping[Place, Scene], criterion: Criterion) -> dict[Place, Bound | Unknown]:
+    """Return the number by the reduced model at places (SceneError: the only one is refused)."""
+    found = dict[Place, Bound | Unknown]()
+    for place, scene in scenes.items():
         try:
-            found[place] = criterion.reduced(at_place(scene, intervals, np.array(place)) if place else scene)
+            found[place] = criterion.reduced(scene)
         except (SceneError, RunError) as refused:
-            if not intervals:
+            if len(scenes) == 1:
                 raise
             found[place] = Unknown(str(refused))
     return found
@@ -216,44 +247,6 @@ def _everywhere(
     return "yes" if highest <= limit and not missing else "undecided"
 
 
-def _solid(
-    scene: Scene,
-    criterion: Criterion,
-    limit: float,
-    means: tuple[float, int],
-    tell: Tell,
-    steps: list[str],
-) -> tuple[Bound | None, list[str], str]:
-    """Return what finite elements say of one place, notes on it, and options for another level.
-
-    ``means`` are the budget, s, and runs at a time; a sentence on each level is added to ``steps``.
-    """
-
-    def decides(levels: Sequence[LevelRun]) -> bool:
-        bound = criterion.solid(levels)
-        return bound is not None and bound.answer(limit) != "undecided"
-
-    (budget_s, workers), options = means, RunOptions(progress=announcing(tell))
-    free, twin = criterion.meshed(scene)
-    levels = LevelChain(Case(free), options, budget_s, workers, decides, twin)
-    try:
-        levels.refine()
-    except (SceneError, RunError) as refused:
-        return None, [f"Finite elements have no answer here: {refused}"], ""
-    for number, level in enumerate(levels.done, 1):
-        bound = criterion.solid(levels.done[:number])
-        told = "no band yet" if bound is None else f"{_told(criterion, bound)}: {bound.answer(limit)}"
-        size = plain(1e3 * level.size, 2)
-        steps.append(
-            f"finite elements, level {number}, cells of {size} mm in {about_s(level.wall_s)}: {told}"
-        )
-        tell(steps[-1])
-    bound = criterion.solid(levels.done)
-    if bound is not None and bound.answer(limit) != "undecided":
-        return bound, [], ""
-    return bound, *why_stopped(levels)
-
-
 def _in_unit(criterion: Criterion, number: float) -> str:
     return f"{plain(number / criterion.per_unit, 3)} {criterion.unit}".rstrip()
 
@@ -269,7 +262,7 @@ def document(v: LimitVerdict, command: str) -> dict[str, Any]:
     of, bound = v.criterion, v.bound
     over = " and ".join(f"{key} from {ends}" for key, ends in v.intervals.items())
     where = f", {over}" if over else ""
-    lines = [f"Does {of.called} stay below {_in_unit(of, v.limit)}{where}? {v.answer.upper()}."]
+    box = [[f"Does {of.called} stay below {_in_unit(of, v.limit)}{where}?", f"{v.answer.upper()}."]]
     if bound is not None and v.margin is not None:
         at = ", ".join(f"{key} {value}" for key, value in v.worst.items())
         size = _in_unit(of, abs(v.margin))
@@ -279,12 +272,14 @@ def document(v: LimitVerdict, command: str) -> dict[str, Any]:
             "undecided": f"up to {size} above",
         }
         worst = "At the worst place" if v.least is not None else "Where all have their middle values"
-        place = f"{worst}, {at}" if at else "Here"
-        lines.append(f"{place}: {_told(of, bound)}, {far[bound.answer(v.limit)]} the limit, by {v.by}.")
+        place = f"{worst}, {at}:" if at else "Here:"
+        box.append([place, f"{_told(of, bound)}, {far[bound.answer(v.limit)]} the limit, by {v.by}."])
     if v.least is not None and over:
-        lines.append(f"Of {v.places} places of the reduced model the least has {_in_unit(of, v.least)}.")
+        box.append([f"Of {v.places} places of the reduced model", f"the least has {_in_unit(of, v.least)}."])
     lacking = [f"At some places the reduced model has no answer: {v.not_known}"] if v.not_known else []
     return {
+        "scene_digest": digest(v.scene),
+        "versions": installed_versions(),
         "criterion": of.called,
         "limit": v.limit,
         "over": dict(v.intervals),
@@ -293,9 +288,13 @@ def document(v: LimitVerdict, command: str) -> dict[str, Any]:
         "worst": dict(v.worst),
         "bound": None if bound is None else asdict(bound),
         "rests_on": v.by,
-        "lines": lines,
-        "steps": list(v.steps),
-        "notes": [*v.notes, *lacking],
-        "not_covered": [*never_covered(v.scene), *texts(Case(v.scene).limitations)],
+        "box": box,
+        "missing": v.missing or None,
         "next_step": f"{command} {v.more}" if v.more else None,
+        "basis": [
+            ["case", case_sentence(v.scene)],
+            *([f"step {number}", f"{step}."] for number, step in enumerate(v.steps, 1)),
+            *(["note", note] for note in [*v.notes, *lacking]),
+        ],
+        "not_covered": [*never_covered(v.scene), *texts(Case(v.scene).limitations)],
     }

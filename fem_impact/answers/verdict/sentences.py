@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from math import degrees, inf, isclose
+from math import degrees, isclose
 from typing import Any
 
 from fem_impact.answers.verdict.assess import Verdict
@@ -21,11 +21,13 @@ from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.shapes import NamedShape
 from fem_impact.scene.types import Scene
 from fem_impact.scene.write import digest, to_dict
-from fem_impact.tables.text import wrapped
+from fem_impact.tables.text import with_band, wrapped
 
 SCHEMA = "fem-impact/verdict/2"
 LEAST_SHARE = 0.005
 """Shares of E_0 below it are not named among those of the rest."""
+LEAST_HALF = 0.1
+"""Per cent of E_0, to which shares are printed: no level knows them better."""
 
 FIRST_ONLY = (
     "The first impact only: the rod keeps the rest of its energy and may strike again, which a run with "
@@ -88,8 +90,6 @@ def _vibration(v: Verdict) -> str:
     share = f"{100 * here.E_vib:.2g} % of the energy"
     if or_none(here.free.energy.below_floor):
         return f"{share}, which is below the numerical floor of the model"
-    if here.E_vib_band == inf:
-        return f"{share} (error {here.error})"
     least, most = here.E_vib - here.E_vib_band, here.E_vib + here.E_vib_band
     range_ = f"0 to {100 * most:.2g} %" if least < 0 else f"± {100 * here.E_vib_band:.2g} %"
     return f"{share} ({range_}: {here.error})"
@@ -101,7 +101,7 @@ def _rest(v: Verdict) -> str:
     named = [(share, or_none(share.of(energy)) or 0.0) for share in SHARES if share.label != "vibration"]
     listed = [
         f"{share.label.replace('barrier', 'plate') if plate else share.label} "
-        f"{100 * part:.0f}{_half(here, share.key.path[-1])} %"
+        f"{_percent(here, share.key.path[-1], part)}"
         for share, part in named
         if part > LEAST_SHARE
     ]
@@ -110,11 +110,13 @@ def _rest(v: Verdict) -> str:
     return f"{', '.join(listed)} ({kind}); {thick}{_heating(here)}"
 
 
-def _half(here: VibrationEffect, name: str) -> str:
-    """Return the half-width of a share in per cent, if it is known; for one body that of all plastic work."""
+def _percent(here: VibrationEffect, name: str, part: float) -> str:
+    """Return a share in per cent with its half-width, if known; for one body that of all plastic work."""
     total = here.errors.get("plastic") if name.startswith("plastic_") else None
-    error = here.errors.get(name, total)
-    return "" if error is None else f" ± {100 * error:.2g}"
+    half = here.errors.get(name, total)
+    if half is None:
+        return f"{100 * part:.0f} %"
+    return f"{with_band(100 * part, max(100 * half, LEAST_HALF))} %".replace("+-", "±")
 
 
 def _heating(here: VibrationEffect) -> str:
@@ -124,7 +126,7 @@ def _heating(here: VibrationEffect) -> str:
     if not isinstance(skin, Unknown):
         alone = isinstance(energy.skin_rod, Unknown) or isinstance(energy.skin_barrier, Unknown)
         of = "the softer body" if alone else "both bodies"
-        share = f"{100 * skin:.0f}{_half(here, 'skin')} %"
+        share = _percent(here, "skin", skin)
         return f"{share} can heat the contact (friction, and plastic work of {of} down to 0.1 mm)"
     plastic = or_none(energy.plastic) or 0.0
     return (
@@ -293,6 +295,7 @@ def document(v: Verdict, command: str = "fem-impact assess") -> dict[str, Any]:
         },
         "steps": list(v.steps),
         "box": [list(line) for line in box(v)],
+        "missing": v.missing or None,
         "next_step": f"{command} {v.more}" if v.more else None,
         "basis": [list(line) for line in basis(v)],
         "not_covered": list(not_covered(v)),
@@ -301,19 +304,14 @@ def document(v: Verdict, command: str = "fem-impact assess") -> dict[str, Any]:
     }
 
 
-def _or_null(half: float) -> float | None:
-    """Return a half-width, None where it is not known."""
-    return half if half < inf else None
-
-
 def _change_entry(change: VibrationEffect) -> dict[str, Any]:
     return {
         "angle_rad": change.angle,
         "change": change.value,
-        "band": _or_null(change.band),
+        "band": change.band,
         "rests_on": change.models,
         "E_vib_over_E_0": change.E_vib,
-        "E_vib_band": _or_null(change.E_vib_band),
+        "E_vib_band": change.E_vib_band,
         "energy_rests_on": change.model,
         "errors_over_E_0": dict(change.errors),
         "source": change.source,

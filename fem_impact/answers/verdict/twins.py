@@ -34,7 +34,9 @@ def twins(scene: Scene) -> tuple[Scene, Scene]:
 
 
 def inclined(scene: Scene, angle: float) -> Scene:
-    """Return the scene at another inclination, rad: rod and velocity are turned together, the spin stays.
+    """Return the scene at another inclination, rad: rod, velocity and fall are turned together.
+
+    The spin stays, and so does how the rod stands to the vertical where the barrier's slope is stated.
 
     Raises
     ------
@@ -43,5 +45,7 @@ def inclined(scene: Scene, angle: float) -> Scene:
     """
     impact = scene.impact
     speed, way = hypot(impact.v_n, impact.v_t), angle + impact.beside
-    turned = replace(impact, angle=angle, v_n=-speed * cos(way), v_t=-speed * sin(way))
+    slope = None if impact.slope is None else impact.slope + angle - impact.angle
+    v_n, v_t = -speed * cos(way), -speed * sin(way)
+    turned = replace(impact, angle=angle, v_n=v_n, v_t=v_t, height=None, speed=None, slope=slope)
     return replace(scene, impact=turned, measured=None)

@@ -3,6 +3,7 @@
 import json
 from dataclasses import replace
 from math import pi, sqrt
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -58,12 +59,12 @@ def solids(monkeypatch, values):
     """Let finite elements tell a bound by the angle in degrees; return the angles at which they ran."""
     ran = []
 
-    def of(scene, criterion, limit, means, tell, steps):
-        ran.append(round(np.degrees(scene.impact.angle)))
+    def of(pair, estimate, told, limit, means, tell, steps):
+        ran.append(round(np.degrees(pair[0].impact.angle)))
         value = values[ran[-1]]
         return value and Bound(value, value - 1.0, value + 1.0), [], "--budget more"
 
-    monkeypatch.setattr(module, "_solid", of)
+    monkeypatch.setattr(module, "by_levels", of)
     return ran
 
 
@@ -155,12 +156,18 @@ def test_the_command_says_question_place_and_margin(capsys):
         (["--for", "force"], "--limit"),
         (["--for", "heat", "--limit", "5 kN"], "temperature"),
         (["--limit", "5 kN"], "has no question"),
-        (["--for", "dent", "--limit", "1 mm", "--out", "somewhere"], "--out"),
+        (["--for", "dent", "--limit", "1 mm", "--within", "e 0.1"], "--within"),
+        (["--uncertain", "impact.angle=44,46deg", "--heat"], "--heat"),
     ],
 )
 def test_what_cannot_be_asked_is_refused(capsys, options, told):
     assert main(["assess", "t5b", *options]) == 2
     assert told in capsys.readouterr().err
+
+
+def test_an_interval_of_an_unknown_key_is_refused_before_any_run(capsys):
+    assert main(["assess", "t5b", "--uncertain", "impact.angel=44,46deg"]) == 3
+    assert "Did you mean angle?" in capsys.readouterr().err
 
 
 def test_rigid_theory_is_judged_over_an_interval_too(capsys):
@@ -184,3 +191,29 @@ def test_a_next_step_repeats_the_question(monkeypatch, scene):
     solids(monkeypatch, {60: 65.5})
     found = judge(scene, Sloped(), 65.0, ANGLE)
     assert document(found, "fem-impact assess t5b")["next_step"] == "fem-impact assess t5b --budget more"
+
+
+def test_an_undecided_limit_says_what_is_missing_and_what_comes_next(scene):
+    found = judge(scene, Sloped(), 69.0, ANGLE, "modal")
+    assert "or a limit of at least 0.07 kN" in found.missing
+    assert document(found, "fem-impact assess t5b")["next_step"].endswith('--fidelity solid --budget "60 s"')
+    places = judge(scene, Sloped(missing=(40.0,)), 75.0, ANGLE, "modal")
+    assert places.missing == "an answer at some places of the intervals: it slides on"
+    assert judge(scene, Sloped(), 75.0, ANGLE, "modal").missing == ""
+
+
+def test_finite_elements_elsewhere_are_missing_where_the_reduced_model_is_too_low(monkeypatch, scene):
+    solids(monkeypatch, {60: 50.0, 20: 30.0})
+    assert judge(scene, Sloped(), 65.0, ANGLE).missing.startswith("finite elements at more places")
+
+
+def test_heat_needs_as_many_levels_as_a_default_run():
+    assert LIMITED["heat"].solid([None, None]) is None
+
+
+def test_a_limit_has_a_page_too(cli):
+    line = ("--fidelity", "modal", "--for", "force", "--limit", "9 kN", "--out", "page")
+    assert cli("assess", "t5b", *line)[0] == 0
+    page = Path("page/verdict.html").read_text(encoding="utf-8")
+    assert "Does the peak force stay below 9 kN" in page and "Signatures" in page
+    assert json.loads(Path("page/verdict.json").read_text(encoding="utf-8"))["answer"] == "yes"
