@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from fem_impact.outcome.keys import Unknown, known
     from fem_impact.outcome.record import Outcome
     from fem_impact.pages.write import write_report
+    from fem_impact.progress import silent
     from fem_impact.scene import units
     from fem_impact.scene.shipped import load, replace, replace_all
     from fem_impact.scene.types import Scene
@@ -64,6 +65,7 @@ __all__ = [
     "render",
     "replace",
     "replace_all",
+    "silent",
     "simulate",
     "sweep",
     "to_meshio",
@@ -96,6 +98,7 @@ _PLACES = {
     "render": "films.film:render",
     "replace": "scene.shipped:replace",
     "replace_all": "scene.shipped:replace_all",
+    "silent": "progress:silent",
     "simulate": "answers.simulate:simulate",
     "sweep": "answers.sweep:sweep",
     "to_meshio": "fem.exchange:to_meshio",

@@ -22,7 +22,8 @@ class RunOptions:
     Attributes
     ----------
     out : directory for the files of the run; None keeps the outcome only
-    progress : called every few hundred steps of the solid fidelity
+    progress : called every few hundred steps of the solid fidelity; None shows the time left in IPython and
+        notebooks, `fem_impact.silent` nothing
     resume : go on from the checkpoint in ``out`` (solid), bit for bit as if the run had never stopped;
         without one there, start at the beginning
     checkpoint_s : wall time between checkpoints of the solid fidelity, s

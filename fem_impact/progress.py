@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Protocol, TextIO
+from typing import Protocol, TextIO, TypeVar
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,11 +73,70 @@ class ProgressMeter(Protocol):
 class NullMeter:
     """A meter that shows nothing."""
 
-    def __call__(self, progress: Progress | CaseProgress | Notice) -> None:
+    def __call__(self, progress: object) -> None:
         """Ignore the report."""
 
     def close(self) -> None:
         """Do nothing."""
+
+
+silent = NullMeter()
+"""The off-switch: ``progress=silent`` (of `assess`: ``tell=silent``) shows nothing in a notebook either."""
+
+
+class CellMeter:
+    """One line under a cell of a notebook, or in IPython, that is written over and cleared at the end.
+
+    Calls of less than ``first_s`` show nothing.
+    """
+
+    def __init__(
+        self, stream: TextIO, first_s: float = 1.0, clock: Callable[[], float] = time.monotonic
+    ) -> None:
+        self._stream, self._clock, self._next, self._shown = stream, clock, clock() + first_s, ""
+
+    def __call__(self, progress: Progress | CaseProgress | Notice) -> None:
+        """Write over the line, at most five times a second; a notice gets a line of its own."""
+        if isinstance(progress, Notice):
+            self._over(f"{progress.text}\n")
+            self._shown = ""
+        elif self._clock() >= self._next:
+            self._next = self._clock() + 0.2
+            self._over(describe(progress))
+
+    def close(self) -> None:
+        """Clear the line."""
+        if self._shown:
+            self._over("")
+            self._over("")
+
+    def _over(self, text: str) -> None:
+        self._stream.write(f"\r{text:<{len(self._shown)}}")
+        self._stream.flush()
+        self._shown = text
+
+
+Given = TypeVar("Given", bound=Callable[..., None])
+
+
+@contextmanager
+def watched(given: Given | None) -> Iterator[Given | CellMeter | NullMeter]:
+    """Yield a meter that was given, which its owner closes; else a line where IPython runs, or silence."""
+    if given is not None:
+        yield given
+        return
+    shell = sys.modules.get("IPython")
+    meter = CellMeter(sys.stdout) if shell is not None and shell.get_ipython() is not None else silent
+    try:
+        yield meter
+    finally:
+        meter.close()
+
+
+def tell_cell(sentence: str) -> None:
+    """Print a sentence where IPython runs."""
+    with watched(None) as meter:
+        meter(Notice(sentence))
 
 
 class LineMeter:

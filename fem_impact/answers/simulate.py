@@ -13,6 +13,7 @@ from fem_impact.errors import FemImpactError, SceneError
 from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import Unknown, or_none
 from fem_impact.outcome.record import Outcome
+from fem_impact.progress import watched
 from fem_impact.run import simulate as run
 from fem_impact.scene.types import Scene
 from fem_impact.tables.text import plain, with_band
@@ -79,14 +80,16 @@ def simulate(
         budget does not hold the first level, with what the models without a mesh say.
     """
     fidelity = fidelity or scene.strikes.first
-    if on_levels(scene, fidelity):
-        budget = BUDGET if budget_s is None else budget_s
-        try:
-            return LevelChain(case or Case(scene), options, budget, workers).run()
-        except OverBudgetError as late:
-            raise OverBudgetError(f"{late} {_without_mesh(scene, SPARE * budget)}") from None
-    _require_mesh(scene, fidelity)
-    return run.simulate(scene, fidelity, options, case)
+    with watched(options.progress) as progress:
+        options = replace(options, progress=progress)
+        if on_levels(scene, fidelity):
+            budget = BUDGET if budget_s is None else budget_s
+            try:
+                return LevelChain(case or Case(scene), options, budget, workers).run()
+            except OverBudgetError as late:
+                raise OverBudgetError(f"{late} {_without_mesh(scene, SPARE * budget)}") from None
+        _require_mesh(scene, fidelity)
+        return run.simulate(scene, fidelity, options, case)
 
 
 def _without_mesh(scene: Scene, spare_s: float) -> str:

@@ -29,7 +29,7 @@ from fem_impact.jobs.run import run_jobs
 from fem_impact.jobs.store import STORE
 from fem_impact.options import FIDELITIES
 from fem_impact.outcome.record import KEY_TABLE, KEYS
-from fem_impact.progress import Notice, NullMeter
+from fem_impact.progress import Notice, watched
 from fem_impact.scene.shipped import named
 from fem_impact.scene.types import Scene
 from fem_impact.scene.write import digest
@@ -82,7 +82,8 @@ def sweep(
     out : directory for sweep.csv, figures, summary.md, study.json, and the store of the outcomes, from which
         a second call goes on; None: nothing is kept
     workers : runs at a time; more than one start processes, so call from under ``if __name__ == "__main__":``
-    progress : told before the runs which columns cannot be filled, and after each run
+    progress : told before the runs which columns cannot be filled, and after each run how long the rest
+        takes; None shows that in IPython and notebooks, `fem_impact.silent` nothing
     executor : where the runs are done instead, such as what `fem_impact.jobs.executors.on_scheduler` lends
     columns : numbers that the summary shows and draws; `SHORT` where none are named
     line : the command line that made it, for the summary
@@ -104,16 +105,17 @@ def sweep(
         hint = did_you_mean(fidelity, FIDELITIES, f"Use one of {', '.join(FIDELITIES)}.")
         raise UsageError("is not a fidelity.", key="fidelity", value=fidelity, remedy=hint)
     require_columns(columns)
-    vary, meter = listed(vary), progress or NullMeter()
-    asked = scene.accuracy.target
-    if asked is not None and fidelity != "solid":
-        meter(Notice(UNMESHED.format(100 * asked, fidelity)))
-        scene = replace(scene, accuracy=replace(scene.accuracy, target=None))
-    every = cases(scene, vary)
-    for sentence in _unfilled(every, fidelity, columns or SHORT):
-        meter(Notice(sentence))
-    jobs = [Job(case.name, case.scene, fidelity, way=simulate) for case in every if case.scene is not None]
-    with tempfile.TemporaryDirectory() as spare:
+    vary, asked = listed(vary), scene.accuracy.target
+    with watched(progress) as meter, tempfile.TemporaryDirectory() as spare:
+        if asked is not None and fidelity != "solid":
+            meter(Notice(UNMESHED.format(100 * asked, fidelity)))
+            scene = replace(scene, accuracy=replace(scene.accuracy, target=None))
+        every = cases(scene, vary)
+        for sentence in _unfilled(every, fidelity, columns or SHORT):
+            meter(Notice(sentence))
+        jobs = [
+            Job(case.name, case.scene, fidelity, way=simulate) for case in every if case.scene is not None
+        ]
         place = Path(out) if out is not None else Path(spare)
         make_directory(place)
         # an executor that is lent stays open

@@ -9,9 +9,9 @@ that of the fidelity asked for.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import time
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -24,6 +24,7 @@ from fem_impact.arrays import Array
 from fem_impact.errors import SceneError, UsageError
 from fem_impact.options import FIDELITIES, RunOptions
 from fem_impact.outcome.keys import Num, Unknown, known
+from fem_impact.progress import CaseProgress, silent, watched
 from fem_impact.run.tests import NUMBERS, MeasuredTests, tests_of
 from fem_impact.scene.shipped import replace_all
 from fem_impact.scene.types import Scene
@@ -116,8 +117,6 @@ def validate(
     >>> found.inputs, found.joined
     (('surface.friction',), ('Omega', 'e', 'mu'))
     """
-    from scipy import stats
-
     tests = tests_of(scene)
     if tests is None:
         raise SceneError("is missing: there is nothing to compare with.", key="measured", remedy=_TESTS)
@@ -127,38 +126,28 @@ def validate(
     if quick not in FIDELITIES:
         remedy = f"Known: {', '.join(FIDELITIES)}."
         raise UsageError("is no fidelity.", key="inputs_by", value=inputs_by, remedy=remedy)
-    run = partial(simulate, options=options)
     names, at = _measured(tests), {q.measured: q.key.name for q in MEASURED if q.measured}
     keys = [at.get(name, name) for name in names]
-    found = [measured_value(run(scene, fidelity), key) for key in keys]
-    nominal_run = run(scene, quick)
-    varied = [measured_value(nominal_run, key)[0] for key in keys]
-    unknown = {
-        name: why
-        for name, one, moved in zip(names, found, varied, strict=True)
-        if (why := _not_compared(*one, fidelity) or _not_varied(moved, quick))
-    }
-    seen = [i for i, name in enumerate(names) if name not in unknown]
-    if not seen:
-        raise SceneError("state nothing that the model knows.", key="measured", remedy=_TESTS)
-    wanted = [keys[i] for i in seen]
+    with watched(options.progress) as meter:
+        options = replace(options, progress=meter)
+        compared, nominal = (simulate(scene, by, options) for by in (fidelity, quick))
+        found = [measured_value(compared, key) for key in keys]
+        varied = [measured_value(nominal, key)[0] for key in keys]
+        unknown = {
+            name: why
+            for name, one, moved in zip(names, found, varied, strict=True)
+            if (why := _not_compared(*one, fidelity) or _not_varied(moved, quick))
+        }
+        seen = [i for i, name in enumerate(names) if name not in unknown]
+        if not seen:
+            raise SceneError("state nothing that the model knows.", key="measured", remedy=_TESTS)
 
-    def numbers(one: Scene) -> list[float]:
-        outcome = run(one, quick)
-        return [known(measured_value(outcome, key)[0]) for key in wanted]
+        def numbers(place: Array) -> list[float]:
+            outcome = simulate(at_place(scene, intervals, place), quick, RunOptions(progress=silent))
+            return [known(measured_value(outcome, keys[i])[0]) for i in seen]
 
-    drawn: list[Array] = []
-
-    def of_units(x: Array) -> Array:
-        """Return the numbers (numbers, n) of inputs (inputs, n), each from 0 to 1."""
-        values = np.array([numbers(at_place(scene, intervals, column)) for column in x.T]).T
-        drawn.append(values.copy())  # the indices centre what they are given
-        return values
-
-    nominal, uniform = np.array([known(varied[i]) for i in seen]), [stats.uniform()] * len(intervals)
-    rng = np.random.default_rng(SEED)
-    indices = stats.sobol_indices(func=of_units, n=samples, dists=uniform, rng=rng)
-    moved = np.concatenate(drawn[:2], axis=1) - nominal[:, None]
+        total, drawn = sobol(numbers, len(intervals), samples, meter)
+    moved = drawn - np.array([known(varied[i]) for i in seen])[:, None]
     statistics = tests.statistics()
     comparisons = tuple(
         _comparison(scene.id, names[i], found[i], statistics[names[i]], float(np.sqrt(np.mean(change**2))))
@@ -174,13 +163,44 @@ def validate(
         comparisons=comparisons,
         unknown=unknown,
         inputs=tuple(key for key, *_ in intervals),
-        total=np.nan_to_num(np.reshape(indices.total_order, (len(seen), len(intervals)))).T,
+        total=total,
         joined=tuple(names[seen[j]] for j in free),
         distance=distance,
         p=p,
         varied=quick,
-        runs=sum(values.shape[1] for values in drawn) + 1,
+        runs=(len(intervals) + 2) * samples + 1,
     )
+
+
+def sobol(
+    numbers: Callable[[Array], Sequence[float]], inputs: int, samples: int, meter: Callable[..., None]
+) -> tuple[Array, Array]:
+    """Return Sobol's total indices (inputs, numbers), and the numbers (numbers, n) at both samples.
+
+    ``numbers`` of a place (inputs,), each from 0 to 1, are computed (inputs + 2) times ``samples`` times, and
+    ``meter`` is told how long the rest takes.
+    """
+    from scipy import stats
+
+    drawn: list[Array] = []
+    begun, done, count = time.monotonic(), 0, (inputs + 2) * samples
+
+    def of_units(x: Array) -> Array:
+        """Return the numbers (numbers, n) of inputs (inputs, n)."""
+        nonlocal done
+        rows = []
+        for place in x.T:
+            rows.append(numbers(place))
+            done += 1
+            left = (time.monotonic() - begun) / done * (count - done)
+            meter(CaseProgress("of the uncertain inputs", done, count, left))
+        drawn.append(np.array(rows).T)
+        return drawn[-1].copy()  # the indices centre what they are given
+
+    rng, uniform = np.random.default_rng(SEED), [stats.uniform()] * inputs
+    indices = stats.sobol_indices(func=of_units, n=samples, dists=uniform, rng=rng)
+    shape = len(drawn[0]), inputs
+    return np.nan_to_num(np.reshape(indices.total_order, shape)).T, np.concatenate(drawn[:2], axis=1)
 
 
 _TESTS = 'Name a file of tests in the scene: measured = "my_tests.csv".'

@@ -50,8 +50,7 @@ def validate(options: Options) -> int:
         remedy = "Write 16, 32, 64 or 128."
         raise UsageError("is no power of two.", key="--samples", value=options.samples, remedy=remedy)
     with closing(chosen_meter(options)) as meter:
-        solid = "solid" in (options.fidelity, options.inputs_by)
-        kept = RunOptions(progress=meter) if solid else RunOptions()
+        kept = RunOptions(progress=meter)
         fidelities = {"fidelity": options.fidelity, "inputs_by": options.inputs_by}
         found = validated(scene, intervals or None, samples=options.samples, options=kept, **fidelities)
     print_answer(options, _document(found), _text(found, options.fidelity))

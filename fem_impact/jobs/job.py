@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 from fem_impact.case.case import Case
 from fem_impact.errors import FemImpactError, ResultError, SceneError
 from fem_impact.options import RunOptions
+from fem_impact.progress import silent
 from fem_impact.run import simulate as run
 from fem_impact.run.program import source_digest
 from fem_impact.scene.write import digest
@@ -125,7 +126,8 @@ class Job:
 
     def run(self) -> str:
         """Return the outcome as JSON; a run with files goes on from its checkpoint."""
-        options, way = RunOptions(out=self.out, resume=True), self.way or run.simulate
+        options = RunOptions(out=self.out, resume=True, progress=silent)
+        way = self.way or run.simulate
         try:
             return way(self.scene, self.fidelity, options).to_json()
         except ResultError:  # a checkpoint of another scene or program

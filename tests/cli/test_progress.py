@@ -2,12 +2,25 @@
 
 import io
 import sys
+from functools import partial
+from types import SimpleNamespace
 
 import pytest
 
+import fem_impact
 from fem_impact.cli.options import Options
 from fem_impact.cli.terminal import LiveMeter, chosen_meter
-from fem_impact.progress import CaseProgress, LineMeter, Notice, NullMeter, Progress, compiling, describe
+from fem_impact.progress import (
+    CaseProgress,
+    CellMeter,
+    LineMeter,
+    Notice,
+    NullMeter,
+    Progress,
+    compiling,
+    describe,
+    silent,
+)
 
 
 class Terminal(io.StringIO):
@@ -102,3 +115,32 @@ def test_a_terminal_of_80_columns_shows_the_time_still_needed_and_what_compiles(
     long = Progress(2.5e-3, 2.5e-3, 99999, -1e-9, "120 nodes touch", 3599.0, "t3-contaminated")
     assert "59 min 59 s left" in describe(long)[: 79 - 21]
     assert describe(compiling(2.5e-3, 20)) == "t 0/2500 us  compiling the kernels, once, about 20 s"
+
+
+@pytest.mark.parametrize(("shell", "chosen"), [(object(), None), (None, None), (object(), silent)])
+def test_a_notebook_shows_the_time_left_unless_told_otherwise(monkeypatch, capsys, shell, chosen):
+    monkeypatch.setitem(sys.modules, "IPython", SimpleNamespace(get_ipython=lambda: shell))
+    monkeypatch.setattr("fem_impact.progress.CellMeter", partial(CellMeter, first_s=0.0))
+    fem_impact.sweep(fem_impact.load("t5b"), {"impact.angle": ["15 deg", "30 deg"]}, "rigid", progress=chosen)
+    shown = capsys.readouterr().out
+    if shell is None or chosen is silent:
+        assert shown == ""
+        return
+    assert "of 2 runs done, about 0 s left" in shown
+    assert shown.split("\r")[-1] == ""
+
+
+def test_a_short_call_shows_nothing_in_a_notebook_and_a_long_one_clears_its_line():
+    times, screen = iter([0.0, 0.5, 1.5, 1.5, 1.6, 2.0, 2.0]), io.StringIO()
+    meter = CellMeter(screen, clock=lambda: next(times))
+    meter(report(1))
+    assert screen.getvalue() == ""
+    meter(report(2))
+    meter(report(3))
+    meter(CaseProgress("a", 1, 2, 3.0))
+    longest = len(describe(report(2)))
+    assert (
+        screen.getvalue() == f"\r{describe(report(2))}\r{describe(CaseProgress('a', 1, 2, 3.0)):<{longest}}"
+    )
+    meter.close()
+    assert screen.getvalue().split("\r")[-2:] == [" " * len(describe(CaseProgress("a", 1, 2, 3.0))), ""]

@@ -27,6 +27,7 @@ from fem_impact.answers.verdict.twins import inclined, twins
 from fem_impact.case.case import Case
 from fem_impact.case.limits import not_reduced
 from fem_impact.errors import RunError, SceneError
+from fem_impact.progress import tell_cell
 
 if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
@@ -117,7 +118,7 @@ def assess(
     tolerance: float = TOLERANCE,
     budget_s: float = BUDGET,
     workers: int = 1,
-    tell: Tell = lambda sentence: None,
+    tell: Tell = tell_cell,
     of: str = "e",
 ) -> Verdict:
     """Say whether rigid theory may be used for a scene, beside its twin that cannot vibrate.
@@ -133,7 +134,8 @@ def assess(
     tolerance : change that may be neglected
     budget_s : wall time of the finite elements, s
     workers : runs at a time, 1 or 2
-    tell : called with a sentence before something that takes long, and after each step
+    tell : called with a sentence before something that takes long, and after each step; by default these are
+        printed in IPython and notebooks
     of : the change of which number: "e", or as shares of E_0 the "energy" that the body keeps or the work of
         "friction"
 

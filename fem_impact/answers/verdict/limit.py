@@ -28,6 +28,7 @@ from fem_impact.errors import RunError, SceneError, UsageError
 from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.limitation import texts
 from fem_impact.outcome.record import installed_versions
+from fem_impact.progress import tell_cell
 from fem_impact.scene.write import digest
 from fem_impact.tables.text import plain
 
@@ -109,7 +110,7 @@ def judge(
     fidelity: str = "auto",
     budget_s: float = BUDGET,
     workers: int = 1,
-    tell: Tell = lambda sentence: None,
+    tell: Tell = tell_cell,
 ) -> LimitVerdict:
     """Say whether a number stays below a limit, SI, for all values in the intervals.
 
