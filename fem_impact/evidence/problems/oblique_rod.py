@@ -204,13 +204,6 @@ def _values(after: ObliqueRebound) -> tuple[float, float, float]:
     return after.restitution, after.ratio, after.bending / after.E_0
 
 
-def _coupled(p: Values, exact: ObliqueRebound) -> tuple[str, ...]:
-    """Return what friction on a rigid plane changes that the reference, for like bodies, leaves out."""
-    if p["elastic_barrier"] or not p["f"]:
-        return ()
-    return NAMES[::2] if exact.ratio > SLIDING * p["f"] else NAMES
-
-
 def _contacts(result: SolidResult, exact: ObliqueRebound, around: list[ObliqueRebound]) -> Check:
     """Compare the number of contacts; one that errors of the mesh change in the reference is only shown."""
     intervals = result.model.book.intervals
@@ -266,7 +259,9 @@ def solve(p: Values) -> Solved:
     values = _values(exact)
     spread = [sum(abs(v - x) for v in each) for x, *each in zip(values, *map(_values, around), strict=True)]
     computed = (e, mu, bending_energy(result) / result.E_0)
-    coupled = _coupled(drop.p, exact)
+    coupled: tuple[str, ...] = ()
+    if p["f"] and not p["elastic_barrier"]:  # what the reference, for like bodies, leaves out
+        coupled = NAMES[::2] if exact.ratio > SLIDING * p["f"] else NAMES
     checks = (
         *(
             Check.shown(name, "1", value, wanted, COUPLED)

@@ -26,9 +26,7 @@ from fem_impact.evidence.problems.spheres import (
 from fem_impact.evidence.references.zener import PlateImpact, zener_impact
 from fem_impact.physics.plate import plate_impedance, pulse_wave
 from fem_impact.scene.barrier import Barrier
-from fem_impact.scene.impact import Impact
 from fem_impact.scene.parameter import Parameter
-from fem_impact.scene.types import Accuracy
 from fem_impact.solid.model import Model
 
 RESTITUTION, FORCE, TIME = 0.02, 0.03, 0.03
@@ -98,19 +96,16 @@ class PlateStrike:
 def _scene_strike(p: Values, number: float, exact: PlateImpact) -> PlateStrike:
     """Return the impact of a scene's ball on its plate of a number of Zener's."""
     metal, touch = setups.steel(p), plain_hertz(p, p["speed"]).radius
-    scene = setups.problem_scene(
+    model = setups.falling(
         setups.ball(p, metal),
         Barrier(metal, thickness=_thickness(p, number), support="infinite"),
-        ("vibration", "barrier-elastic" if p["block"] else "barrier-rigid", "plate-bending"),
-        Impact(0.0, -p["speed"], 0.0),
-        Accuracy(
-            tip_size=setups.fine_tip(touch, p["cells"]),
-            across=int(p["across"]),
-            block_margin=max(MARGIN * touch, 4 * p["radius"] / p["across"]),
-            mass_scaling=1.0,
-        ),
+        ("barrier-elastic" if p["block"] else "barrier-rigid", "plate-bending"),
+        p["speed"],
+        tip_size=setups.fine_tip(touch, p["cells"]),
+        across=int(p["across"]),
+        block_margin=max(MARGIN * touch, 4 * p["radius"] / p["across"]),
     )
-    return PlateStrike.of(p, setups.scene_model(scene), AFTER * exact.duration * unit_of_time(p))
+    return PlateStrike.of(p, model, AFTER * exact.duration * unit_of_time(p))
 
 
 def solve_plate(p: Values) -> Solved:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
 import meshio
 import numpy as np
@@ -118,6 +119,18 @@ def scene_model(scene: Scene) -> Model:
     return build(Case.of(scene))
 
 
+def falling(
+    body: ProjectileSpec, barrier: Barrier, effects: tuple[str, ...], speed: float, **accuracy: Any
+) -> Model:
+    """Return the model of a scene's body that vibrates and falls along the normal at a speed, m/s.
+
+    ``accuracy`` are keys of `Accuracy`; no small element is made heavier.
+    """
+    mesh = Accuracy(mass_scaling=1.0, **accuracy)
+    drop = Impact(0.0, -speed, 0.0)
+    return scene_model(problem_scene(body, barrier, ("vibration", *effects), drop, mesh))
+
+
 def meshed_bar_model(
     p: Values,
     half: HexMesh,
@@ -199,18 +212,23 @@ class ForceRecorder:
 
 
 class Until:
-    """Watches mechanical energy over that of the start, until a time or a condition."""
+    """Watches mechanical energy, or what ``names`` say, over that of the start, until a time or condition."""
 
     def __init__(
-        self, ledger: Ledger, end: float, done: Callable[[], bool] = lambda: False, every: int = 10
+        self,
+        ledger: Ledger,
+        end: float,
+        done: Callable[[], bool] = lambda: False,
+        every: int = 10,
+        names: tuple[str, ...] = MECHANICAL,
     ) -> None:
-        self.ledger, self.end, self.done, self.every = ledger, end, done, every
+        self.ledger, self.end, self.done, self.every, self.names = ledger, end, done, every, names
         self.most = 0.0
 
     def observe(self, state: State) -> bool:
         """Sample; stop at the end."""
         found = self.ledger.sample(state)
-        self.most = max(self.most, sum(found[name] for name in MECHANICAL) / self.ledger.start)
+        self.most = max(self.most, sum(found[name] for name in self.names) / self.ledger.start)
         return state.time >= self.end or self.done()
 
 

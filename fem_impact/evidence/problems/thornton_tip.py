@@ -26,10 +26,8 @@ from fem_impact.evidence.references.hertz import (
     yield_speed,
 )
 from fem_impact.scene.barrier import Barrier
-from fem_impact.scene.impact import Impact
 from fem_impact.scene.material import Material
 from fem_impact.scene.parameter import Parameter
-from fem_impact.scene.types import Accuracy
 from fem_impact.solid.model import Model
 
 SLOPE, SLOPE_TOLERANCE, CONVERGED = -0.25, 0.05, 0.03
@@ -57,12 +55,8 @@ def _model(p: Values, v: float, cells: float) -> Model:
     metal = Material(
         "problem", p["E"], p["nu"], p["rho"], p["yield_stress"], p["yield_stress"], hardening=p["hardening"]
     )
-    accuracy = Accuracy(tip_size=touch / cells / setups.WIDER, across=across, mass_scaling=1.0)
-    effects = ("vibration", "rod-plasticity", "barrier-rigid")
-    drop = Impact(0.0, -v, 0.0)
-    return setups.scene_model(
-        setups.problem_scene(setups.ball(p, metal), Barrier(metal), effects, drop, accuracy)
-    )
+    effects, size = ("rod-plasticity", "barrier-rigid"), touch / cells / setups.WIDER
+    return setups.falling(setups.ball(p, metal), Barrier(metal), effects, v, tip_size=size, across=across)
 
 
 def _restitution(p: Values, v: float, cells: float) -> tuple[float, float, int, int]:

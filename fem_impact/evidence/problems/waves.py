@@ -23,10 +23,8 @@ from fem_impact.fem.layout import TWISTING, MassPoints, number
 from fem_impact.fem.slices import SliceOperator
 from fem_impact.fem.sparse import assemble, assemble_mass, tie_operator
 from fem_impact.scene.barrier import Barrier
-from fem_impact.scene.impact import Impact
 from fem_impact.scene.parameter import Parameter
 from fem_impact.scene.projectile import ProjectileSpec
-from fem_impact.scene.types import Accuracy
 from fem_impact.solid.march import march
 from fem_impact.solid.model import Model
 from fem_impact.solid.rodview import modes_of
@@ -46,10 +44,8 @@ def free_bar(p: Values, across: int) -> Model:
     """Return the flat rod of a scene, upright, as it flies on after its contact."""
     metal = setups.steel(p)
     rod = ProjectileSpec(p["length"], p["diameter"], "plain", 0.0, metal)
-    accuracy = Accuracy(tip_size=p["diameter"] / 4, across=across, mass_scaling=1.0)
-    drop = Impact(0.0, -PLUCK, 0.0)
-    scene = setups.problem_scene(rod, Barrier(metal), ("vibration", "barrier-rigid"), drop, accuracy)
-    return setups.scene_model(scene).coasting()
+    mesh = {"tip_size": p["diameter"] / 4, "across": across}
+    return setups.falling(rod, Barrier(metal), ("barrier-rigid",), PLUCK, **mesh).coasting()
 
 
 def frequencies(model: Model) -> dict[str, Array]:
@@ -131,16 +127,6 @@ class Probe:
         return float((len(k) - 1) / (2 * (crossing[-1] - crossing[0])))
 
 
-def _ringing(check: Check, p: Values, dt: float, periods: float) -> float:
-    """Return what a mode, found within the tolerance of ``check``, may be off by when it rings.
-
-    Leapfrog rings high by (omega dt)^2 / 24. The plucked shape leaves out the lateral motion, a share of
-    (nu pi R / L)^2 / 4 in other modes, which moves the first and the last of its zero crossings.
-    """
-    others = (p["nu"] * pi * p["diameter"] / (2 * p["length"])) ** 2 / 4
-    return min(MOST, check.tolerance + (2 * pi * check.reference * dt) ** 2 / 24 + others / (pi * periods))
-
-
 def solve_modes(p: Values) -> Solved:
     """Compare both ways of finding frequencies with Rayleigh-Ritz in three dimensions.
 
@@ -172,8 +158,11 @@ def solve_modes(p: Values) -> Solved:
     torsion = min(MOST, mesh.twisting_error(p["length"]))
     checks.append(Check("torsion 1", "Hz", _torsion(p, slices), float(exact.torsion[0]), torsion))
     for rung, still in ((bend, checks[0]), (stretch, checks[len(BENDING)])):
+        # leapfrog rings high by (omega dt)^2 / 24; the plucked shape leaves out the lateral motion, a
+        # share of (nu pi R / L)^2 / 4 in other modes, which moves the first and last of its zero crossings
         periods = PERIODS * still.reference / checks[0].reference
-        allowed = _ringing(still, p, state.dt, periods)
+        others = (p["nu"] * pi * p["diameter"] / (2 * p["length"])) ** 2 / 4 / (pi * periods)
+        allowed = min(MOST, still.tolerance + (2 * pi * still.reference * state.dt) ** 2 / 24 + others)
         checks.append(Check(f"{still.name}, ringing", "Hz", rung, still.reference, allowed))
     return Solved(tuple(checks), state.step, len(model.geometry.rod.mesh.cells))
 
