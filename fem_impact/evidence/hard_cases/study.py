@@ -8,27 +8,28 @@ from __future__ import annotations
 import hashlib
 import json
 import time
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
-from fem_impact import Case, RunOptions
+from fem_impact import Case, RunOptions, known
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.errors import ResultError, RunError, SceneError
 from fem_impact.evidence.hard_cases.scenes import CASES, HardCase
+from fem_impact.evidence.problems.problem import verify
+from fem_impact.fem.stable import SAFETY
 from fem_impact.files.atomic import make_directory
+from fem_impact.files.run_directory import CHECKPOINT
 from fem_impact.jobs.job import Failure, JobKind
-from fem_impact.run.program import source_digest
-from fem_impact.tables.table import Cell, Column, Table, read_csv
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from fem_impact.solid.model import Model
-    from fem_impact.solid.run import SolidResult
-
+from fem_impact.run.program import source_digest, stamp
+from fem_impact.run.solid import reduce
+from fem_impact.solid.build import build
+from fem_impact.solid.model import Model
+from fem_impact.solid.run import SolidResult, solve
+from fem_impact.tables.table import Column, Table, read_csv
 
 LEDGER = 1e-3  # of E_0: most that the ledger may miss, to either side
 FED = 1e-6  # of E_0: most that friction may give back between two rows of the history
@@ -155,7 +156,14 @@ class HardCaseJob:
             The case did not end as it must: the sentence says how, and why.
         """
         begun = time.process_time()
-        result = replace(self._result(), cpu_s=time.process_time() - begun)
+        try:
+            case = self.case
+            result = _bounced(case.bounces) if case.bounces else _judged(self._solved(), self.out)
+        except SceneError as refusal:
+            result = HardCaseResult("refused", str(refusal))
+        except RunError as stop:
+            result = HardCaseResult("detected", str(stop))
+        result = replace(result, cpu_s=time.process_time() - begun)
         if result.verdict != self.case.expected:
             raise RunError(f"{result.verdict}, not {self.case.expected}: {result.reason}")
         return json.dumps(asdict(result))
@@ -171,21 +179,8 @@ class HardCaseJob:
         """Return the processor time of a result, s."""
         return result.cpu_s
 
-    def _result(self) -> HardCaseResult:
-        try:
-            return _bounced(self.case.bounces) if self.case.bounces else _judged(self._solved(), self.out)
-        except SceneError as refusal:
-            return HardCaseResult("refused", str(refusal))
-        except RunError as stop:
-            return HardCaseResult("detected", str(stop))
-
     def _solved(self) -> SolidResult:
         """Run the case from its checkpoint if there is one, else from the start."""
-        from fem_impact.case.case import Case
-        from fem_impact.files.run_directory import CHECKPOINT
-        from fem_impact.run.program import stamp
-        from fem_impact.solid.run import solve
-
         planned = Case.of(self.case.scene())
         make_directory(self.out)
         options = RunOptions(self.out, checkpoint_s=CHECKPOINT_INTERVAL, stamp=stamp(planned.scene))
@@ -199,9 +194,6 @@ class HardCaseJob:
 
 def model_of(case: HardCase, planned: Case) -> Model:
     """Return the model of a case, with its own height, shift and step at the start."""
-    from fem_impact.fem.stable import SAFETY
-    from fem_impact.solid.build import build
-
     model = build(planned, case.gap)
     x, v = model.start[0].copy(), model.start[1]
     x[model.layout.rod[:, 0]] += case.shifted
@@ -211,10 +203,6 @@ def model_of(case: HardCase, planned: Case) -> Model:
 
 def _judged(result: SolidResult, out: Path) -> HardCaseResult:
     """Write the outcome of a run, which then holds no NaN, and judge its balances."""
-    from fem_impact.files.run_directory import CHECKPOINT
-    from fem_impact.outcome.keys import known
-    from fem_impact.run.solid import reduce
-
     outcome = reduce(result)
     (out / CHECKPOINT).unlink(missing_ok=True)
     outcome.write(out / "outcome.json")
@@ -229,8 +217,6 @@ def _judged(result: SolidResult, out: Path) -> HardCaseResult:
 
 def _bounced(bounces: int) -> HardCaseResult:
     """Judge the bounces of a bar between two walls, by the problem of `fem-impact verify bar`."""
-    from fem_impact.evidence.problems.problem import verify
-
     done = verify("bar", {"bounces": bounces})
     checks = {check.name: check for check in done.checks}
     gained = max(0.0, checks["largest energy of all bounces / E_0"].computed - 1.0)
@@ -250,7 +236,15 @@ def conclude(request: Request, results: Mapping[str, HardCaseResult | Failure]) 
     verdicts = [result.verdict for result in done.values()]
     worst = max((r.residual or 0.0 for r in done.values() if r.verdict == "closed"), default=0.0)
     minutes = sum(result.cpu_s for result in done.values()) / 60
-    rows = tuple(_row(CASES[name], result) for name, result in results.items())
+    unknown = HardCaseResult("**FAILED**")
+    ended = {name: done.get(name, unknown) for name in results}
+    rows = tuple(
+        (
+            *(name, CASES[name].difficulty, r.verdict, r.residual, r.elements or None, r.steps or None),
+            r.cpu_s if name in done else None,
+        )
+        for name, r in ended.items()
+    )
     return StudyReport(
         "stress",
         "Hard cases",
@@ -270,10 +264,3 @@ def conclude(request: Request, results: Mapping[str, HardCaseResult | Failure]) 
             )
         ],
     )
-
-
-def _row(case: HardCase, result: HardCaseResult | Failure) -> tuple[Cell, ...]:
-    if isinstance(result, Failure):
-        return (case.name, case.difficulty, "**FAILED**", None, None, None, None)
-    counts = (result.elements or None, result.steps or None)
-    return (case.name, case.difficulty, result.verdict, result.residual, *counts, result.cpu_s)

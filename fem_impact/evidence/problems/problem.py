@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from importlib import import_module
 from math import inf, isfinite
 from typing import Any, Literal
@@ -69,6 +69,12 @@ class Check:
         return max(0.0, difference) if self.kind == "at most" else difference
 
     @property
+    def used(self) -> float:
+        """Return the share of its tolerance that the error uses up."""
+        error = abs(self.error)
+        return error / self.tolerance if self.tolerance else (inf if error else 0.0)
+
+    @property
     def passed(self) -> bool:
         """Return whether the error is finite and within the tolerance, which what is only shown has not."""
         return isfinite(self.error) and bool(abs(self.error) <= self.tolerance)
@@ -123,13 +129,12 @@ class Verification:
 
     def document(self) -> dict[str, Any]:
         """Return all of it as plain values."""
-        cost = {key: getattr(self.cost, key) for key in ("wall_s", "cpu_s", "steps", "elements")}
         return {
             "problem": self.name,
             "passed": self.passed,
             "parameters": self.parameters,
             "checks": [check.document() for check in self.checks],
-            "cost": cost,
+            "cost": asdict(self.cost),
         }
 
 
@@ -216,15 +221,9 @@ def verify(name: str, changes: Mapping[str, float | str] | None = None) -> Verif
 HEAD = ["problem", "passed", "nearest to its limit", "computed", "reference", "error", "allowed", "CPU s"]
 
 
-def _use(check: Check) -> float:
-    """Return the share of its tolerance that a check uses up."""
-    error = abs(check.error)
-    return error / check.tolerance if check.tolerance else (float("inf") if error else 0.0)
-
-
 def _row(found: Verification) -> list[str]:
     judged = [check for check in found.checks if check.judged]
-    nearest = max(judged, key=_use)
+    nearest = max(judged, key=lambda check: check.used)
     unit = "" if nearest.unit == "1" else f" {nearest.unit}"
     return [
         f"`{found.name}`",

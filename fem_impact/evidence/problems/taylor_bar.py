@@ -72,18 +72,11 @@ def _model(p: Values, slices: float) -> Model:
     R, slab = p["radius"], p["length"] / slices
     flat = np.array([[0.0, 0.0], [R, 0.0]])
     bar = meshes.rod(flat, p["length"], int(p["across"]), slice_length=slab, nose=False)
-    velocity = np.zeros_like(bar.mesh.points)
-    velocity[:, 2] = -p["speed"]
+    mesh, law = meshes.RodMesh.plain(bar.mesh), linear_hardening(p["yield_stress"], p["hardening"])
     points = placed(bar.mesh.points, 0.0, 0.0)
-    law, yields = (
-        linear_hardening(p["yield_stress"], p["hardening"]),
-        np.ones(len(bar.mesh.cells), dtype=bool),
-    )
+    velocity, yields = np.tile([0.0, 0.0, -p["speed"]], (len(points), 1)), np.ones(len(bar.mesh.cells), bool)
     metal = p["E"], p["nu"], p["rho"]
-    body = FreeBody(
-        meshes.RodMesh.plain(bar.mesh), points, velocity, *metal, law=law, yields=yields, friction=0.0
-    )
-    model = body_model(body)
+    model = body_model(FreeBody(mesh, points, velocity, *metal, law=law, yields=yields, friction=0.0))
     return replace(model, steps={"rod": CAUTION * model.step})
 
 
