@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import pi, sqrt
+from math import sqrt
 
 import numpy as np
 
@@ -87,17 +87,3 @@ def _rebound(
         impulse += dt * F
         pushed += dt * T
     return SphereRebound(v_t - pushed / mass, slip, pushed / mass / INERTIA, pushed / impulse)
-
-
-def reversal(psi: float, nu: float, f: float = 0.1) -> float:
-    """Return psi_2 after the impact for psi_1 before: psi = 2 (1 - nu) V_t / (f (2 - nu) V_n).
-
-    Examples
-    --------
-    >>> [round(reversal(p, 0.29), 2) for p in (2.0, 3.5)]
-    [-0.82, -1.48]
-    """
-    scale = 2 * (1 - nu) / (f * (2 - nu))
-    R, rho, E_star = 9.5e-3, 7850.0, 115e9
-    rebound = oblique_sphere(E_star, nu, R, 4 / 3 * pi * R**3 * rho, f, 1.0, psi / scale)
-    return scale * rebound.contact_t

@@ -99,23 +99,6 @@ def flexural_speed(ratio: float, nu: float) -> float:
     return _first_root(_flexural, 0.1 * min(k, 1.0), 0.999 * _speeds(nu)[1], k, nu)
 
 
-def rayleigh_speed(nu: float) -> float:
-    """Return the speed of surface waves over c0, which both modes approach.
-
-    Examples
-    --------
-    >>> round(rayleigh_speed(0.29), 4)
-    0.5764
-    """
-    c_d, c_s = _speeds(nu)
-
-    def secular(c: float) -> float:
-        roots = sqrt(1 - (c / c_s) ** 2) * sqrt(1 - (c / c_d) ** 2)
-        return (2 - (c / c_s) ** 2) ** 2 - 4 * roots
-
-    return float(brentq(secular, 0.5 * c_s, 0.9999 * c_s))
-
-
 @cache
 def _lamb(nu: float, shear: bool) -> float:
     """Return the imaginary part of Lamb's integral, wave number of shear waves 1.

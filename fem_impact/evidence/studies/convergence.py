@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fem_impact import Unknown, known, load, replace_all
-from fem_impact.answers.refine.extrapolate import MeshRuns, level_limits
+from fem_impact import known, load, replace_all
+from fem_impact.answers.refine.extrapolate import level_limits
 from fem_impact.answers.refine.work import Levels, LevelsJob
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.arrays import Array
@@ -23,6 +23,7 @@ from fem_impact.errors import RunError
 from fem_impact.evidence.studies.report_parts import rests_on
 from fem_impact.figures.panels import Panel, Picture, Series
 from fem_impact.jobs.job import Failure
+from fem_impact.outcome.keys import or_none
 from fem_impact.outcome.record import KEY_TABLE
 from fem_impact.outcome.shares import shares
 from fem_impact.tables.table import Cell, Table
@@ -179,6 +180,7 @@ def convergence_rows(name: str, levels: Levels) -> list[Row]:
     if len(meshes) < LEAST:
         return []
     sizes, rows = [mesh.size for mesh in meshes], []
+    limits, bands = (or_none(told) or {} for told in level_limits(levels.meshes[: levels.default]))
     for quantity, key in QUANTITIES.items():
         values = [[known(key.of(run)) for run in mesh.runs] for mesh in meshes]
         means = [fmean(on_mesh) for on_mesh in values]
@@ -190,18 +192,10 @@ def convergence_rows(name: str, levels: Levels) -> list[Row]:
             "default": levels.default - 1 - len(levels.meshes),
             "apart": [max(on_mesh) - min(on_mesh) for on_mesh in values],
             "fit": limit(sizes, means),
-            "told": _told(levels.meshes[: levels.default], key.name),
+            "told": (limits[key.name], bands[key.name]) if key.name in bands else None,
         }
         rows.append(row)
     return rows
-
-
-def _told(meshes: Sequence[MeshRuns], name: str) -> tuple[float, float] | None:
-    """Return limit and half-width that levels tell of a number; None where they tell none."""
-    limits, bands = level_limits(meshes)
-    if isinstance(limits, Unknown) or isinstance(bands, Unknown) or name not in bands:
-        return None
-    return limits[name], bands[name]
 
 
 def _answer(rows: Sequence[Row]) -> list[str]:

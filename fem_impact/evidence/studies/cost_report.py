@@ -112,16 +112,13 @@ def _picture(
 def _panel(settings: Sequence[Judged], name: str, title: str) -> Panel:
     known = [one for one in settings if one.error[name] and one.kind in LOOKS]
     best = Series(FRONT, *_points(front(known, [name]), name), "line", "grey")
-    kinds = [_series([one for one in known if one.kind == kind], name, kind) for kind in LOOKS]
+    series = [best]
+    for kind, (label, look, colour) in LOOKS.items():
+        if of := [one for one in known if one.kind == kind]:
+            texts = tuple(one.name for one in of)
+            series.append(Series(label, *_points(of, name), look, colour, texts=texts))
     level = (Mark(100 * WANTED),)
-    series = (best, *(one for one in kinds if one.texts))
-    return Panel(title, "computing time, s", "error, %", series, levels=level, logarithmic=True)
-
-
-def _series(settings: Sequence[Judged], name: str, kind: str) -> Series:
-    label, look, colour = LOOKS[kind]
-    texts = tuple(one.name for one in settings)
-    return Series(label, *_points(settings, name), look, colour, texts=texts)
+    return Panel(title, "computing time, s", "error, %", tuple(series), levels=level, logarithmic=True)
 
 
 def _points(settings: Sequence[Judged], name: str) -> tuple[list[float], list[float]]:

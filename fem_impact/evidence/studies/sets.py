@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from fem_impact import Outcome, known, load, replace_all, simulate
+from fem_impact import Outcome, Unknown, known, load, replace_all, simulate
 from fem_impact.answers.compare import COMPARED, ComparisonRow, compare
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.evidence.studies.inputs import (
@@ -183,25 +183,24 @@ def _shares(outcomes: Sequence[Outcome]) -> Table:
 def _percent(outcome: Outcome, share: EnergyShare) -> str | None:
     if share.key.path[-1] == "vibration" and or_none(outcome.energy.below_floor):
         return "below floor"
-    estimate, band = outcome.estimate(share.key)
-    value = or_none(estimate)
-    if value is None:
+    value, band = outcome.estimate(share.key)
+    if isinstance(value, Unknown):
         return None
     digits = 2 if abs(100 * value) < 10 else 1
-    return f"{100 * value:.{digits}f}" + (f" ± {100 * band:.{digits}f}" if band is not None else "")
+    return with_spread(100 * value, None if band is None else 100 * band, digits)
 
 
 def _limits(outcomes: Sequence[Outcome]) -> list[Sheet]:
     """Return one row per set with bands: limits of e and E_vib, CPU time of the last level."""
     rows = []
     for outcome in outcomes:
-        if or_none(outcome.validity.mesh_band):
-            cells = [outcome.provenance.scene_id]
-            for key, scale in (("e_edge", 1), ("E_vib_over_E_0", 100)):
-                limit = known(outcome.validity.mesh_limit)[key]
-                band = known(outcome.validity.mesh_band)[key]
-                cells += [f"{scale * limit:.3f} ± {scale * band:.3f}", plain(100 * band / abs(limit), 2)]
-            rows.append([*cells, f"{outcome.cost.cpu:.0f}"])
+        cells = [outcome.provenance.scene_id]
+        for key, scale in (("e_edge", 1), ("E_vib_over_E_0", 100)):
+            limit, band = outcome.estimate(key)
+            if band is not None:
+                share = plain(100 * band / abs(known(limit)), 2)
+                cells += [with_spread(scale * known(limit), scale * band, 3), share]
+        rows += [[*cells, f"{outcome.cost.cpu:.0f}"]] if len(cells) > 1 else []
     head = ("set", "e, limit", "of e, %", "E_vib / E_0, %, limit", "of E_vib, %", "CPU s")
     caption = "Limits for vanishing elements, their bands, these in per cent, and time of the last level"
     return [Sheet("limits", caption, Table.of(head, rows))] if rows else []

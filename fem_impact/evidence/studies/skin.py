@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from fem_impact import Outcome, Scene, Unknown, load, replace_all, simulate
+from fem_impact import Outcome, Scene, known, load, replace_all, simulate
 from fem_impact.answers.compare import MEASURED
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.evidence.studies import joint
@@ -41,14 +41,8 @@ INPUTS: Mapping[str, dict[str, Any]] = {
 """Changed keys of the scenes by the name of the inputs."""
 DEFAULT, EFFECT = "default", "machined-skin"
 KEYS = [quantity.key for quantity in MEASURED if quantity.name in SHOWN]
-HEAD = (
-    "set",
-    "inputs",
-    *(f"{part} {name}" for name in SHOWN for part in ("S", "E", "u_val")),
-    "D2",
-    "p",
-    "jointly",
-)
+ERRORS = [f"{part} {name}" for name in SHOWN for part in ("S", "E", "u_val")]
+HEAD = ("set", "inputs", *ERRORS, "D2", "p", "jointly")
 
 
 def plan(request: Request, results: JobResults) -> list[Job]:
@@ -115,13 +109,10 @@ def _joint(name: str, inputs: str, request: Request, results: JobResults) -> Joi
     run = results.get(_job(name, inputs).name)
     if not isinstance(run, Outcome):
         return None
-    limits, bands = run.validity.mesh_limit, run.validity.mesh_band
-    if isinstance(limits, Unknown) or isinstance(bands, Unknown):
-        return None
     rows = [
-        row | {"S": limits[key.name], "u_num": bands[key.name] / 2}
-        for row, key in zip(stored, KEYS, strict=True)
-        if limits[key.name] is not None and bands[key.name] is not None
+        row | {"S": known(S), "u_num": band / 2}
+        for row, (S, band) in zip(stored, map(run.estimate, KEYS), strict=True)
+        if band is not None
     ]
     return of_set(name, request, results, rows) if len(rows) == len(stored) else None
 

@@ -122,6 +122,10 @@ class ValidatedSet:
     tests: Array
     comparisons: tuple[Comparison, ...]
 
+    def drawn(self, at: int) -> tuple[Array, Array]:
+        """Return output ``at`` of `all_inputs` and of `tests` (n,), shifted to the limit of the levels."""
+        return self.all_inputs[:, at] + self.shift[at], self.tests[:, at] + self.shift[at]
+
 
 def unit_sample(n: int) -> Array:
     """Return a seeded scrambled Sobol sequence (n, d) in the unit cube of `UNCERTAIN_INPUTS`."""

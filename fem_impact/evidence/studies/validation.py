@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.stats import sobol_indices, uniform, wasserstein_distance
 
-from fem_impact import Outcome, Unknown, load, replace_all
+from fem_impact import Outcome, load, replace_all
 from fem_impact.answers.compare import MEASURED
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.answers.v_and_v import COVERAGE, Comparison
@@ -29,6 +29,7 @@ from fem_impact.evidence.studies.validated import (
     OUTPUTS,
     SEED,
     SHOWN,
+    VIBRATION,
     ValidatedSet,
     compared,
     fit,
@@ -41,6 +42,7 @@ from fem_impact.evidence.studies.validated import (
 from fem_impact.figures.panels import Look, Mark, Panel, Picture, Series
 from fem_impact.jobs.job import Job
 from fem_impact.jobs.run import JobResults
+from fem_impact.outcome.keys import or_none
 from fem_impact.tables.table import Cell, Table
 from rigid.experiments import correlations, measured_set
 
@@ -82,8 +84,8 @@ def _validated(name: str, request: Request, results: JobResults) -> ValidatedSet
     finished = {i: run for i, run in enumerate(runs) if isinstance(run, Outcome)}
     if not isinstance(nominal, Outcome) or len(finished) < FEWEST:
         return None
-    limits, bands = nominal.validity.mesh_limit, nominal.validity.mesh_band
-    if isinstance(limits, Unknown) or isinstance(bands, Unknown):
+    limits, bands = or_none(nominal.validity.mesh_limit), or_none(nominal.validity.mesh_band)
+    if limits is None or bands is None:
         return None
     sampled = scaled(name, unit_sample(len(runs)))[list(finished)]
     surface = fit(sampled, np.array([outputs(run, measured) for run in finished.values()]))
@@ -190,9 +192,7 @@ def _distributions(sets: Sequence[ValidatedSet], name: str) -> Picture:
     """Return the distribution of a quantity in each set: model over all inputs, test to test, measured."""
     at, panels = NAMES.index(name), []
     for study_set in sets:
-        model, tests = (
-            values[:, at] + study_set.shift[at] for values in (study_set.all_inputs, study_set.tests)
-        )
+        model, tests = study_set.drawn(at)
         series = (
             _steps("model, all inputs", model, "line", 5),
             _steps("model, test to test", tests, "dashed", 0),
@@ -213,31 +213,25 @@ def _steps(label: str, values: Array, look: Look, colour: int) -> Series:
 
 def _cause_sheet(sets: Sequence[ValidatedSet]) -> Sheet:
     """Return the share of each input in the variance of each quantity: total Sobol indices."""
-    names = [i.name for i in UNCERTAIN_INPUTS]
-    rows: list[tuple[Cell, ...]] = [
-        (study_set.name, TITLES[output], float(error), *map(float, shares))
-        for study_set in sets
-        for output, shares, error in zip(
-            OUTPUTS, _total_indices(study_set), study_set.surface.error, strict=True
+    names, rows = [i.name for i in UNCERTAIN_INPUTS], []
+    for study_set in sets:
+        sample = sobol_indices(
+            func=lambda unit, surface=study_set.surface: surface(unit.T).T,
+            n=SOBOL_POINTS,
+            dists=[uniform()] * len(names),
+            rng=np.random.default_rng(SEED),
         )
-        if output in (*SHOWN, "E_vib_over_E_0")
-    ]
+        indices = np.maximum(sample.total_order, 0.0)  # (outputs, inputs)
+        rows += [
+            (study_set.name, TITLES[output], *map(float, (error, *shares)))
+            for output, shares, error in zip(OUTPUTS, indices, study_set.surface.error, strict=True)
+            if output in (*SHOWN, VIBRATION)
+        ]
     caption = (
         "Share of each input in the variance of the results (total Sobol index of the response surface), and "
         "the surface's own error"
     )
     return Sheet("causes", caption, Table.of(("set", "quantity", "surface_error", *names), rows))
-
-
-def _total_indices(study_set: ValidatedSet) -> Array:
-    """Return total Sobol indices (outputs, inputs), none below zero."""
-    sample = sobol_indices(
-        func=lambda unit: study_set.surface(unit.T).T,
-        n=SOBOL_POINTS,
-        dists=[uniform()] * len(UNCERTAIN_INPUTS),
-        rng=np.random.default_rng(SEED),
-    )
-    return np.asarray(np.maximum(sample.total_order, 0.0))
 
 
 def _spread_sheet(sets: Sequence[ValidatedSet]) -> Sheet:
@@ -246,27 +240,13 @@ def _spread_sheet(sets: Sequence[ValidatedSet]) -> Sheet:
     for study_set in sets:
         measured = study_set.measured.recomputed()
         for at, name in enumerate(OUTPUTS):
-            model, tests = (
-                values[:, at] + study_set.shift[at] for values in (study_set.all_inputs, study_set.tests)
-            )
-            seen = measured.get(name)
-            tested: tuple[Cell, ...] = (None, None, None)
+            (model, tests), seen = study_set.drawn(at), measured.get(name)
+            moments = [float(f) for v in (tests, model) for f in (v.mean(), v.std(ddof=1))]
+            tested: list[float | None] = [None, None, None]
             if seen is not None:
-                area = wasserstein_distance(seen, model)
-                tested = (float(seen.mean()), float(seen.std(ddof=1)), float(area))
-            moments = (float(f) for v in (tests, model) for f in (v.mean(), v.std(ddof=1)))
+                tested = [*map(float, (seen.mean(), seen.std(ddof=1), wasserstein_distance(seen, model)))]
             rows.append((study_set.name, TITLES[name], *moments, *tested))
-    head = (
-        "set",
-        "quantity",
-        "mean_tests",
-        "sd_tests",
-        "mean_all",
-        "sd_all",
-        "measured_mean",
-        "measured_sd",
-        "area",
-    )
+    head = "set quantity mean_tests sd_tests mean_all sd_all measured_mean measured_sd area".split()
     caption = (
         "Mean and standard deviation over the inputs that vary from test to test, over all inputs, measured; "
         "area between computed and measured distributions (area metric, in the unit of the quantity)"
@@ -296,16 +276,7 @@ def _surface_sheet(sets: Sequence[ValidatedSet]) -> Sheet:
             known = (c.D, c.u_num, c.u_D, study_set.surface.error[at], study_set.shift[at])
             second = np.zeros(TERMS - len(coefficients))  # of a surface of first order
             rows.append((study_set.name, c.quantity, *map(float, (*known, *coefficients, *second))))
-    head = (
-        "set",
-        "quantity",
-        "D",
-        "u_num",
-        "u_D",
-        "surface_error",
-        "shift",
-        *(f"c{i}" for i in range(TERMS)),
-    )
+    head = (*"set quantity D u_num u_D surface_error shift".split(), *(f"c{i}" for i in range(TERMS)))
     caption = (
         "Coefficients of the response surfaces (1, x_i, x_i x_j, with x from -1 to 1 over each interval)"
     )

@@ -22,8 +22,8 @@ from fem_impact.evidence.references.hertz import (
 )
 from fem_impact.evidence.references.oblique import oblique_drop, oblique_rod
 from fem_impact.evidence.references.rod_end import chain_restitution, sears, strike
-from fem_impact.evidence.references.sphere import INERTIA, oblique_sphere, reversal
-from fem_impact.evidence.references.waves import flexural_speed, longitudinal_speed, rayleigh_speed
+from fem_impact.evidence.references.sphere import INERTIA, oblique_sphere
+from fem_impact.evidence.references.waves import flexural_speed, longitudinal_speed
 from rigid import Projectile
 
 STEEL = (219e9, 0.29, 7850.0)
@@ -127,8 +127,8 @@ def test_guided_waves():
     assert found == pytest.approx([0.99113, 0.95645, 0.87299, 0.68927], abs=6e-6)
     found = [flexural_speed(r, 0.29) for r in (0.10, 0.20, 0.50)]
     assert found == pytest.approx([0.27000, 0.41381, 0.54478], abs=1.1e-5)
-    assert rayleigh_speed(0.29) == pytest.approx(0.5764, abs=5e-5)
-    assert longitudinal_speed(8.0, 0.29) == pytest.approx(rayleigh_speed(0.29), rel=3e-3)
+    # waves that are short beside the bar run along its skin, as Rayleigh's do
+    assert longitudinal_speed(8.0, 0.29) == pytest.approx(0.5764, rel=3e-3)
 
 
 def test_free_cylinder():
@@ -148,8 +148,14 @@ def test_beam_is_near_the_cylinder():
 
 
 def test_oblique_sphere_turns_back():
-    """Maw's annuli and the springs differ by the coarseness of the former."""
-    found = [reversal(psi, 0.29) for psi in (0.5, 1.0, 2.0, 3.5)]
+    """Maw's annuli and the springs differ by the coarseness of the former.
+
+    psi = 2 (1 - nu) V_t / (f (2 - nu) V_n) before and after.
+    """
+    nu, f = 0.29, 0.1
+    scale, mass = 2 * (1 - nu) / (f * (2 - nu)), 4 / 3 * pi * RADIUS**3 * 7850.0
+    impacts = [(115e9, nu, RADIUS, mass, f, 1.0, psi / scale) for psi in (0.5, 1.0, 2.0, 3.5)]
+    found = [scale * oblique_sphere(*impact).contact_t for impact in impacts]
     assert found == pytest.approx([0.052, -0.050, -0.820, -1.477], abs=6.5e-3)
 
 
