@@ -36,7 +36,6 @@ from fem_impact.solid.ground import Ground
 from fem_impact.solid.items import Force, Impulse
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
-from fem_impact.solid.yielding import YieldingZone
 from meshes import HexMesh, RodMesh
 
 
@@ -68,7 +67,7 @@ class FreeBody:
     Attributes
     ----------
     mesh : RodMesh, with or without slices; points : (n, 3) positions in (t, b, n), m
-    velocity : (n, 3) at the start, m/s
+    velocity : (n, 3), or (3,) of all points, at the start, m/s
     E, nu, rho : material; law : hardening of the cells that ``yields`` (m,) names
     denser : (m,) or (1,) density of each cell over rho
     friction : Coulomb's coefficient, or None for no contact at all
@@ -110,7 +109,10 @@ def body_model(body: FreeBody) -> Model:
     """Return the model of one body over the rigid plane n = 0, or over its block."""
     block = body.block
     layout = number(body.mesh, block.mesh if block else None)
-    parts = [_part(body, layout)]
+    mesh, yields = body.mesh.mesh, body.yields
+    yields = np.zeros(len(mesh.cells), dtype=bool) if yields is None else yields
+    rod = make_body("rod", mesh, body.points, layout.rod, body, yields)
+    parts = [replace(rod, mass=rod.mass * body.denser[:, None])]
     if block:
         yields = block.mesh.finest & (block.law is not None)
         parts.append(make_body("barrier", block.mesh, block.mesh.points, layout.barrier, block, yields))
@@ -120,7 +122,11 @@ def body_model(body: FreeBody) -> Model:
         inverse[: layout.rod_size] = 0.0
     drawn = MassPoints.of_rod(body.mesh, parts[0].mass, body.rho)
     x, v = _start(body, parts, layout, drawn)
-    zones = _zones(body, parts, layout)
+    zones = [
+        build.yielding_zone(part, law, layout)
+        for part, law in zip(parts, (body.law, block.law if block else None), strict=False)
+        if law and part.yields.any()
+    ]
     linear, stiffness = _linear(body, parts[0], layout, mass, x, drawn)
     forces: list[Force] = [linear, *zones]
     impulses: list[Impulse] = []
@@ -156,22 +162,6 @@ def body_model(body: FreeBody) -> Model:
         steps=steps,
         start=(x, v),
     )
-
-
-def _zones(body: FreeBody, parts: list[Meshed], layout: DofLayout) -> list[YieldingZone]:
-    laws = (body.law, body.block.law if body.block else None)
-    return [
-        build.yielding_zone(part, law, layout)
-        for part, law in zip(parts, laws, strict=False)
-        if law and part.yields.any()
-    ]
-
-
-def _part(body: FreeBody, layout: DofLayout) -> Meshed:
-    mesh = body.mesh.mesh
-    yields = body.yields if body.yields is not None else np.zeros(len(mesh.cells), dtype=bool)
-    part = make_body("rod", mesh, body.points, layout.rod, body, yields)
-    return replace(part, mass=part.mass * body.denser[:, None])
 
 
 def _start(body: FreeBody, parts: list[Meshed], layout: DofLayout, drawn: MassPoints) -> tuple[Array, Array]:

@@ -36,7 +36,7 @@ from fem_impact.solid.contact.surface import SurfaceContact
 from fem_impact.solid.march import march
 from fem_impact.solid.state import State
 from fem_impact.solid.stepguard import StepGuard
-from meshes import HexMesh, Zone
+from meshes import Zone
 
 PRESSURE, RADIUS = 0.03, 0.03
 YIELDING = 2.5  # half-width and depth of the cells that may yield, over the radius of the cone at the face
@@ -74,14 +74,6 @@ class _Watch:
         return self.speed * state.time >= self.depth
 
 
-def _block(cell: float) -> HexMesh:
-    """Return the block: fine where it may yield, its faces as far as the reference's."""
-    base, half = cell * 2**LEVELS, YIELDING * RADIUS_M
-    far = ceil(REACH * RADIUS_M / base) * base
-    fine = Zone(np.zeros(3), np.eye(3), np.array([-half, 0.0, -half]), np.array([half, half, 0.0]))
-    return meshes.block([-far, 0.0, -far], [far, far, 0.0], base, [fine] * LEVELS)
-
-
 def press(p: Values, law: Hardening, friction: float, cells: int) -> tuple[Indentation, int, int]:
     """Press the cone in through the solver; return what it met, steps and cells.
 
@@ -91,14 +83,19 @@ def press(p: Values, law: Hardening, friction: float, cells: int) -> tuple[Inden
         If a cell folds or is crushed.
     """
     speed = cone_speed(metal_of(p, law))
+    # the block, fine where it may yield, its faces as far as the reference's
+    cell, wide, half = RADIUS_M / cells, WIDE * RADIUS_M, YIELDING * RADIUS_M
+    base = cell * 2**LEVELS
+    far = ceil(REACH * RADIUS_M / base) * base
+    fine = Zone(np.zeros(3), np.eye(3), np.array([-half, 0.0, -half]), np.array([half, half, 0.0]))
+    under = meshes.block([-far, 0.0, -far], [far, far, 0.0], base, [fine] * LEVELS)
     # the cone just over the block, moving down at a speed, m/s, that nothing changes
-    cell, wide = RADIUS_M / cells, WIDE * RADIUS_M
     line = np.array([[0.0, 0.0], [wide, wide / tan(p["angle"])]])
     cone = meshes.rod(line, 1.2 * wide, 2 * round(wide / cell))
     points = placed(cone.mesh.points, 0.0, 0.0)
     metal = p["E"], p["nu"], p["rho"]
-    block = Block(_block(cell), cell, *metal, law)
-    velocity = np.tile([0.0, 0.0, -speed], (len(points), 1))
+    block = Block(under, cell, *metal, law)
+    velocity = np.array([0.0, 0.0, -speed])
     model = body_model(FreeBody(cone, points, velocity, *metal, friction=friction, block=block, driven=True))
     if not isinstance(model.contact, SurfaceContact):
         raise TypeError("a cone on a block touches a surface")

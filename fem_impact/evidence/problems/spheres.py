@@ -146,8 +146,7 @@ def sphere_model(
     zone = contact_zone(touch.radius, touch.radius)
     mesh = meshes.RodMesh.plain(meshes.sphere(R, across, [zone] * levels))
     points = placed(mesh.mesh.points, 0.0, 0.0)
-    velocity = np.zeros_like(points)
-    velocity[:, 0], velocity[:, 2] = -v_t, -v_n
+    velocity = np.array([-v_t, 0.0, -v_n])
     block = None
     if p["block"]:
         under = block_under(touch.radius, base, levels, v_t * touch.duration)

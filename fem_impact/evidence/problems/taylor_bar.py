@@ -74,7 +74,7 @@ def _model(p: Values, slices: float) -> Model:
     bar = meshes.rod(flat, p["length"], int(p["across"]), slice_length=slab, nose=False)
     mesh, law = meshes.RodMesh.plain(bar.mesh), linear_hardening(p["yield_stress"], p["hardening"])
     points = placed(bar.mesh.points, 0.0, 0.0)
-    velocity, yields = np.tile([0.0, 0.0, -p["speed"]], (len(points), 1)), np.ones(len(bar.mesh.cells), bool)
+    velocity, yields = np.array([0.0, 0.0, -p["speed"]]), np.ones(len(bar.mesh.cells), dtype=bool)
     metal = p["E"], p["nu"], p["rho"]
     model = body_model(FreeBody(mesh, points, velocity, *metal, law=law, yields=yields, friction=0.0))
     return replace(model, steps={"rod": CAUTION * model.step})
