@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from importlib.resources import files
 from typing import Any, Literal
 
 from fem_impact import Scene, load, replace_all
+from fem_impact.evidence.data import read_stated, scene_keys
 
 Expected = Literal["closed", "refused", "detected"]
 
@@ -39,16 +38,10 @@ class HardCase:
 
     def scene(self) -> Scene:
         """Return its scene (SceneError if it is refused already here)."""
-        changed = {**dict(_keys(BASE)), **dict(_keys(self.changes))}
-        return replace_all(load("t5b"), {**changed, "id": f"stress-{self.name.replace('.', '-')}"})
+        named = {"id": f"stress-{self.name.replace('.', '-')}"}
+        return replace_all(load("t5b"), scene_keys(_BASE) | scene_keys(self.changes) | named)
 
 
-def _keys(stated: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield the keys of a scene, such as ``impact.angle``, with their values."""
-    for name, value in stated.items():
-        yield from _keys(value, f"{above}{name}.") if isinstance(value, dict) else [(above + name, value)]
-
-
-_STATED = tomllib.loads(files("fem_impact.evidence.hard_cases").joinpath("cases.toml").read_text("utf-8"))
-BASE: Mapping[str, Any] = _STATED.pop("base")
+_STATED = read_stated("hard_cases/cases.toml")
+_BASE = _STATED.pop("base")
 CASES = {name: HardCase(name, **stated) for name, stated in _STATED.items()}

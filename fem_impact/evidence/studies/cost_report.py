@@ -215,7 +215,10 @@ def _setting_sheet(costs: Mapping[str, CostStudy]) -> Sheet:
             title = f"{one.levels} levels" + ", two places" * (one.kind == "two places")
             title = title if one.levels else one.kind
             columns += [title] if title not in columns else []
-            errors = " / ".join("-" if (e := one.error[of]) is None else _percent(e) for of in TARGETED)
+            errors = " / ".join(
+                "-" if (e := one.error[of]) is None else f"{100 * e:.2g}" if e < 0.995 else f"{100 * e:.0f}"
+                for of in TARGETED
+            )
             row[title] = f"{errors}, {one.cpu_s:.2g} s" + " (default)" * one.default
     ordered = sorted(columns, key=lambda title: ("levels" in title, title))
     rows = [
@@ -252,7 +255,3 @@ def _level_sheet(costs: Mapping[str, CostStudy]) -> Sheet:
         "often it ran again with more room, and what it tells with those before it"
     )
     return Sheet("levels", caption, Table.of(head, rows, left=range(len(head))))
-
-
-def _percent(error: float) -> str:
-    return f"{100 * error:.2g}" if error < 0.995 else f"{100 * error:.0f}"

@@ -6,15 +6,14 @@ hard and soft) run twice, with ``auto`` and with all effects; a few run again wi
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
 
 from fem_impact import Case, Outcome, Scene, known, load, replace_all
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.case.cells import widest_tip_size
 from fem_impact.case.choose import all_effects
 from fem_impact.case.effects.registry import BARRIERS, NAMES
+from fem_impact.evidence.data import read_stated, scene_keys
 from fem_impact.evidence.studies.declared import DeclaredSweep, Runs
 from fem_impact.outcome.keys import or_none
 from fem_impact.scene.types import MEASURED_SETS
@@ -25,45 +24,10 @@ WITHIN_E, WITHIN_VIB, LEAST_VIB = 0.02, 0.1, 1e-4  # accepted changes: of e, of 
 COST_COLUMNS = ("run", "CPU, of auto", "a step, of auto", "change of e", "change of E_vib/E_0")
 COSTED = ("t5b", "t3-machined", "t6-17")  # scenes that run with single effects changed
 PAIR = ("auto", "everything")
-BASE = "t5b"  # scene that the designed ones change
 
 
-def _speed(v: float) -> dict[str, Any]:
-    """Return the changed keys of an impact with v, m/s, along either direction."""
-    return {"impact.v_n": f"{-v} m/s", "impact.v_t": f"{-v} m/s"}
-
-
-def _yield(body: str, stress: float) -> dict[str, Any]:
-    """Return the changed keys of a body with a yield stress, MPa, without hardening."""
-    return {f"{body}.material.{key}": f"{stress} MPa" for key in ("yield_stress", "ultimate_stress")}
-
-
-_FALL = {"impact.v_n": "-1.5024 m/s", "impact.v_t": "-1.4821 m/s"}  # of the base scene, at every angle
-DESIGNED: Mapping[str, Mapping[str, Any]] = {
-    "short-slow": {"projectile.length": "40 mm", **_speed(0.2)},
-    "short-fast": {"projectile.length": "40 mm", **_speed(8.0)},
-    "long-slow": {"projectile.length": "200 mm", **_speed(0.2)},
-    "long-fast": {"projectile.length": "200 mm", **_speed(8.0)},
-    "low-angle": {"impact.angle": "5 deg", **_FALL},
-    "high-angle": {"impact.angle": "75 deg", **_FALL},
-    "axial": {"impact.angle": "0 deg", "impact.v_t": "0 m/s", "projectile.tip": "A"},
-    "slippery": {"surface.friction": 0.0},
-    "soft-plate": _yield("barrier", 80.0),
-    "hard-steels": {**_yield("projectile", 3000.0), **_yield("barrier", 3000.0)},
-    "stiff-barrier": {
-        "projectile.material.E": "70 GPa",
-        "barrier.material.E": "10000 GPa",
-        **_yield("barrier", 90000.0),
-    },
-    "plastic-rod": {
-        "projectile.material.E": "3 GPa",
-        "projectile.material.nu": 0.35,
-        "projectile.material.rho": "1180 kg/m3",
-        **_yield("projectile", 70.0),
-    },
-    "stub-on-lead": {"projectile.length": "30 mm", **_speed(0.2), **_yield("barrier", 10.0)},
-    "hard-gentle": {**_speed(0.05), **_yield("projectile", 3000.0), **_yield("barrier", 3000.0)},
-}
+DESIGNED = {name: scene_keys(stated) for name, stated in read_stated("studies/data/designed.toml").items()}
+"""Changed keys of t5b."""
 
 
 def all_on(scene: Scene) -> Scene:
@@ -120,7 +84,7 @@ def _scenes(request: Request) -> dict[str, Scene]:
     Their tip size is `TIP`, or the largest that their contact allows if that is less.
     """
     scenes = {name: load(name) for name in MEASURED_SETS}
-    scenes |= {name: replace_all(load(BASE), changes) for name, changes in DESIGNED.items()}
+    scenes |= {name: replace_all(load("t5b"), changes) for name, changes in DESIGNED.items()}
     wanted = request.ids or (("t5b", "stiff-barrier", "stub-on-lead") if request.quick else tuple(scenes))
     coarse = {}
     for name in wanted:

@@ -23,8 +23,9 @@ from fem_impact import Outcome, Scene, load, replace_all
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.answers.v_and_v import COVERAGE, joint
 from fem_impact.arrays import Array
+from fem_impact.evidence.data import read_table
 from fem_impact.evidence.studies.inputs import changes, sample_values
-from fem_impact.evidence.studies.report_parts import asked_sets, data_rows, error_panel, rests_on
+from fem_impact.evidence.studies.report_parts import asked_sets, error_panel, rests_on
 from fem_impact.evidence.studies.validated import NAMES, SHOWN, outputs, unit_sample
 from fem_impact.figures.panels import Mark, Panel, Picture, Series
 from fem_impact.jobs.job import Job
@@ -203,7 +204,7 @@ def of_set(
 @cache
 def stored_rows() -> dict[str, list[dict[str, float]]]:
     """Return of each set a row a number of `SHOWN`, by finite elements."""
-    rows = {(row["set"], row["quantity"]): row for row in data_rows("validation.csv")}
+    rows = {(row["set"], row["quantity"]): row for row in read_table("studies/data/validation.csv")}
     keys = "S", "D", "u_num", "u_input", "u_D"
     return {
         name: [{key: float(rows[name, quantity][key]) for key in keys} for quantity in SHOWN]

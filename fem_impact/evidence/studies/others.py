@@ -19,9 +19,10 @@ from fem_impact.answers.refine.work import Levels, LevelsJob
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.answers.v_and_v import COVERAGE, Comparison, joint
 from fem_impact.arrays import Array
+from fem_impact.evidence.data import read_table
 from fem_impact.evidence.problems import taylor_bar
 from fem_impact.evidence.studies.joint import LEVEL
-from fem_impact.evidence.studies.report_parts import comparison_table, data_rows, error_panel, rests_on
+from fem_impact.evidence.studies.report_parts import comparison_table, error_panel, rests_on
 from fem_impact.figures.panels import Picture
 from fem_impact.jobs.job import Failure
 from fem_impact.scene.library import material
@@ -90,7 +91,7 @@ def considere_modulus(start: float, top: float) -> float:
 
 def rods() -> tuple[Rod, ...]:
     """Return the rods in the order of the file."""
-    rows = ([*row.values()] for row in data_rows("taylor_rods.csv"))
+    rows = ([*row.values()] for row in read_table("studies/data/taylor_rods.csv"))
     return tuple(
         Rod(series, metal, *(float(cell or "nan") for cell in cells)) for series, metal, *cells in rows
     )
@@ -100,7 +101,8 @@ def spheres() -> dict[str, tuple[str, float, float]]:
     """Return quantity, angle, degrees, and measured value of each point, by the name of its job."""
     names = {"e_t": "e_t", "omega_rad_s": "Omega"}
     points = [
-        (r["quantity"], float(r["impact_angle_deg"]), float(r["value"])) for r in data_rows("kharaz2001.csv")
+        (r["quantity"], float(r["impact_angle_deg"]), float(r["value"]))
+        for r in read_table("studies/data/kharaz2001.csv")
     ]
     return {f"{names[q]} at {at:.1f} deg": (names[q], at, value) for q, at, value in points if q in names}
 

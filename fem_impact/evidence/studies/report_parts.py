@@ -1,13 +1,12 @@
-"""What the reports of several studies share: the texts that they rest on, data files, errors side by side."""
+"""What the reports of several studies share: the texts that they rest on, sets, errors side by side."""
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Mapping, Sequence
-from importlib.resources import files
 
 from fem_impact.answers.report import Request
 from fem_impact.answers.v_and_v import COVERAGE, Comparison
+from fem_impact.evidence.data import read_data
 from fem_impact.figures.panels import Mark, Panel, Series
 from fem_impact.scene.types import MEASURED_SETS
 from fem_impact.tables.table import Table
@@ -16,18 +15,9 @@ COMPARED = ("S", "D", "E", "u_num", "u_input", "u_D", "u_val")
 """Columns of a comparison, by the names of ASME V&V 20."""
 
 
-def _data(name: str) -> str:
-    return files("fem_impact.evidence.studies").joinpath("data", name).read_text(encoding="utf-8")
-
-
-def data_rows(name: str) -> list[dict[str, str]]:
-    """Return the rows of a CSV file of the folder ``data``, without its comments."""
-    return [*csv.DictReader(line for line in _data(name).splitlines() if not line.startswith("#"))]
-
-
 def rests_on(study: str, **numbers: object) -> list[str]:
     """Return what the report of a study rests on: texts of data/rests_on.md, with these numbers in them."""
-    text = _data("rests_on.md").split(f"## {study}\n")[1].split("\n## ")[0]
+    text = read_data("studies/data/rests_on.md").split(f"## {study}\n")[1].split("\n## ")[0]
     return [" ".join(item.split()).format(**numbers) for item in text.split("\n- ")[1:]]
 
 

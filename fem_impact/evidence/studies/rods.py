@@ -318,6 +318,10 @@ def _point(row: Any, results: JobResults) -> dict[str, Any]:
     run, result, tau = row.rod_run, row.result, row.tau_s
     period = run.rod.first_period
     bands = [zip((key, f"{key}_band"), estimate(result, key), strict=True) for key in BANDED]
+    vibration, band = estimate(result, VIBRATION)
+    reason = result.reason if isinstance(result, Failure) else ""
+    if band is None and not reason:
+        reason = result.reasons[VIBRATION if vibration is None else "mesh_band"]
     return {
         "point": run.point,
         **run.rod.inputs,
@@ -333,16 +337,8 @@ def _point(row: Any, results: JobResults) -> dict[str, Any]:
         "e_edge_rigid": row.e_edge_rigid,
         "residual_over_E_0": value(result, "residual_over_E_0"),
         "band_as_wanted": "yes" if is_close(result) else "no",
-        "reason": _gap(result),
+        "reason": reason,
         "family": row.family,
         "intervals": contacts(result),
         "doubted": isinstance(result, Outcome) and vibration_floor(result) > wanted_band(result),
     }
-
-
-def _gap(result: Result) -> str:
-    """Return why vibration has no value or no band; empty where it has both."""
-    if isinstance(result, Failure):
-        return result.reason
-    vibration, band = estimate(result, VIBRATION)
-    return "" if band is not None else result.reasons[VIBRATION if vibration is None else "mesh_band"]

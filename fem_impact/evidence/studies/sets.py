@@ -91,6 +91,11 @@ def sets_report(
     beside = Table.of(
         ("set", *COMPARED), [(name, *(cells.get((name, q)) for q in COMPARED)) for name in names]
     )
+    sheets = (
+        Sheet("sensitivity", "Values with each changed input", Table.of(SENSITIVITY, changed), shown=False),
+        Sheet("changes", "Changes by each input alone, on one mesh", _changes(changed)),
+        Sheet("explanations", EXPLAINED, _explanations(explained)),
+    )
     return StudyReport(
         "sets",
         "Model beside measurement",
@@ -100,7 +105,7 @@ def sets_report(
             Sheet("beside", BESIDE.format(_banded(outcomes)), beside),
             Sheet("shares", "Energies after the last separation, % of E_0", _shares(outcomes)),
             *_limits(outcomes),
-            *(_input_sheets(changed, explained) if changed else ()),
+            *(sheets if changed else ()),
         ],
         assumptions=[f"{name}: {text}." for name, text in DESCRIPTIONS.items()] if changed else (),
         sources=sorted({effect for outcome in outcomes for effect in outcome.provenance.effects}),
@@ -134,6 +139,10 @@ def miss_sentence(explained: Sequence[ComparisonRow]) -> str:
     )
 
 
+EXPLAINED = (
+    "What could explain a quantity outside its interval; in brackets the share of the miss that an input makes "
+    "up: 100 % brings the model to the measured mean, below 0 takes it further away"
+)
 BESIDE = (
     "Model{} / measured mean with standard deviation; bold: inside the 95 % interval of the mean, "
     "?: undecided by the mesh"
@@ -204,19 +213,6 @@ def _limits(outcomes: Sequence[Outcome]) -> list[Sheet]:
     head = ("set", "e, limit", "of e, %", "E_vib / E_0, %, limit", "of E_vib, %", "CPU s")
     caption = "Limits for vanishing elements, their bands, these in per cent, and time of the last level"
     return [Sheet("limits", caption, Table.of(head, rows))] if rows else []
-
-
-def _input_sheets(changed: Sequence[ComparisonRow], explained: Sequence[ComparisonRow]) -> list[Sheet]:
-    return [
-        Sheet("sensitivity", "Values with each changed input", Table.of(SENSITIVITY, changed), shown=False),
-        Sheet("changes", "Changes by each input alone, on one mesh", _changes(changed)),
-        Sheet(
-            "explanations",
-            "What could explain a quantity outside its interval; in brackets the share of the miss that an "
-            "input makes up: 100 % brings the model to the measured mean, below 0 takes it further away",
-            _explanations(explained),
-        ),
-    ]
 
 
 def _changes(changed: Sequence[ComparisonRow]) -> Table:
