@@ -100,10 +100,8 @@ def rods() -> tuple[Rod, ...]:
 def spheres() -> dict[str, tuple[str, float, float]]:
     """Return quantity, angle, degrees, and measured value of each point, by the name of its job."""
     names = {"e_t": "e_t", "omega_rad_s": "Omega"}
-    points = [
-        (r["quantity"], float(r["impact_angle_deg"]), float(r["value"]))
-        for r in read_table("studies/data/kharaz2001.csv")
-    ]
+    rows = read_table("studies/data/kharaz2001.csv")
+    points = [(row["quantity"], float(row["impact_angle_deg"]), float(row["value"])) for row in rows]
     return {f"{names[q]} at {at:.1f} deg": (names[q], at, value) for q, at, value in points if q in names}
 
 

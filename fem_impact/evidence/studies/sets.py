@@ -140,8 +140,8 @@ def miss_sentence(explained: Sequence[ComparisonRow]) -> str:
 
 
 EXPLAINED = (
-    "What could explain a quantity outside its interval; in brackets the share of the miss that an input makes "
-    "up: 100 % brings the model to the measured mean, below 0 takes it further away"
+    "What could explain a quantity outside its interval; in brackets the share of the miss that an input "
+    "makes up: 100 % brings the model to the measured mean, below 0 takes it further away"
 )
 BESIDE = (
     "Model{} / measured mean with standard deviation; bold: inside the 95 % interval of the mean, "
