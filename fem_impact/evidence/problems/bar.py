@@ -12,7 +12,7 @@ import meshes
 from fem_impact.evidence.problems import setups
 from fem_impact.evidence.problems.bodies import rigid_of
 from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values, within
-from fem_impact.evidence.problems.setups import ForceRecorder, Until
+from fem_impact.evidence.problems.setups import Until, force_recorder
 from fem_impact.evidence.references.rod_end import FOLLOWED, BarImpact, bar_speed, chain_restitution, strike
 from fem_impact.scene.impact import Impact
 from fem_impact.scene.parameter import Parameter
@@ -69,10 +69,10 @@ class Ceiling:
 def _one_strike(p: Values, exact: BarImpact) -> tuple[list[Check], int, int]:
     slices = int(p["slices"])
     model = _model(p, slices, int(p["across"]))
-    state, force = model.initial_state(), ForceRecorder(model)
+    state, force = model.initial_state(), force_recorder(model)
     energy = Until(model.ledger(), FOLLOWED * exact.duration)
     march(model, state, [force, energy])
-    plateau = force.mean(WINDOW[0] * exact.duration, WINDOW[1] * exact.duration)
+    plateau = force.mean(WINDOW[0] * exact.duration, WINDOW[1] * exact.duration, force.span[0])
     closing = energy.ledger.sample(state)["closing"] / energy.ledger.start
     spans = model.book.intervals
     chain = chain_restitution(slices, model.step * slices * bar_speed(p["E"], p["rho"]) / p["length"])

@@ -25,7 +25,7 @@ from fem_impact.errors import RunError, SceneError
 from fem_impact.evidence.problems import setups as steel
 from fem_impact.evidence.problems.bodies import Block, FreeBody, body_model, placed
 from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values
-from fem_impact.evidence.problems.setups import ForceRecorder
+from fem_impact.evidence.problems.setups import force_recorder
 from fem_impact.evidence.references.axisymmetric import Metal
 from fem_impact.evidence.references.cone import FROM, REACH, Indentation, cone_speed, indent
 from fem_impact.physics.hardening import KGF_PER_MM2, TABOR, TABOR_STRAIN, Hardening, Skin, power_hardening
@@ -99,7 +99,7 @@ def press(p: Values, law: Hardening, friction: float, cells: int) -> tuple[Inden
     model = body_model(FreeBody(cone, points, velocity, *metal, friction=friction, block=block, driven=True))
     if not isinstance(model.contact, SurfaceContact):
         raise TypeError("a cone on a block touches a surface")
-    state, force, guard = model.initial_state(), ForceRecorder(model), StepGuard(model, 20)
+    state, force, guard = model.initial_state(), force_recorder(model), StepGuard(model, 20)
     watch = _Watch(model.contact, speed, RADIUS_M / tan(p["angle"]))
     march(model, state, [force, guard, watch])
     if guard.reason:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import inf
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -170,26 +171,30 @@ SMOOTHING = 0.05  # window of the peak force over the contact time
 MECHANICAL = ("kinetic_rod", "strain_rod", "kinetic_barrier", "strain_barrier")
 
 
-class ForceRecorder:
-    """Records the normal force, N, of the whole body on the plane over each step."""
+class Recorder:
+    """Records a number of the state until a time, s; none where ``sample`` gives None.
 
-    every = 1
+    It was so ``back`` steps before the state's time: velocities, forces half a step before positions.
+    """
 
-    def __init__(self, model: Model) -> None:
-        self.book = model.book
+    def __init__(
+        self, sample: Callable[[State], float | None], back: float = 0.5, end: float = inf, every: int = 1
+    ) -> None:
+        self.sample, self.back, self.end, self.every = sample, back, end, every
         self.times: list[float] = []
         self.values: list[float] = []
 
     def observe(self, state: State) -> bool:
-        """Take the impulse of the step that led here."""
-        if state.step:
-            self.times.append(state.time - 0.5 * state.dt)
-            self.values.append(2 * self.book.step.impulse_n / state.kick)
-        return False
+        """Sample; stop at the end."""
+        value = self.sample(state)
+        if value is not None:
+            self.times.append(state.time - self.back * state.dt)
+            self.values.append(value)
+        return state.time >= self.end
 
     @property
     def touches(self) -> int:
-        """Return how often force sets in after having been absent."""
+        """Return how often a force sets in after having been absent."""
         on = np.array(self.values) > 0
         return int((np.diff(np.concatenate([[0], on.astype(int)])) == 1).sum())
 
@@ -199,16 +204,29 @@ class ForceRecorder:
         on = np.flatnonzero(np.array(self.values) > 0)
         return self.times[int(on[0])], self.times[int(on[-1])]
 
-    def mean(self, start: float, end: float) -> float:
-        """Return the mean force between two times after the first touch."""
-        t = np.array(self.times) - self.span[0]
+    def mean(self, start: float, end: float, origin: float = 0.0) -> float:
+        """Return the mean between two times after ``origin``, s."""
+        t = np.array(self.times) - origin
         return float(np.array(self.values)[(t >= start) & (t <= end)].mean())
 
     def peak(self, window: float) -> float:
-        """Return the largest force averaged over a window, s: single nodes close in small jerks."""
+        """Return the largest value averaged over a window, s: single nodes close in small jerks."""
         t, y = np.array(self.times), np.array(self.values)
         width = max(1, round(window / float(np.diff(t).mean())))
         return float(np.convolve(y, np.ones(width) / width, "valid").max())
+
+    def frequency(self) -> float:
+        """Return the frequency from the first to the last zero crossing."""
+        t, y = np.array(self.times), np.array(self.values)
+        k = np.flatnonzero(np.sign(y[1:]) != np.sign(y[:-1]))
+        crossing = t[k] - y[k] * (t[k + 1] - t[k]) / (y[k + 1] - y[k])
+        return float((len(k) - 1) / (2 * (crossing[-1] - crossing[0])))
+
+
+def force_recorder(model: Model) -> Recorder:
+    """Return a recorder of the normal force, N, of the whole body over the step that led to each state."""
+    book = model.book
+    return Recorder(lambda state: 2 * book.step.impulse_n / state.kick if state.step else None)
 
 
 class Until:
@@ -275,7 +293,7 @@ class TipImpact:
 
 def run_strike(model: Model, end: float, expected: float) -> TipImpact:
     """March until ``end`` s and read the contact."""
-    state, force = model.initial_state(), ForceRecorder(model)
+    state, force = model.initial_state(), force_recorder(model)
     energy = Until(model.ledger(), end, every=20)
     march(model, state, [force, energy])
     start, stop = force.span

@@ -41,7 +41,7 @@ from fem_impact.arrays import Array
 from fem_impact.evidence.problems import setups
 from fem_impact.evidence.problems.bodies import rigid_of
 from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values, within
-from fem_impact.evidence.problems.setups import Until
+from fem_impact.evidence.problems.setups import Recorder, Until
 from fem_impact.evidence.references.bricks import Bar, rebound, spring_force, wall_stress
 from fem_impact.evidence.references.rod_end import bar_speed
 from fem_impact.physics.contact import pressure_speed
@@ -174,30 +174,6 @@ PRINTED_SPEED, PRINTED_CELLS = 3.0, 12
 WINDOW = (0.15, 0.85)
 
 
-class _WallStress:
-    """Sums the force on the held end; the bar is followed to the end of the window."""
-
-    every = 1
-
-    def __init__(self, model: Model, area: float, end: float) -> None:
-        self.area = area
-        self.rows = model.layout.rod[model.geometry.rod.mesh.points[:, 2] < 1e-9, 2]
-        self.end = end
-        self.times: list[float] = []
-        self.values: list[float] = []
-
-    def observe(self, state: State) -> bool:
-        """Take the stress at the present positions, Pa; half the section is modelled."""
-        self.times.append(state.time)
-        self.values.append(-2 * float(state.force[self.rows].sum()) / self.area)
-        return state.time > self.end
-
-    def mean(self, start: float, end: float) -> float:
-        """Return the mean over a window of time."""
-        t = np.array(self.times)
-        return float(np.array(self.values)[(t >= start) & (t <= end)].mean())
-
-
 def _model(p: Values, angle: float, effects: tuple[str, ...], f: float = 0.0) -> Model:
     """Return the bar of a scene that flies along its axis, which is inclined to the normal by ``angle``."""
     impact = Impact(angle, -p["speed"] * cos(angle), -p["speed"] * sin(angle))
@@ -211,7 +187,9 @@ def solve_wall(p: Values) -> Solved:
     step = STEP * p["side"] / p["cells"] / pressure_speed(setups.steel(p))
     model = replace(_model(p, 0.0, ("barrier-rigid",)), steps={"rod": step})
     state = model.initial_state()
-    wall = _WallStress(model, p["side"] ** 2, end)
+    # the stress on the held end at the present positions, Pa; half the section is modelled
+    rows = model.layout.rod[model.geometry.rod.mesh.points[:, 2] < 1e-9, 2]
+    wall = Recorder(lambda state: -2 * float(state.force[rows].sum()) / p["side"] ** 2, 0.0, end)
     march(model, state, [wall])
     stress, name = wall.mean(start, end), f"mean wall stress, {KINDS[kind]} hexahedra"
     exact = wall_stress(twin(p), p["speed"], state.dt, start, end)

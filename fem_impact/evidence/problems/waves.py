@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import ceil, pi
+from math import ceil, inf, pi
 
 import numpy as np
 import scipy.sparse as sp
@@ -14,6 +14,7 @@ from fem_impact.arrays import Array
 from fem_impact.evidence.problems import setups
 from fem_impact.evidence.problems.discretisation import BarMesh
 from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values
+from fem_impact.evidence.problems.setups import Recorder
 from fem_impact.evidence.references.free_modes import bending_modes, cylinder_frequencies
 from fem_impact.evidence.references.rod_end import bar_speed
 from fem_impact.evidence.references.waves import flexural_speed, longitudinal_speed
@@ -94,37 +95,17 @@ def _ring(p: Values, model: Model) -> tuple[float, float, State]:
     state = model.initial_state()
     state.v[model.layout.rod] = PLUCK * (bend / abs(w).max() + stretch)
     model.drawn.condense(model.layout.slices_of(state.v))
-    probes = [Probe(model, bend, PERIODS / float(beam.frequency[0])), Probe(model, stretch, 0.0)]
+    probes = [probe(model, bend, PERIODS / float(beam.frequency[0])), probe(model, stretch)]
     march(model, state, probes)
     return probes[0].frequency(), probes[1].frequency(), state
 
 
-class Probe:
-    """Samples the velocity along a shape until a time."""
-
-    every = EVERY
-
-    def __init__(self, model: Model, shape: Array, end: float) -> None:
-        places, mesh = model.layout.rod, model.geometry.rod.mesh
-        self.row = np.zeros(model.layout.size)
-        self.row[places[~mesh.is_hanging]] = shape[~mesh.is_hanging]
-        self.row *= model.mass
-        self.end = end
-        self.times: list[float] = []
-        self.values: list[float] = []
-
-    def observe(self, state: State) -> bool:
-        """Sample; velocities stand half a step before the positions."""
-        self.times.append(state.time - 0.5 * state.dt)
-        self.values.append(float(self.row @ state.v))
-        return 0.0 < self.end <= state.time
-
-    def frequency(self) -> float:
-        """Return the frequency from the first to the last zero crossing."""
-        t, y = np.array(self.times), np.array(self.values)
-        k = np.flatnonzero(np.sign(y[1:]) != np.sign(y[:-1]))
-        crossing = t[k] - y[k] * (t[k + 1] - t[k]) / (y[k + 1] - y[k])
-        return float((len(k) - 1) / (2 * (crossing[-1] - crossing[0])))
+def probe(model: Model, shape: Array, end: float = inf, every: int = EVERY) -> Recorder:
+    """Return a recorder of the velocity along a shape (n, 3) until a time, s."""
+    row, moves = np.zeros(model.layout.size), ~model.geometry.rod.mesh.is_hanging
+    row[model.layout.rod[moves]] = shape[moves]
+    row *= model.mass
+    return Recorder(lambda state: float(row @ state.v), end=end, every=every)
 
 
 def solve_modes(p: Values) -> Solved:

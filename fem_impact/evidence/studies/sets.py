@@ -41,13 +41,15 @@ def jobs_of(name: str, quick: bool, out: Path) -> dict[str, Job]:
     return jobs if quick else jobs | sensitivity_jobs(jobs["run"].scene, out)
 
 
-def set_job(name: str, quick: bool, out: Path) -> Job:
+def set_job(name: str, quick: bool, out: Path | None = None) -> Job:
     """Return the run of a set, or of a scene file with own tests, as users run it.
 
-    Unless quick, each level but the first runs at two places of the barrier's grid.
+    Unless quick, each level but the first runs at two places of the barrier's grid. Without ``out`` it keeps
+    no fields.
     """
-    scene = replace_all(load(name), QUICK if quick else TWO_PLACES)
-    return Job(scene.id, scene, out=out / scene.id, way=simulate)
+    changes = (QUICK if quick else TWO_PLACES) | ({} if out else {"save.frames": 0})
+    scene = replace_all(load(name), changes)
+    return Job(scene.id, scene, out=out / scene.id if out else None, way=simulate)
 
 
 def chosen(request: Request) -> tuple[str, ...]:

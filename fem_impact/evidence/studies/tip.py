@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from fem_impact import Outcome, load, replace_all
+from fem_impact import Outcome, load
 from fem_impact.answers.compare import MEASURED, compare
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.arrays import Array
@@ -83,7 +83,7 @@ def readings() -> tuple[Reading, ...]:
 
 def plan(request: Request, results: JobResults) -> list[Job]:
     """Return the runs of Table 3 with either tip; of one set if quick."""
-    return [_job(name, tip, request) for tip in TIPS for name in _sets(request)]
+    return [set_job(TIPS[tip].format(name), request.quick) for tip in TIPS for name in _sets(request)]
 
 
 def conclude(request: Request, results: JobResults) -> StudyReport:
@@ -104,17 +104,12 @@ def _sets(request: Request) -> tuple[str, ...]:
     return SETS[:1] if request.quick else SETS
 
 
-def _job(name: str, tip: str, request: Request) -> Job:
-    job = set_job(TIPS[tip].format(name), request.quick, request.out)
-    return replace(job, scene=replace_all(job.scene, {"save.frames": 0}), out=None)
-
-
 def _compared(tip: str, request: Request, results: JobResults) -> Compared:
     """Return the counted quantities of the sets with a tip, beside the tests."""
     return {
         (name, str(row["quantity"])): row
         for name in _sets(request)
-        if isinstance(run := results[_job(name, tip, request).name], Outcome)
+        if isinstance(run := results[set_job(TIPS[tip].format(name), request.quick).name], Outcome)
         for row in compare(run, tests_of(load(TIPS[tip].format(name))))
         if row["quantity"] in COUNTED
     }

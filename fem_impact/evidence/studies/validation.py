@@ -8,7 +8,6 @@ inputs, the share of each input in it, and the spread from test to test.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 from scipy.stats import sobol_indices, uniform, wasserstein_distance
@@ -52,19 +51,15 @@ FEWEST = 2 * len(UNCERTAIN_INPUTS)  # finished runs of a sample
 
 def plan(request: Request, results: JobResults) -> list[Job]:
     """Return the jobs of the requested sets: the run of each, and its sample."""
-    return [job for name in asked_sets(request) for job in (_nominal(name, request), *_sample(name, request))]
+    return [
+        job for name in asked_sets(request) for job in (set_job(name, request.quick), *_sample(name, request))
+    ]
 
 
 def conclude(request: Request, results: JobResults) -> StudyReport:
     """Return the study: comparison errors, their uncertainties, and what causes them."""
     sets = [study_set for name in asked_sets(request) if (study_set := _validated(name, request, results))]
     return study_report(sets)
-
-
-def _nominal(name: str, request: Request) -> Job:
-    """Return the run at nominal inputs, without its fields."""
-    job = set_job(name, request.quick, request.out)
-    return replace(job, scene=replace_all(job.scene, {"save.frames": 0}), out=None)
 
 
 def _sample(name: str, request: Request) -> list[Job]:
@@ -79,7 +74,7 @@ def _sample(name: str, request: Request) -> list[Job]:
 
 def _validated(name: str, request: Request, results: JobResults) -> ValidatedSet | None:
     """Return the set from its runs; None where its own or too much of its sample failed."""
-    measured, nominal = measured_set(name), results[_nominal(name, request).name]
+    measured, nominal = measured_set(name), results[set_job(name, request.quick).name]
     runs = [results[job.name] for job in _sample(name, request)]
     finished = {i: run for i, run in enumerate(runs) if isinstance(run, Outcome)}
     if not isinstance(nominal, Outcome) or len(finished) < FEWEST:
@@ -213,7 +208,8 @@ def _steps(label: str, values: Array, look: Look, colour: int) -> Series:
 
 def _cause_sheet(sets: Sequence[ValidatedSet]) -> Sheet:
     """Return the share of each input in the variance of each quantity: total Sobol indices."""
-    names, rows = [i.name for i in UNCERTAIN_INPUTS], []
+    rows: list[tuple[Cell, ...]] = []
+    names = [i.name for i in UNCERTAIN_INPUTS]
     for study_set in sets:
         sample = sobol_indices(
             func=lambda unit, surface=study_set.surface: surface(unit.T).T,

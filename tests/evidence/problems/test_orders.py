@@ -10,7 +10,7 @@ import pytest
 import meshes
 from fem_impact.evidence.problems.bodies import FreeBody, body_model
 from fem_impact.evidence.problems.problem import verify
-from fem_impact.evidence.problems.waves import Probe, frequencies
+from fem_impact.evidence.problems.waves import frequencies, probe
 from fem_impact.evidence.references.free_modes import cylinder_frequencies
 from fem_impact.fem.eigen import rod_modes
 from fem_impact.solid.march import march
@@ -53,9 +53,8 @@ def test_time_steps_are_of_second_order():
         state = still.initial_state()
         state.v[:n] = 1e-3 * shape / abs(shape).max()
         state.dt_next = step
-        probe = Probe(still, state.v[still.layout.rod], 60 * 2 * np.pi / omega)
-        probe.every = 1
-        march(still, state, [probe])
-        errors.append(probe.frequency() * 2 * np.pi / omega - 1)
+        ringing = probe(still, state.v[still.layout.rod], 60 * 2 * np.pi / omega, every=1)
+        march(still, state, [ringing])
+        errors.append(ringing.frequency() * 2 * np.pi / omega - 1)
     assert errors == pytest.approx((omega * steps) ** 2 / 24, rel=0.1)
     assert order(errors, steps) == pytest.approx(2.0, abs=0.05)
