@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import solid_scenes
 
-from fem_impact.evidence.problems.bodies import rigid_of
+from fem_impact.evidence.problems.setups import rigid_of
 from fem_impact.solid.elastic import ModalDamping
 from fem_impact.solid.march import march
 

@@ -159,7 +159,12 @@ def figure_7(out: Path) -> Drawn:
         for p in (loss_against_angle(x), drawn_losses(x))
     )
     bands = {name: np.percentile(many, [2.5, 97.5], axis=0) for name, many in resampled.items()}
-    measured = [_measured(s.recomputed()) for s in angle_sets()]
+    measured: list[dict[str, Statistic]] = []
+    for rows_of in (s.recomputed() for s in angle_sets()):
+        # the total is 1 - E_r/E_0, independent of e_m
+        lost = {"total": 1.0 - rows_of["E_r_over_E_0"]}
+        lost |= {name: rows_of[f"{name}_over_E_0"] for name in ("E_lt", "E_ln")}
+        measured.append({name: statistic(values) for name, values in lost.items()})
     # the rows of `COLUMNS_7`: the calculated ones, then the measured ones
     columns = [column for name in LOOKS for column in (curves[name], *bands[name])]
     rows: list[list[float | str]] = [
@@ -191,12 +196,6 @@ def figure_7(out: Path) -> Drawn:
         legend = [handles[i] for i in order], [labels[i] for i in order]
         drawn.legend(*legend, loc="outside lower center", ncols=3)
     return Drawn(7, picture, sentence, _statements(peaks))
-
-
-def _measured(rows: dict[str, Floats]) -> dict[str, Statistic]:
-    """Return the measured losses of one set; the total is 1 - E_r/E_0, independent of e_m."""
-    losses = {"total": 1.0 - rows["E_r_over_E_0"], **{k: rows[f"{k}_over_E_0"] for k in ("E_lt", "E_ln")}}
-    return {name: statistic(values) for name, values in losses.items()}
 
 
 def _draw_7(axes: Axes, name: str, curve: Floats, band: Floats, measured: list[Statistic]) -> None:

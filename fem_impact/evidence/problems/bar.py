@@ -10,9 +10,7 @@ import numpy as np
 
 import meshes
 from fem_impact.evidence.problems import setups
-from fem_impact.evidence.problems.bodies import rigid_of
 from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values, within
-from fem_impact.evidence.problems.setups import Until, force_recorder
 from fem_impact.evidence.references.rod_end import FOLLOWED, BarImpact, bar_speed, chain_restitution, strike
 from fem_impact.scene.impact import Impact
 from fem_impact.scene.parameter import Parameter
@@ -69,8 +67,8 @@ class Ceiling:
 def _one_strike(p: Values, exact: BarImpact) -> tuple[list[Check], int, int]:
     slices = int(p["slices"])
     model = _model(p, slices, int(p["across"]))
-    state, force = model.initial_state(), force_recorder(model)
-    energy = Until(model.ledger(), FOLLOWED * exact.duration)
+    state, force = model.initial_state(), setups.force_recorder(model)
+    energy = setups.Until(model.ledger(), FOLLOWED * exact.duration)
     march(model, state, [force, energy])
     plateau = force.mean(WINDOW[0] * exact.duration, WINDOW[1] * exact.duration, force.span[0])
     closing = energy.ledger.sample(state)["closing"] / energy.ledger.start
@@ -81,7 +79,7 @@ def _one_strike(p: Values, exact: BarImpact) -> tuple[list[Check], int, int]:
         Check("duration", "s", spans[-1].end - spans[0].start, exact.duration, DURATION),
         Check("contacts", "1", force.touches, 1, 0.0, "absolute"),
         # a bar that strains along itself alone is a chain of its slices' masses
-        Check("restitution", "1", rigid_of(model, state).V_n / p["speed"], chain, CHAIN, "absolute"),
+        Check("restitution", "1", setups.rigid_of(model, state).V_n / p["speed"], chain, CHAIN, "absolute"),
         Check("largest energy / E_0", "1", energy.most, 1.0, GROWTH, "at most"),
         # half a slice of mass stops dead at the wall
         Check("closing loss / E_0", "1", closing, 0.5 / slices, CLOSING),
@@ -118,7 +116,7 @@ def solve(p: Values) -> Solved:
         walled = replace(model, impulses=[*model.impulses, ceiling])
         state = walled.initial_state()
         state.x[model.layout.rod[:, 2]] += 0.5 * gap
-        energy = Until(walled.ledger(), p["bounces"] * (1 + FLIGHT) * exact.duration)
+        energy = setups.Until(walled.ledger(), p["bounces"] * (1 + FLIGHT) * exact.duration)
         march(walled, state, [energy])
         checks += [
             Check("touches both walls", "1", float(ceiling.bounces > 0), 1.0, 0.0, "absolute"),

@@ -18,7 +18,6 @@ from fem_impact.arrays import Array, Bools
 from fem_impact.fem.body import MeshedBody as Meshed
 from fem_impact.fem.body import assemble_masses, invert, make_body, nose_and_whole, slices_of
 from fem_impact.fem.eigen import MassStiffness
-from fem_impact.fem.flight import RigidMotion, rigid_motion
 from fem_impact.fem.geometry import Geometry
 from fem_impact.fem.hexmodes import dummy_element
 from fem_impact.fem.layout import DofLayout, MassPoints, number
@@ -35,7 +34,6 @@ from fem_impact.solid.frame import FixedFrame, TurningFrame
 from fem_impact.solid.ground import Ground
 from fem_impact.solid.items import Force, Impulse
 from fem_impact.solid.model import Model
-from fem_impact.solid.state import State
 from meshes import HexMesh, RodMesh
 
 
@@ -97,12 +95,6 @@ def placed(points: Array, angle: float, gap: float) -> Array:
     turned = points @ np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]]).T
     turned[:, 2] += gap - turned[:, 2].min()
     return np.asarray(turned)
-
-
-def rigid_of(model: Model, state: State) -> RigidMotion:
-    """Return the rigid part of the body's motion."""
-    places = model.layout.rod[~model.geometry.rod.mesh.is_hanging]
-    return rigid_motion(state.x[places], state.v[places], model.mass[places[:, 0]])
 
 
 def body_model(body: FreeBody) -> Model:

@@ -12,10 +12,8 @@ from math import pi
 import numpy as np
 
 from fem_impact import Case
-from fem_impact.evidence.problems import setups as steel
-from fem_impact.evidence.problems.bodies import rigid_of
+from fem_impact.evidence.problems import setups
 from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values, within
-from fem_impact.evidence.problems.setups import Until, rod_scene, scene_model
 from fem_impact.evidence.references.rod_end import bar_speed
 from fem_impact.scene.parameter import Parameter
 from fem_impact.solid.march import march
@@ -44,14 +42,14 @@ def spin(p: Values) -> Solved:
     frozen = dict(p) | {"v_n": 1e-3, "v_t": 0.0, "angle": pi / 4, "max_time": 1e-2}
     effects = ("vibration", "barrier-rigid", "large-rotation")
     # a case refuses a spin that may take the tip away from the barrier: it is given to the model
-    model = scene_model(rod_scene(frozen | {"omega": 0.0}, effects)).coasting()
+    model = setups.scene_model(setups.rod_scene(frozen | {"omega": 0.0}, effects)).coasting()
     state, ledger, rod = model.initial_state(), model.ledger(), model.layout.rod
-    arm = state.x[rod] - rigid_of(model, state).centre
+    arm = state.x[rod] - setups.rigid_of(model, state).centre
     state.v[rod[:, 0]] += p["omega"] * arm[:, 2]
     state.v[rod[:, 2]] -= p["omega"] * arm[:, 0]
-    watch = Until(ledger, p["time"], every=EVERY, names=("strain_rod",))
+    watch = setups.Until(ledger, p["time"], every=EVERY, names=("strain_rod",))
     march(model, state, [watch])
-    omega, start = rigid_of(model, state).Omega, model.start[0]
+    omega, start = setups.rigid_of(model, state).Omega, model.start[0]
     # the distance between lowest and highest node, now and before
     places = rod[~model.geometry.rod.mesh.is_hanging]
     ends = places[[np.argmin(start[places[:, 2]]), np.argmax(start[places[:, 2]])]]
@@ -73,7 +71,7 @@ def momentum(p: Values) -> Solved:
     SceneError
         If the tip moves away, or so fast that its cells are squeezed.
     """
-    scene = rod_scene(p, ("vibration", "barrier-rigid", "large-rotation"))
+    scene = setups.rod_scene(p, ("vibration", "barrier-rigid", "large-rotation"))
     away = p["omega"] * float(scene.projectile.rigid_body.arms(p["angle"])[0])
     fastest = CLOSING * bar_speed(p["E"], p["rho"])
     within(p, "v_n", max(away, 0.0) + 1e-4, away + fastest, "m/s", "the tip must close in, and slowly.")
@@ -101,14 +99,14 @@ def momentum(p: Values) -> Solved:
 
 _SPIN = Parameter("omega", "spin, positive from n to t", "angular speed", -1e3, 1e3, default=45.0)
 _SIZE = (
-    steel.length(0.08),
-    steel.diameter(),
+    setups.length(0.08),
+    setups.diameter(),
     Parameter("tip_radius", "radius of the rounded edge", "length", 1e-4, 0.1, default=3e-3),
-    *steel.elastic(),
+    *setups.elastic(),
 )
 _MESH = (
     Parameter("tip_size", "cell edge at the contact", "length", 1e-5, 5e-3, default=0.8e-3),
-    steel.across(6),
+    setups.across(6),
 )
 SPIN = Problem(
     "free-spin",
@@ -122,7 +120,7 @@ MOMENTUM = Problem(
     (
         *_SIZE,
         Parameter("angle", "rod axis to barrier normal", "angle", 0.1, 1.4, default=pi / 4),
-        steel.speed("v_n", "approach speed along the normal", 1.5, 500.0),
+        setups.speed("v_n", "approach speed along the normal", 1.5, 500.0),
         Parameter("v_t", "speed down the slope", "speed", 0.0, 500.0, default=1.0),
         Parameter("omega", "spin, positive from n to t", "angular speed", -1e3, 1e3, default=20.0),
         *_MESH,

@@ -22,10 +22,9 @@ import meshes
 from fem_impact.arrays import Array
 from fem_impact.case.effects.plasticity import hardening_of
 from fem_impact.errors import RunError, SceneError
-from fem_impact.evidence.problems import setups as steel
+from fem_impact.evidence.problems import setups
 from fem_impact.evidence.problems.bodies import Block, FreeBody, body_model, placed
 from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values
-from fem_impact.evidence.problems.setups import force_recorder
 from fem_impact.evidence.references.axisymmetric import Metal
 from fem_impact.evidence.references.cone import FROM, REACH, Indentation, cone_speed, indent
 from fem_impact.physics.hardening import KGF_PER_MM2, TABOR, TABOR_STRAIN, Hardening, Skin, power_hardening
@@ -99,7 +98,7 @@ def press(p: Values, law: Hardening, friction: float, cells: int) -> tuple[Inden
     model = body_model(FreeBody(cone, points, velocity, *metal, friction=friction, block=block, driven=True))
     if not isinstance(model.contact, SurfaceContact):
         raise TypeError("a cone on a block touches a surface")
-    state, force, guard = model.initial_state(), force_recorder(model), StepGuard(model, 20)
+    state, force, guard = model.initial_state(), setups.force_recorder(model), StepGuard(model, 20)
     watch = _Watch(model.contact, speed, RADIUS_M / tan(p["angle"]))
     march(model, state, [force, guard, watch])
     if guard.reason:
@@ -199,7 +198,7 @@ PROBLEM = Problem(
     (
         Parameter("angle", "half the angle of the cone at its tip", "angle", 0.9, 1.4, default=PYRAMID),
         Parameter("f", "Coulomb friction of the second run; 0: none", "", 0.0, 0.5, default=0.1),
-        *steel.elastic(206e9),
+        *setups.elastic(206e9),
         Parameter("yield_stress", "yield stress", "stress", 1e6, 1e10, default=320e6),
         Parameter("ultimate_stress", "ultimate stress (engineering)", "stress", 1e6, 1e10, default=446e6),
         Parameter("cells", "cells over the cone's radius, even", "", 10, 20, default=10, even=True),

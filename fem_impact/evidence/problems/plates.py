@@ -12,7 +12,6 @@ from math import exp, log, sqrt
 
 from fem_impact.evidence.problems import setups
 from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values, within
-from fem_impact.evidence.problems.setups import TipImpact, run_strike
 from fem_impact.evidence.problems.spheres import (
     MARGIN,
     StruckPlate,
@@ -57,13 +56,13 @@ class PlateStrike:
 
     Attributes
     ----------
-    impact : TipImpact; e : restitution
+    impact : setups.TipImpact; e : restitution
     missed : what the ledger misses over E_0
     held : share of the bending waves' energy that is still in the mesh of the plate
     cells : number of the ball's cells
     """
 
-    impact: TipImpact
+    impact: setups.TipImpact
     e: float
     missed: float
     held: float
@@ -73,7 +72,7 @@ class PlateStrike:
     def of(cls, p: Values, model: Model, end: float) -> PlateStrike:
         """Run a model until ``end``, s."""
         E_0 = 0.5 * ball_mass(p) * p["speed"] ** 2
-        impact, ledger = run_strike(model, end, plain_hertz(p, p["speed"]).duration), model.ledger()
+        impact, ledger = setups.run_strike(model, end, plain_hertz(p, p["speed"]).duration), model.ledger()
         ledger.start = E_0
         spent = ledger.sample(impact.state)
         held = sum(spent.get(name, 0.0) for name in ("kinetic_barrier", "strain_barrier"))

@@ -32,7 +32,6 @@ from fem_impact.errors import SceneError
 from fem_impact.evidence.problems import setups
 from fem_impact.evidence.problems.discretisation import contact_error
 from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values, within
-from fem_impact.evidence.problems.setups import run_strike
 from fem_impact.evidence.problems.spheres import MARGIN
 from fem_impact.evidence.references.hertz import contact_modulus
 from fem_impact.evidence.references.rod_end import bar_speed, end_law, rod_impact, sears
@@ -108,7 +107,7 @@ def solve(p: Values) -> Solved:
         p["E"], p["rho"], p["length"], R, lambda d: float(np.interp(d, approach, force)), p["speed"]
     )
     model, edge = rod_model(p, touch)
-    found = run_strike(model, AFTER * plain.duration, plain.duration)
+    found = setups.run_strike(model, AFTER * plain.duration, plain.duration)
     n, state = model.layout.rod_size, found.state
     evaluate(model, state)
     free = flight(modes_of(model), state.v[:n], state.force[:n]).energy

@@ -14,9 +14,8 @@ import numpy as np
 
 from fem_impact import Case, Scene
 from fem_impact.errors import RunError
-from fem_impact.evidence.problems.bodies import rigid_of
 from fem_impact.evidence.problems.problem import Values, within
-from fem_impact.fem.flight import RigidMotion
+from fem_impact.fem.flight import RigidMotion, rigid_motion
 from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.fields import Element
 from fem_impact.scene.impact import Impact
@@ -165,6 +164,12 @@ def rod_scene(p: Values, effects: tuple[str, ...]) -> Scene:
         Accuracy(tip_size=p["tip_size"], across=int(p["across"]), max_time=p["max_time"]),
         p.get("f", 0.0),
     )
+
+
+def rigid_of(model: Model, state: State) -> RigidMotion:
+    """Return the rigid part of the body's motion."""
+    places = model.layout.rod[~model.geometry.rod.mesh.is_hanging]
+    return rigid_motion(state.x[places], state.v[places], model.mass[places[:, 0]])
 
 
 SMOOTHING = 0.05  # window of the peak force over the contact time

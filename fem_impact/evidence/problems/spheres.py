@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 import meshes
 from fem_impact.case.plates import ROWS
-from fem_impact.evidence.problems import setups as steel
+from fem_impact.evidence.problems import setups
 from fem_impact.evidence.problems.bodies import Block, FreeBody, body_model, placed
 from fem_impact.evidence.problems.discretisation import (
     boundary_error,
@@ -21,7 +21,6 @@ from fem_impact.evidence.problems.discretisation import (
     lean_error,
 )
 from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values, within
-from fem_impact.evidence.problems.setups import SMOOTHING, TipImpact, run_strike
 from fem_impact.evidence.references.finite_sphere import ball_impact
 from fem_impact.evidence.references.hertz import HertzImpact, contact_modulus, hertz, sliding_ratio
 from fem_impact.evidence.references.sphere import INERTIA, oblique_ball, oblique_sphere
@@ -45,7 +44,7 @@ def parameters(
         *others,
         Parameter("block", "1: a block like the sphere, 0: a rigid plane", "", 0, 1, default=1, whole=True),
         Parameter("cells", "cells over the contact radius", "", 2, 20, default=cells),
-        steel.across(across),
+        setups.across(across),
     )
 
 
@@ -255,7 +254,7 @@ class SphereErrors:
         return share * heard + 0.4 * end_error(self.touch, self.reach)
 
 
-def _radiated(p: Values, found: TipImpact, errors: SphereErrors) -> Check:
+def _radiated(p: Values, found: setups.TipImpact, errors: SphereErrors) -> Check:
     """Compare what left through the block's boundary with the half-space's, or nothing on a plane."""
     E_0, name = 0.5 * ball_mass(p) * p["speed"] ** 2, "radiated energy / E_0"
     if not p["block"]:
@@ -278,9 +277,10 @@ def solve_hertz(p: Values) -> Solved:
     v = p["speed"]
     plain = plain_hertz(p, v)
     own = contact_modulus(p["E"], p["nu"])
-    exact = ball_impact(modulus(p), own, p["nu"], p["radius"], ball_mass(p), v, SMOOTHING)
+    exact = ball_impact(modulus(p), own, p["nu"], p["radius"], ball_mass(p), v, setups.SMOOTHING)
     model = sphere_model(p, plain, v)
-    found, errors = run_strike(model, AFTER * plain.duration, plain.duration), SphereErrors.of(p, exact)
+    found = setups.run_strike(model, AFTER * plain.duration, plain.duration)
+    errors = SphereErrors.of(p, exact)
     note = f"for a / R far below 1, here {plain.radius / p['radius']:.3f}"
     checks = (
         Check("largest force", "N", found.force, exact.force, errors.force),
@@ -297,7 +297,7 @@ def solve_hertz(p: Values) -> Solved:
 HERTZ = Problem(
     "hertz",
     "an elastic sphere strikes a frictionless barrier: force, time of contact, radiated energy",
-    parameters(9.5e-3, steel.speed("speed", "approach speed", 1.0), *steel.elastic(210e9)),
+    parameters(9.5e-3, setups.speed("speed", "approach speed", 1.0), *setups.elastic(210e9)),
     solve_hertz,
 )
 
@@ -346,7 +346,7 @@ def solve_oblique(p: Values) -> Solved:
     plain = oblique_sphere(modulus(p), *blow)
     exact = oblique_ball(modulus(p), contact_modulus(p["E"], p["nu"]), *blow)
     model = sphere_model(p, normal, v_n, v_t, p["f"])
-    found = run_strike(model, AFTER * normal.duration, normal.duration)
+    found = setups.run_strike(model, AFTER * normal.duration, normal.duration)
     m = found.motion
     mu = (m.V_t + v_t) / (m.V_n + v_n)
     slides = exact.ratio > SLIDING * p["f"]
@@ -382,10 +382,10 @@ OBLIQUE_SPHERE = Problem(
     "an elastic sphere strikes obliquely with friction: reversal, spin, impulse ratio",
     parameters(
         2.5e-3,
-        steel.speed("speed", "approach speed", 3.9),
+        setups.speed("speed", "approach speed", 3.9),
         Parameter("angle", "path to the normal", "angle", 0.01, 1.5, default=20 * pi / 180),
         Parameter("f", "Coulomb friction", "", 0.001, 5.0, default=0.092),
-        *steel.elastic(380e9, 0.23, 4000.0),
+        *setups.elastic(380e9, 0.23, 4000.0),
         cells=5,
     ),
     solve_oblique,

@@ -39,9 +39,7 @@ from numpy.typing import NDArray
 import meshes
 from fem_impact.arrays import Array
 from fem_impact.evidence.problems import setups
-from fem_impact.evidence.problems.bodies import rigid_of
 from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values, within
-from fem_impact.evidence.problems.setups import Recorder, Until
 from fem_impact.evidence.references.bricks import Bar, rebound, spring_force, wall_stress
 from fem_impact.evidence.references.rod_end import bar_speed
 from fem_impact.physics.contact import pressure_speed
@@ -189,7 +187,7 @@ def solve_wall(p: Values) -> Solved:
     state = model.initial_state()
     # the stress on the held end at the present positions, Pa; half the section is modelled
     rows = model.layout.rod[model.geometry.rod.mesh.points[:, 2] < 1e-9, 2]
-    wall = Recorder(lambda state: -2 * float(state.force[rows].sum()) / p["side"] ** 2, 0.0, end)
+    wall = setups.Recorder(lambda state: -2 * float(state.force[rows].sum()) / p["side"] ** 2, 0.0, end)
     march(model, state, [wall])
     stress, name = wall.mean(start, end), f"mean wall stress, {KINDS[kind]} hexahedra"
     exact = wall_stress(twin(p), p["speed"], state.dt, start, end)
@@ -238,8 +236,8 @@ def _on_springs(p: Values) -> tuple[float, float]:
     step = 1 / sqrt((2 / model.step) ** 2 + stiffest)  # half the largest stable one: springs open and close
     springs = NodeSprings(nodes, stiffness, p["stick"], p["f"])
     sprung = replace(model, forces=[*model.forces, springs], impulses=[], steps={"rod": step})
-    march(sprung, state := sprung.initial_state(), [Until(sprung.ledger(), _time(p))])
-    return rigid_of(sprung, state).V_n, step
+    march(sprung, state := sprung.initial_state(), [setups.Until(sprung.ledger(), _time(p))])
+    return setups.rigid_of(sprung, state).V_n, step
 
 
 def _reference(p: Values, springs: tuple[float, float]) -> float:
@@ -284,10 +282,10 @@ def solve_tilted(p: Values) -> Solved:
     fastest = FASTEST * bar_speed(p["E"], p["rho"])
     within(p, "speed", 0.0, fastest, "m/s", "the reference holds for small strains.")
     model = _tilted(p)
-    state, watch = model.initial_state(), Until(model.ledger(), _time(p))
-    start = rigid_of(model, state)
+    state, watch = model.initial_state(), setups.Until(model.ledger(), _time(p))
+    start = setups.rigid_of(model, state)
     march(model, state, [watch])
-    end, book = rigid_of(model, state), model.book
+    end, book = setups.rigid_of(model, state), model.book
     turned = end.spin - start.spin
     allowed = 1e-4 * end.inertia * abs(end.Omega)
     checks = [

@@ -32,10 +32,9 @@ import numpy as np
 
 import meshes
 from fem_impact.arrays import Array
-from fem_impact.evidence.problems import setups as steel
+from fem_impact.evidence.problems import setups
 from fem_impact.evidence.problems.bodies import FreeBody, body_model, placed
 from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values, within
-from fem_impact.evidence.problems.setups import Until, follow
 from fem_impact.evidence.references.axisymmetric import Metal, taylor_bar
 from fem_impact.evidence.references.rod_end import bar_speed
 from fem_impact.physics.hardening import linear_hardening
@@ -86,8 +85,8 @@ def strike(p: Values, slices: float) -> tuple[Array, float, State, int]:
     The section is a polygon of the round one's area.
     """
     model = _model(p, slices)
-    state, energy = model.initial_state(), Until(model.ledger(), _time(p), every=50)
-    follow(model, state, energy, every=2, crushed=CRUSHED)
+    state, energy = model.initial_state(), setups.Until(model.ledger(), _time(p), every=50)
+    setups.follow(model, state, energy, every=2, crushed=CRUSHED)
     points, x = model.geometry.rod_points, state.x[model.layout.rod]
     foot = x[points[:, 2] < 1e-9 * p["radius"]]
     swell = float(np.hypot(points[:, 0], points[:, 1]).max()) / p["radius"]
@@ -127,7 +126,7 @@ def solve(p: Values) -> Solved:
     RunError
         If cells are crushed.
     """
-    steel.slender(p, "radius", *SLENDER)
+    setups.slender(p, "radius", *SLENDER)
     fastest = float(np.sqrt(HARDEST * p["yield_stress"] / p["rho"]))
     within(
         p,
@@ -155,13 +154,13 @@ PROBLEM = Problem(
     (
         Parameter("length", "length of the bar", "length", 1e-3, 1.0, default=LENGTH),
         Parameter("radius", "radius of the bar", "length", 1e-4, 0.1, default=PRINTED["radius"]),
-        steel.speed("speed", "speed of the bar", PRINTED["speed"], 5e3),
-        *steel.elastic(PRINTED["E"], PRINTED["nu"], PRINTED["rho"]),
+        setups.speed("speed", "speed of the bar", PRINTED["speed"], 5e3),
+        *setups.elastic(PRINTED["E"], PRINTED["nu"], PRINTED["rho"]),
         Parameter("yield_stress", "yield stress", "stress", 1e5, 1e10, default=PRINTED["yield_stress"]),
         Parameter("hardening", "plastic modulus", "stress", 0.0, 1e11, default=PRINTED["hardening"]),
         Parameter("time", "time that is followed; 0: until it has stopped", "time", 0.0, 1.0, default=0.0),
         Parameter("slices", "cells along the bar", "", 10, 200, default=96, whole=True),
-        steel.across(8),
+        setups.across(8),
     ),
     solve,
 )

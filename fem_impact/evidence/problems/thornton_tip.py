@@ -12,9 +12,7 @@ from math import exp, floor, log, log2, pi, sqrt
 import numpy as np
 
 from fem_impact.evidence.problems import setups
-from fem_impact.evidence.problems.bodies import rigid_of
 from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values, within
-from fem_impact.evidence.problems.setups import Until, follow
 from fem_impact.evidence.problems.spheres import ball_mass
 from fem_impact.evidence.references.hertz import (
     MEAN,
@@ -63,12 +61,12 @@ def _restitution(p: Values, v: float, cells: float) -> tuple[float, float, int, 
     """Return e, the worst residual of the ledger over E_0, steps and cells of one run."""
     model, time = _model(p, v, cells), _indentation(p, v)[1]
     state, book = model.initial_state(), model.book
-    energy = Until(
+    energy = setups.Until(
         model.ledger(), LONGEST * time, lambda: bool(state.time - APART * time > book.last_touch > 0), 20
     )
-    follow(model, state, energy, every=20)
+    setups.follow(model, state, energy, every=20)
     worst = energy.ledger.worst / energy.ledger.start
-    return rigid_of(model, state).V_n / v, worst, state.step, len(model.geometry.rod.mesh.cells)
+    return setups.rigid_of(model, state).V_n / v, worst, state.step, len(model.geometry.rod.mesh.cells)
 
 
 def judged_slope(p: Values, slope: float) -> Check:

@@ -14,7 +14,6 @@ from fem_impact.arrays import Array
 from fem_impact.evidence.problems import setups
 from fem_impact.evidence.problems.discretisation import BarMesh
 from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values
-from fem_impact.evidence.problems.setups import Recorder
 from fem_impact.evidence.references.free_modes import bending_modes, cylinder_frequencies
 from fem_impact.evidence.references.rod_end import bar_speed
 from fem_impact.evidence.references.waves import flexural_speed, longitudinal_speed
@@ -100,12 +99,12 @@ def _ring(p: Values, model: Model) -> tuple[float, float, State]:
     return probes[0].frequency(), probes[1].frequency(), state
 
 
-def probe(model: Model, shape: Array, end: float = inf, every: int = EVERY) -> Recorder:
+def probe(model: Model, shape: Array, end: float = inf, every: int = EVERY) -> setups.Recorder:
     """Return a recorder of the velocity along a shape (n, 3) until a time, s."""
     row, moves = np.zeros(model.layout.size), ~model.geometry.rod.mesh.is_hanging
     row[model.layout.rod[moves]] = shape[moves]
     row *= model.mass
-    return Recorder(lambda state: float(row @ state.v), end=end, every=every)
+    return setups.Recorder(lambda state: float(row @ state.v), end=end, every=every)
 
 
 def solve_modes(p: Values) -> Solved:

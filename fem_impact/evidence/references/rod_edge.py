@@ -127,13 +127,12 @@ class _Patch:
 
     def load(self, skin: skfem.FacetBasis, order: int) -> Array:
         """Return the loads (size, 2) of unit forces along n and t in one order."""
-        return np.stack([self._load(skin, order, *towards) for towards in self._directions()], axis=1)
-
-    def _directions(self) -> tuple[tuple[float, float], tuple[float, float]]:
-        """Return n and t in the plane phi = 0: away from the axis, and along it away from the tip."""
-        return (-sin(self.angle), cos(self.angle)), (cos(self.angle), sin(self.angle))
+        n, t = (-sin(self.angle), cos(self.angle)), (cos(self.angle), sin(self.angle))
+        return np.stack([self._load(skin, order, *towards) for towards in (n, t)], axis=1)
 
     def _load(self, skin: skfem.FacetBasis, order: int, across: float, along: float) -> Array:
+        """Return the load of a force with parts away from the axis, and along it away from the tip."""
+
         @skfem.LinearForm
         def form(v, w):  # type: ignore[no-untyped-def]
             less, here, more = (self._spread(w.x, abs(k)) for k in (order - 1, order, order + 1))

@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 from fem_impact.errors import SceneError
-from fem_impact.evidence.problems.bodies import rigid_of
 from fem_impact.evidence.problems.problem import problem, verify
-from fem_impact.evidence.problems.setups import run_strike
+from fem_impact.evidence.problems.setups import rigid_of, run_strike
 from fem_impact.evidence.problems.spheres import ball_mass, plain_hertz, sphere_model
 
 
