@@ -259,7 +259,7 @@ def test_distributions_stand_on_the_limit_wherever_the_sample_of_the_mesh_stands
     """The levels lie off; the sample, on one mesh, does not follow."""
     request = Request(tmp_path, ("t5b",))
     runs = results_of(request)
-    nominal = runs[study._nominal("t5b", request).name]
+    nominal = runs["t5b"]
     limits = {**nominal.validity.mesh_limit, "Omega_rad_per_s": 0.0}
     runs["t5b"] = replace(nominal, validity=replace(nominal.validity, mesh_limit=limits))
     found = study._validated("t5b", request, runs)
