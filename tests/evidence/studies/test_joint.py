@@ -17,6 +17,7 @@ from fem_impact.evidence.studies.joint import (
     report_of,
     stored_rows,
 )
+from fem_impact.evidence.studies.report_parts import error_panel, rests_on
 from fem_impact.scene.types import MEASURED_SETS
 
 
@@ -90,3 +91,15 @@ def test_the_study_reads_its_runs(tmp_path):
     published(conclude, request, results)
     lines = (tmp_path / "joint.csv").read_text().splitlines()
     assert len(lines) == 2 and lines[1].startswith("t5b,") and len(HEAD) == 1 + 2 * len(SHOWN) + 4
+
+
+def test_errors_stand_in_the_row_of_their_set_and_texts_tell_the_numbers_of_the_code():
+    panel = error_panel("e", ("t4", "t5b"), {"default": [(0, 1.5), (1, -3.0)], "skin": [(1, 2.5)]})
+    assert [(s.label, s.x, s.y, s.colour) for s in panel.series] == [
+        ("default", [1.5, -3.0], [0.0, 1.0], 0),
+        ("skin", [2.5], [1.0], 1),
+    ]
+    assert [mark.at for mark in panel.marks] == [-2.0, 2.0] and panel.rows == ("t4", "t5b")
+    first, second = rests_on("joint", LEVEL=0.05, COVERAGE=2.0)
+    assert "below 0.05 the set is rejected. Alone: numbers beyond 2 u_val." in first
+    assert second.startswith("S, D and their uncertainties")

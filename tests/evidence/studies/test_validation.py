@@ -266,3 +266,5 @@ def test_distributions_stand_on_the_limit_wherever_the_sample_of_the_mesh_stands
     at = NAMES.index("Omega")
     nominal = found.surface(nominal_place("t5b"))[0, at] + found.shift[at]
     assert nominal == pytest.approx(0.0, abs=1e-9) == found.comparisons[at].S
+    for drawn, values in zip(found.drawn(at), (found.all_inputs, found.tests), strict=True):
+        assert drawn == pytest.approx(values[:, at] - found.surface(nominal_place("t5b"))[0, at])
