@@ -1,6 +1,6 @@
 """Uncertain inputs of a measured set.
 
-`UNCERTAIN_INPUTS` are sampled over their ranges, all at once, by the validation study. `INPUT_CHANGES` are
+`UNCERTAIN_INPUTS` are sampled over their ranges, all at once, by the validation study. `input_changes` are
 made one at a time by the study of the sets; `sensitivity_rows` lists their changes of the results and
 `explanations` compares these with the difference from the measurement.
 """
@@ -166,15 +166,6 @@ def changes(scene: Scene, values: np.ndarray) -> dict[str, Any]:
     }
 
 
-@dataclass(frozen=True, slots=True)
-class InputChange:
-    """A change of one uncertain input: its name, description, and the changed scene keys."""
-
-    name: str
-    description: str
-    changes: Callable[[Scene], dict[str, Any]]
-
-
 def hardened(scene: Scene, share: float) -> dict[str, Any]:
     """Return changed keys: flow stresses ``share`` of the way from tensile test to hardness.
 
@@ -205,33 +196,31 @@ def rates(scene: Scene, place: float) -> dict[str, Any]:
     return changed
 
 
-INPUT_CHANGES = (
-    InputChange(
-        "friction-low",
-        "lowest friction of its interval",
-        lambda s: {"surface.friction": s.surface.friction_low},
-    ),
-    InputChange(
-        "friction-high",
-        "highest friction of its interval",
-        lambda s: {"surface.friction": s.surface.friction_high},
-    ),
-    InputChange(
-        "hardness",
-        "flow stress of both steels from their hardness instead of their tensile tests",
-        lambda s: {f"{body}.material.law": "hardness" for body in s.materials},
-    ),
-    InputChange("rate-low", "lower end of the rate factors", lambda s: rates(s, 0.0)),
-    InputChange("rate-high", "upper end of the rate factors", lambda s: rates(s, 1.0)),
-    InputChange(
-        "block",
-        f"barrier block with {WIDER:g} times the margin around the fine zone",
-        lambda s: {"accuracy.block_margin": f"{WIDER * s.accuracy.block_margin * 1e3:.9g} mm"},
-    ),
-)
-# the unchanged run evaluated with other lever arms of the impulse
-ARMS = {"arms-edge": "arms of the tip's edge radius", "arms-impulse": "arms of the impulse"}
-DESCRIPTIONS = {i.name: i.description for i in INPUT_CHANGES} | ARMS
+DESCRIPTIONS = {
+    "friction-low": "lowest friction of its interval",
+    "friction-high": "highest friction of its interval",
+    "hardness": "flow stress of both steels from their hardness instead of their tensile tests",
+    "rate-low": "lower end of the rate factors",
+    "rate-high": "upper end of the rate factors",
+    "block": f"barrier block with {WIDER:g} times the margin around the fine zone",
+    # the unchanged run evaluated with other lever arms of the impulse
+    "arms-edge": "arms of the tip's edge radius",
+    "arms-impulse": "arms of the impulse",
+}
+"""What is changed alone, by name."""
+
+
+def input_changes(scene: Scene) -> dict[str, dict[str, Any]]:
+    """Return the changed keys of a scene by names of `DESCRIPTIONS`, where it runs again."""
+    margin = WIDER * scene.accuracy.block_margin * 1e3
+    return {
+        "friction-low": {"surface.friction": scene.surface.friction_low},
+        "friction-high": {"surface.friction": scene.surface.friction_high},
+        "hardness": {f"{body}.material.law": "hardness" for body in scene.materials},
+        "rate-low": rates(scene, 0.0),
+        "rate-high": rates(scene, 1.0),
+        "block": {"accuracy.block_margin": f"{margin:.9g} mm"},
+    }
 
 
 def one_mesh(scene: Scene) -> Scene:
@@ -250,9 +239,9 @@ def sensitivity_jobs(scene: Scene, out: Path) -> dict[str, Job]:
     """Return the job of a scene on `one_mesh`, and that with each input changed, by the change's name."""
     plain = one_mesh(scene)
     jobs = {ONE_MESH: Job(f"{scene.id}-{ONE_MESH}", plain, out=out / f"{scene.id}-{ONE_MESH}")}
-    for change in INPUT_CHANGES:
-        name = f"{scene.id}-{change.name}"
-        jobs[change.name] = Job(name, replace_all(plain, change.changes(plain)), out=out / name)
+    for name, keys in input_changes(plain).items():
+        job = f"{scene.id}-{name}"
+        jobs[name] = Job(job, replace_all(plain, keys), out=out / job)
     return jobs
 
 

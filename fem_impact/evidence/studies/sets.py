@@ -15,7 +15,6 @@ from fem_impact.answers.compare import COMPARED, ComparisonRow, compare
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.evidence.studies.inputs import (
     DESCRIPTIONS,
-    INPUT_CHANGES,
     ONE_MESH,
     explanations,
     sensitivity_jobs,
@@ -73,7 +72,7 @@ def conclude(request: Request, results: JobResults) -> StudyReport:
             outcomes.append(run)
             comparison += compare(run, tests_of(load(name)))
         if not request.quick:
-            inputs = {i.name: results[jobs[i.name].name] for i in INPUT_CHANGES}
+            inputs = {name: results[jobs[name].name] for name in DESCRIPTIONS if name in jobs}
             changed += sensitivity_rows(results[jobs[ONE_MESH].name], inputs)
     report = sets_report(outcomes, comparison, changed)
     return replace(report, runs=[request.out / outcome.provenance.scene_id for outcome in outcomes])
