@@ -8,6 +8,7 @@ import numpy as np
 from meshes.arrays import BoolArray, FloatArray
 from meshes.errors import MeshError
 from meshes.section import Section, bored_section, section
+from meshes.shoulders import eased
 from meshes.surface import CORNER, Surface
 
 __all__ = ["SAME", "Revolved", "revolved"]
@@ -124,7 +125,7 @@ def revolved(line: FloatArray, bore: FloatArray | None, across: int) -> Revolved
     Parameters
     ----------
     line, bore : (k, 2) float64, m
-        Outer and inner surface.
+        Outer and inner surface; a shoulder of the outer one becomes a cone, see `meshes.shoulders.eased`.
     across : int
         Cells over the diameter, at least: a stack, see `is_stack`, has as many as make cells about as wide as
         half its thickness, and as make it round beside its layers and its wall.
@@ -147,7 +148,7 @@ def revolved(line: FloatArray, bore: FloatArray | None, across: int) -> Revolved
             "the edge in, without a rim of no thickness"
         )
     face, tail = line[:, 1] <= 0.0, line[:, 1] >= line[-1, 1]
-    line = np.concatenate([line[:1], line[face][1:][-1:], line[~face & ~tail], line[tail][:1]])
+    line, _ = eased(np.concatenate([line[:1], line[face][1:][-1:], line[~face & ~tail], line[tail][:1]]))
     inner = np.zeros((0, 2)) if bore is None else np.array(bore, np.float64)
     plain = Revolved(line, inner, section(across), across)
     if plain.is_stack:

@@ -17,12 +17,12 @@ from meshes.quality import require_positive, scaled_jacobians
 from meshes.refine import reach, refine
 from meshes.revolved import SAME, Revolved, revolved
 from meshes.rod import RodMesh, nose_cells
+from meshes.shoulders import STEEPEST
 from meshes.surface import CORNER, Surface
 from meshes.zone import Cloud, Zone
 
 __all__ = ["cells_across", "contact_radius", "turned"]
 
-STEEPEST = np.tan(np.deg2rad(75.0))  # of the radius over z between two sections
 WORST = 0.12  # least scaled Jacobian of a cell
 # A body of more than ROWS rows of cells as high as wide has higher ones behind what its contact may reach, up
 # to HIGHEST times as high as wide, with a change over GROWTH of its diameters

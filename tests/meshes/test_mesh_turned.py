@@ -140,7 +140,10 @@ def test_no_cell_straddles_a_plane():
     ("line", "told"),
     [
         (np.array([[0, 0], [R, 0.05], [R, 0.1]]), "too sharp"),
-        (np.array([[0, 0], [4e-3, 0], [4e-3, 0.05], [R, 0.0501], [R, 0.1]]), "steps from"),
+        (
+            np.array([[0, 0], [4e-3, 0], [4e-3, 0.05], [R, 0.05], [R, 0.051], [4e-3, 0.051], [4e-3, 0.1]]),
+            "steps from",
+        ),
         (np.array([[0, 0], [R, 0], [5e-3, 0.05], [R, 0.05], [0, 0.05]]), "rim of no thickness"),
         (np.array([[0, 0], [1e-3, 0], [2e-3, 0], [1e-3, 5e-324]]), "shrinks at z = 0"),
         (np.array([[0, 0], [R, 0], [5e-3, 0.05], [R, 0.05 + 1e-15]]), "rim of no thickness"),

@@ -1,0 +1,38 @@
+"""Shoulders of a turned body as hexahedra hold them: a cone in place of a sudden step of the radius."""
+
+import numpy as np
+
+from meshes.arrays import FloatArray
+from meshes.surface import CORNER
+
+__all__ = ["STEEPEST", "eased"]
+
+STEEPEST = np.tan(np.deg2rad(75.0))  # of the radius over z between two sections
+SPREAD = 0.5  # length of a cone over the step of the radius
+
+
+def eased(line: FloatArray) -> tuple[FloatArray, list[tuple[float, float]]]:
+    """Return the outline (k, 2) (rho, z), m, with a cone for each shoulder, and place z and length, m, of each.
+
+    A shoulder is a step of the radius between two corners, steeper than sections of hexahedra can follow. Its
+    cone is half as long as the step is high and has the same volume between straight neighbours; one that
+    finds no room between them stays as it is. Faces at both ends are no shoulders.
+    """
+    rise, along = np.diff(line, axis=0).T
+    turn = np.abs(np.diff(np.arctan2(rise, along)))
+    new, cones = line.copy(), list[tuple[float, float]]()
+    for k in range(1, len(line) - 2):
+        (before, low), (after, high) = line[k], line[k + 1]
+        steep = abs(rise[k]) > STEEPEST * along[k] and min(turn[k - 1], turn[k]) > CORNER
+        if not steep or min(before, after) <= 0.0:
+            continue
+        half = 0.5 * SPREAD * abs(rise[k])
+        middle = 0.5 * (low + high) - half * (after - before) / (3.0 * (after + before))  # the same volume
+        ends = np.array([middle - half, middle + half])
+        if new[k - 1, 1] < ends[0] and ends[1] < line[k + 2, 1]:
+            radii = [
+                np.interp(z, *line[at : at + 2, ::-1].T) for z, at in zip(ends, (k - 1, k + 1), strict=True)
+            ]
+            new[k : k + 2] = np.stack([radii, ends], axis=1)
+            cones.append((float(0.5 * (low + high)), float(2.0 * half)))
+    return new, cones

@@ -1,0 +1,41 @@
+"""A sudden step of the radius is meshed as a cone of the same volume."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+import meshes
+from meshes.shoulders import eased
+
+PIN = np.array([[0, 0], [4e-3, 0], [4e-3, 0.08], [12e-3, 0.08], [12e-3, 0.18]])
+UNDER = np.array([[0, 0], [9e-3, 0], [8e-3, 0.01], [5e-3, 0.01], [5e-3, 0.06]])  # a head with a tapered side
+
+
+def volume(line):
+    """Return the volume, m3, of the cones between points (rho, z), m."""
+    return sum(
+        np.pi / 3 * (high - low) * (wide**2 + wide * thin + thin**2)
+        for (thin, low), (wide, high) in pairwise(line)
+    )
+
+
+@pytest.mark.parametrize(("line", "within"), [(PIN, 1e-12), (UNDER, 2e-2)])
+def test_the_cone_has_the_volume_of_the_shoulder_between_straight_neighbours(line, within):
+    new, ((_, length),) = eased(line)
+    assert volume(new) == pytest.approx(volume(line), rel=within)
+    assert length == pytest.approx(0.5 * abs(line[3, 0] - line[2, 0]))
+    assert not eased(new)[1], "the cone is no shoulder itself"
+
+
+@pytest.mark.parametrize("line", [PIN, UNDER, PIN[::-1] * [1, -1] + [0, 0.18]])
+def test_a_body_with_a_shoulder_is_meshed(line):
+    line = line if line[0, 0] == 0 else np.concatenate([[[0.0, 0.0]], line[:-1]])
+    body = meshes.turned(line, 8).mesh
+    assert 2 * meshes.volume(body) == pytest.approx(volume(eased(line)[0]), rel=0.02)
+
+
+def test_faces_and_gentle_steps_stay():
+    plain = np.array([[0, 0], [4e-3, 0], [4e-3, 0.05], [5e-3, 0.06], [5e-3, 0.1], [0, 0.1]])
+    new, cones = eased(plain)
+    assert np.array_equal(new, plain) and not cones
