@@ -12,7 +12,7 @@ SPREAD = 0.5  # length of a cone over the step of the radius
 
 
 def eased(line: FloatArray) -> tuple[FloatArray, list[tuple[float, float]]]:
-    """Return the outline (k, 2) (rho, z), m, with a cone for each shoulder, and place z and length, m, of each.
+    """Return the outline (k, 2) (rho, z), m, with a cone for each shoulder, and z and length, m, of each.
 
     A shoulder is a step of the radius between two corners, steeper than sections of hexahedra can follow. Its
     cone is half as long as the step is high and has the same volume between straight neighbours; one that
