@@ -240,7 +240,7 @@ def report_of(found: Sequence[OthersSeries]) -> StudyReport:
                 "Each series",
                 Table.of(("series", "numbers", "in error", "mean E/D", "D2", "p", "jointly"), table),
             ),
-            Sheet("others", "Every number: E = S - D", comparison_table(every, ("series", "number"))),
+            Sheet("others", "Every number: E = S - D", comparison_table(every, "series", "number")),
         ],
         rests_on("others", LEVEL=LEVEL, aluminium=FASTER["aluminium-6061-t6"], steel=FASTER["steel-4340"]),
         conclusions=[("others", sentence) for sentence in sentences],

@@ -26,14 +26,17 @@ def asked_sets(request: Request) -> tuple[str, ...]:
     return request.ids or (("t5b",) if request.quick else MEASURED_SETS)
 
 
-def comparison_table(compared: Sequence[Comparison], names: tuple[str, ...]) -> Table:
-    """Return one row a comparison; ``names`` are those of set, quantity and, where asked for, the scatter."""
+def comparison_table(compared: Sequence[Comparison], first: str, second: str, last: str = "") -> Table:
+    """Return one row a comparison: its set under ``first``, its quantity under ``second``.
+
+    A column ``last``, where it is named, holds the verdict by the scatter of the tests.
+    """
     rows = [
-        (c.set, c.quantity, *(getattr(c, name) for name in COMPARED), *c.interval, c.verdict, c.scatter)
+        (c.set, c.quantity, *(getattr(c, name) for name in COMPARED), *c.interval, c.verdict)
+        + ((c.scatter,) if last else ())
         for c in compared
     ]
-    head = (*names[:2], *COMPARED, "low", "high", "verdict", *names[2:])
-    return Table.of(head, [row[: len(head)] for row in rows])
+    return Table.of((first, second, *COMPARED, "low", "high", "verdict", *filter(None, [last])), rows)
 
 
 def error_panel(title: str, rows: Sequence[str], errors: Mapping[str, Sequence[tuple[int, float]]]) -> Panel:

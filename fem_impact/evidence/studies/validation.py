@@ -113,7 +113,7 @@ def study_report(sets: Sequence[ValidatedSet]) -> StudyReport:
             Sheet(
                 "validation",
                 "Error of the model E = S - D and its uncertainty",
-                comparison_table(compared, ("set", "quantity", "beside the tests")),
+                comparison_table(compared, "set", "quantity", "beside the tests"),
             ),
             _cause_sheet(sets),
             _spread_sheet(sets),
