@@ -34,8 +34,8 @@ def compiling(end_time_s: float, seconds: int) -> Progress:
 
 
 def standing(end_time_s: float, note: str, eta_s: float | None) -> Progress:
-    """Return the report of a run whose mesh stands before the first step."""
-    return Progress(0.0, end_time_s, 0, 0.0, "mesh and modes of the rod are made", eta_s, note)
+    """Return the report of a run whose meshes stand before the rod's modes are found."""
+    return Progress(0.0, end_time_s, 0, 0.0, "the meshes are made", eta_s, note)
 
 
 def setting_up(end_time_s: float, note: str, eta_s: float | None = None) -> Progress:

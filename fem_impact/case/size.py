@@ -87,9 +87,9 @@ def run_size(slots: ModelSpec, bodies: Bodies, zones: Zones) -> RunSize:
     step, latest = _step(bodies, zones, slots), bodies.max_time
     touch, swing = UNTIL_APART
     apart = touch * bodies.estimate.duration + swing * bodies.bending_period
-    elements, mesh = rod + barrier, bodies.rod.own_mesh
+    elements = rod + barrier
     steps, most = min(apart, latest) / step, latest / step
-    modes = MODES * _own_factor(mesh, rod) / ENTRY if mesh is not None and slots.vibrating else 0.0
+    modes = modes_time(bodies, rod) if slots.vibrating else 0.0
     return RunSize(
         *(round(rod), round(barrier), round(yielding), step, round(steps), round(most)),
         memory=_memory(bodies, slots.vibrating, rod, barrier),
@@ -102,6 +102,12 @@ def run_time(elements: float, yielding: float, steps: float) -> float:
     """Return the processor time, s, of steps and set-up with so many elements, some of which may yield."""
     each = ELASTIC * max(elements - yielding, 0.0) + YIELDING * yielding
     return SETUP * elements + each * steps
+
+
+def modes_time(bodies: Bodies, rod: float) -> float:
+    """Return the processor time, s, of the modes of a user's mesh; that of others is part of `SETUP`."""
+    mesh = bodies.rod.own_mesh
+    return 0.0 if mesh is None else MODES * _own_factor(mesh, rod) / ENTRY
 
 
 def about(value: float) -> str:

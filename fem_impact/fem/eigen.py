@@ -101,7 +101,11 @@ so do runs that differ in their barrier only."""
 
 
 def rod_modes(
-    stiffness: MassStiffness, mass: Array, fixed: NDArray[np.bool_], count: int = DEFAULT_COUNT
+    stiffness: MassStiffness,
+    mass: Array,
+    fixed: NDArray[np.bool_],
+    count: int = DEFAULT_COUNT,
+    step: Callable[[], None] = lambda: None,
 ) -> RodModes:
     """Return the lowest elastic modes; the last ones computed are cached.
 
@@ -110,6 +114,7 @@ def rod_modes(
     stiffness : over the masses, N/m; mass : (n,), kg
     fixed : (n,) unknowns held by symmetry
     count : number of elastic modes wanted
+    step : called at each of some hundred steps of the solver; what it raises ends it
 
     Raises
     ------
@@ -125,11 +130,13 @@ def rod_modes(
     mark = digest.hexdigest()
     if mark not in _LAST:
         _LAST.clear()
-        _LAST[mark] = _solve(stiffness, mass, fixed, count)
+        _LAST[mark] = _solve(stiffness, mass, fixed, count, step)
     return _LAST[mark]
 
 
-def _solve(stiffness: MassStiffness, mass: Array, fixed: NDArray[np.bool_], count: int) -> RodModes:
+def _solve(
+    stiffness: MassStiffness, mass: Array, fixed: NDArray[np.bool_], count: int, step: Callable[[], None]
+) -> RodModes:
     """Solve the eigenvalue problem of `rod_modes`, without the cache."""
     root = np.where(fixed, 0.0, 1 / np.sqrt(mass))
     approximate_inverse, shift = _approximate_inverse(stiffness, root)
@@ -138,10 +145,14 @@ def _solve(stiffness: MassStiffness, mass: Array, fixed: NDArray[np.bool_], coun
     def times(x: Array) -> Array:
         return np.asarray(scale @ (stiffness @ (scale @ x)))
 
+    def told(x: Array) -> Array:
+        step()
+        return approximate_inverse(x)
+
     inverse = _operator(approximate_inverse, mass)
     start = approximate_inverse(np.random.default_rng(0).normal(size=len(mass)))
     # with OPinv given, eigsh uses only the shape of its first argument
-    vector = eigsh(inverse, count + RIGID, sigma=shift, v0=start, OPinv=inverse, tol=ROUGH)[1]
+    vector = eigsh(inverse, count + RIGID, sigma=shift, v0=start, OPinv=_operator(told, mass), tol=ROUGH)[1]
     for made in range(1, MOST_CORRECTIONS + 1):
         vector = np.linalg.qr(vector)[0]
         # Rayleigh-Ritz: the lowest squares are small beside the shift and have lost digits

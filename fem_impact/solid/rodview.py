@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import cos, sin
 
@@ -21,11 +21,11 @@ from fem_impact.solid.state import State
 from meshes import HexMesh
 
 
-def modes_of(model: Model, count: int = DEFAULT_COUNT) -> RodModes:
-    """Return the modes of the undeformed rod, none of one that cannot vibrate."""
+def modes_of(model: Model, count: int = DEFAULT_COUNT, step: Callable[[], None] = lambda: None) -> RodModes:
+    """Return the modes of the undeformed rod, none of one that cannot vibrate; ``step`` as of `rod_modes`."""
     n, K = model.layout.rod_size, model.rod_stiffness
     mass = model.mass[:n]
-    return no_modes(mass) if K is None else rod_modes(K, mass, model.inverse_mass[:n] == 0, count)
+    return no_modes(mass) if K is None else rod_modes(K, mass, model.inverse_mass[:n] == 0, count, step)
 
 
 @dataclass(frozen=True, slots=True)

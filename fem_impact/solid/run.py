@@ -5,6 +5,7 @@ from __future__ import annotations
 import resource
 import sys
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -13,7 +14,7 @@ import numpy as np
 from fem_impact.arrays import Array
 from fem_impact.case.case import Case
 from fem_impact.case.record import ContactRecord
-from fem_impact.case.size import run_time
+from fem_impact.case.size import modes_time, run_time
 from fem_impact.fem.flight import FreeVibration, RigidMotion
 from fem_impact.fem.kernels import compiled_before
 from fem_impact.files.run_directory import CHECKPOINT
@@ -27,7 +28,7 @@ from fem_impact.solid.frame import mass_centre
 from fem_impact.solid.march import Observer, advance, evaluate, march
 from fem_impact.solid.model import Model
 from fem_impact.solid.observers import ProgressObserver
-from fem_impact.solid.rodview import RodState
+from fem_impact.solid.rodview import RodState, modes_of
 from fem_impact.solid.shares import run_time_shares
 from fem_impact.solid.state import State
 from fem_impact.solid.watchers import Stopwatch, Watchers
@@ -138,20 +139,23 @@ def solve(
     RunError
         If the motion is not finite.
     """
-    whole = Stopwatch()
-    if options.progress is not None:
-        size = case.size
+    whole, out, show = Stopwatch(), options.out, options.progress
+    if show is not None:
+        end, time = case.size.steps * case.size.step, case.size.time
         # a level's own mesh says more, as soon as it stands
-        told = None if options.resume or case.record is not None else size.time
-        options.progress(setting_up(size.steps * size.step, case.scene.id, told))
-    model, out = model or build(case), options.out
-    if options.progress is not None:
-        options.progress(_standing(case, model, options))
-    view, state = view or RodState.of(model), model.initial_state()
+        show(setting_up(end, case.scene.id, None if options.resume or case.record is not None else time))
+    model = model or build(case)
+    if show is None:
+        view = view or RodState.of(model)
+    else:
+        show(_standing(case, model, options))
+        # those of a large mesh take longer than all steps: what shows may end them
+        going_on = partial(show, setting_up(end, case.scene.id))
+        view = view or RodState.of(model, modes_of(model, step=going_on))
+    state = model.initial_state()
     watchers = Watchers.of(case, model, view, out, options.resume, ahead)
     observers: list[Observer] = [*watchers.all]
-    if options.progress is not None:
-        show, end = options.progress, case.size.steps * case.size.step
+    if show is not None:
         if not compiled_before():  # told at once
             show(compiling(end, 20))
         stopping = case.contact.effective_mass * case.contact.approach
@@ -180,10 +184,11 @@ def solve(
 
 
 def _standing(case: Case, model: Model, options: RunOptions) -> Progress:
-    """Return the report that the mesh stands, with the time that its cells and steps will take."""
-    end, bodies = case.size.steps * case.size.step, model.geometry
-    cells = len(bodies.rod.mesh.cells) + (len(bodies.barrier.cells) if bodies.barrier is not None else 0)
-    time = run_time(cells, sum(zone.count for zone in model.zones), end / model.step)
+    """Return the report that the mesh stands, with the time that its modes, cells and steps will take."""
+    end, g = case.size.steps * case.size.step, model.geometry
+    rod, barrier = len(g.rod.mesh.cells), 0 if g.barrier is None else len(g.barrier.cells)
+    time = run_time(rod + barrier, sum(zone.count for zone in model.zones), end / model.step)
+    time += modes_time(case.bodies, rod) if model.rod_stiffness is not None else 0.0
     return standing(end, case.scene.id, None if options.resume else time)
 
 

@@ -104,7 +104,7 @@ class LevelProgress:
             self.own_s = left_s * (self.duration_s / progress.end_time_s if self.duration_s else 1.0)
             self._require_time(self.own_s, (OWN[0] if self.duration_s else PILOT) * self.own_s)
         else:
-            self._require_time(left_s)
+            self._require_time(left_s if progress.step else self.own_s or None)
         if self.halvings is None or left_s is None:
             return self._tell(replace(progress, note=self.name, eta_s=None))
         own = [left_s + (self.turns - 1) * self.own_s] * len(OWN)

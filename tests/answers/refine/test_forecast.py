@@ -1,8 +1,11 @@
 """The time that levels will take: a range from the mesh that stands, told with every report of progress."""
 
+from itertools import count
+
 import pytest
 
 from fem_impact.answers import simulate as simulate_module
+from fem_impact.answers.refine import chain as chain_module
 from fem_impact.answers.refine import forecast
 from fem_impact.answers.refine import level as level_module
 from fem_impact.answers.refine.chain import LevelChain
@@ -10,6 +13,7 @@ from fem_impact.answers.refine.forecast import OWN, LevelProgress, OverBudgetErr
 from fem_impact.answers.simulate import simulate
 from fem_impact.case.case import Case
 from fem_impact.errors import RunError
+from fem_impact.fem import eigen
 from fem_impact.options import RunOptions
 from fem_impact.progress import Notice, Progress, describe
 from fem_impact.scene.shipped import load, replace_all
@@ -82,8 +86,21 @@ def test_a_level_whose_mesh_shows_that_it_takes_too_long_is_given_up_at_once():
         level(at(0, 18.0))
     pilot = LevelProgress(None, "pilot", limit_s=10.0)
     pilot(at(0, 18.0))
+    pilot(at(0, None))
     with pytest.raises(OverBudgetError, match=r'gave no number\. .* give --budget "190 s"'):
         pilot(at(0, 40.0))
+
+
+def test_modes_that_take_longer_than_the_budget_are_broken_off(monkeypatch):
+    """Every look at the clock takes a second here; no step of the impact is computed."""
+    clock, told = count(), []
+    for module in (forecast, chain_module):
+        monkeypatch.setattr(module, "now", lambda: next(clock))
+    monkeypatch.setattr(eigen, "_LAST", {})
+    chain = LevelChain(Case(load("quick")), RunOptions(progress=told.append), budget_s=20.0)
+    with pytest.raises(OverBudgetError, match=r"given up after 2\d s, .* The coarsest level gave no number"):
+        chain.run()
+    assert len(told) > 10 and not any(one.step for one in told)
 
 
 def test_a_pilot_that_no_budget_holds_is_not_begun(monkeypatch):
