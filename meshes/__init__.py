@@ -18,7 +18,7 @@ from meshes.hexmesh import OUTER, SKIN, SYMMETRY, HexMesh, owners
 from meshes.moments import CellMoments, cell_moments
 from meshes.own import TIPS, OwnBody, Stated, own_body, read_own
 from meshes.quality import Quality, edge_lengths, quality, thicknesses, volume
-from meshes.reading.includes import included
+from meshes.reading.text import included
 from meshes.refine import refine
 from meshes.rod import RodMesh, rod
 from meshes.rows import with_thin_rows

@@ -171,8 +171,10 @@ def _groups(block: tuple[str, IntArray], first: int) -> list[tuple[_Kind, IntArr
     for count in (4, 6):
         here = np.flatnonzero(distinct == count)
         if len(here):
-            low = np.array([_tetra(cells[k]) if count == 4 else _wedge(cells[k]) for k in here])
-            found.append((TETRA if count == 4 else WEDGE, low, numbers[here]))
+            kind = TETRA if count == 4 else WEDGE
+            found.append(
+                (kind, np.array([_fallen(cell, kind) for cell in cells[here].tolist()]), numbers[here])
+            )
     if pyramids := int((distinct == 5).sum()):
         raise _no_pyramids(pyramids)
     if other := int((~np.isin(distinct, (4, 6, 8))).sum()):
@@ -191,13 +193,18 @@ def _no_pyramids(count: int) -> MeshError:
     )
 
 
-def _tetra(cell: IntArray) -> list[int]:
-    return list(dict.fromkeys(int(node) for node in cell[:8]))
+def _fallen(cell: list[int], kind: _Kind) -> list[int]:
+    """Return the corners of a hexahedron whose nodes fall together, then the middles of edges that it has."""
+    corners = list(dict.fromkeys(cell[:8])) if kind is TETRA else _wedge(cell[:8])
+    middles = {
+        frozenset((cell[a], cell[b])): k for (a, b), k in zip(HEXAHEDRON.edges, cell[8:], strict=False)
+    }
+    of_edges = [middles.get(frozenset((corners[a], corners[b])), -1) for a, b in kind.edges]
+    return [*corners, *of_edges] if middles else corners
 
 
-def _wedge(cell: IntArray) -> list[int]:
+def _wedge(corners: list[int]) -> list[int]:
     """Return the corners of a wedge that is given as a hexahedron with two edges of no length."""
-    corners = [int(node) for node in cell[:8]]
     ends = [tuple(dict.fromkeys(corners[k] for k in face)) for face in HEXAHEDRON.faces]
     ends = [face for face in ends if len(face) == 3]
     joined = {frozenset((corners[a], corners[b])) for a, b in HEXAHEDRON.edges}

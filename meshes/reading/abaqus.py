@@ -1,5 +1,6 @@
 """Decks of Abaqus and CalculiX: parts, instances and assemblies, sets, systems of coordinates."""
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from math import nan
@@ -9,9 +10,9 @@ import numpy as np
 
 from meshes.arrays import FloatArray
 from meshes.errors import MeshError
-from meshes.reading.abaqus_part import Part, count_of, placed
-from meshes.reading.includes import full_text
-from meshes.reading.stored import Elements, PointMass, StoredMesh, number_of, numbers_between, whole_number
+from meshes.reading.abaqus_part import Part, count_of, place
+from meshes.reading.stored import Elements, PointMass, StoredMesh, keep
+from meshes.reading.text import lines_of, number_of, numbers_between, place_of, whole_number
 
 __all__ = ["abaqus"]
 
@@ -24,8 +25,10 @@ MAKERS = (
     "ELGEN",
     "ELCOPY",
     "IMPORT",
+    "IMPERFECTION",
     "SYMMETRIC MODEL GENERATION",
 )
+FLAT = re.compile(r"(?:S|DS|M3D|SFM3D|R3D|CPS|CPE|CAX)(\d)")  # types of surfaces, with their nodes
 STATED = ("MATERIAL", "SOLID SECTION", "STEP", "BOUNDARY", "CLOAD", "DLOAD", "INITIAL CONDITIONS", "TIE")
 
 
@@ -56,15 +59,15 @@ def abaqus(path: Path) -> StoredMesh:
         If the deck makes nodes or cells by rules, or names what is not there.
     """
     deck = _Deck()
-    for card in _cards(full_text(path, "abaqus")):
+    for card in _cards(lines_of(path, "abaqus")):
         deck.take(card)
     return deck.stored()
 
 
-def _cards(text: str) -> Iterator[_Card]:
+def _cards(lines: list[str]) -> Iterator[_Card]:
     """Split a deck into its keywords; a keyword that ends in a comma goes on in the next line."""
     card, going = None, ""
-    for raw in text.splitlines():
+    for raw in lines:
         line = raw.strip()
         if line.startswith("**") or not line:
             continue
@@ -74,18 +77,14 @@ def _cards(text: str) -> Iterator[_Card]:
                 continue
             if card is not None:
                 yield card
-            card, going = _keyword(going), ""
+            name, *options = going[1:].split(",")
+            pairs = (option.partition("=") for option in options)
+            stated = {" ".join(key.upper().split()): value.strip().strip("\"'") for key, _, value in pairs}
+            card, going = _Card(" ".join(name.upper().split()), stated), ""
         elif card is not None:
             card.lines.append([part.strip() for part in line.split(",")])
     if card is not None:
         yield card
-
-
-def _keyword(line: str) -> _Card:
-    name, *options = line[1:].split(",")
-    pairs = (option.partition("=") for option in options)
-    stated = {" ".join(key.upper().split()): value.strip().strip("\"'") for key, _, value in pairs}
-    return _Card(" ".join(name.upper().split()), stated)
 
 
 class _Deck:
@@ -178,18 +177,18 @@ class _Deck:
         kind = card.options.get("SYSTEM", "R").upper()[:1]
         for line in card.lines:
             number = whole_number(line[0], "*NODE")
-            place = np.array([number_of(part, f"node {number}") for part in (line[1:4] + [""] * 3)[:3]])
-            place = _cartesian(place, kind)
+            place = _cartesian(np.array(place_of(line[1:], number)), kind)
             if self.system is not None:
                 origin, axes = self.system
                 place = origin + place @ axes
-            self.here.nodes[number] = place
+            keep(self.here.nodes, number, tuple(place.tolist()), "nodes")
             if nset := card.options.get("NSET"):
                 self.here.node_sets.setdefault(nset.upper(), []).append(number)
 
     def _elements(self, card: _Card) -> None:
         kind, name = card.options.get("TYPE", "").upper(), card.options.get("ELSET", "").upper()
-        wanted = count_of(kind)
+        flat = FLAT.match(kind)
+        wanted = count_of(kind) or (int(flat[1]) if flat else 0)
         numbers: list[int] = []
         for line in card.lines:
             if self.level == "assembly":  # joins nodes of instances, named as ROD-1.5: none of its own
@@ -197,10 +196,12 @@ class _Deck:
             numbers += [whole_number(part, f"*ELEMENT of type {kind}") for part in line if part]
             if len(numbers) < wanted + 1 if wanted else line[-1] == "":
                 continue  # a line that ends in a comma goes on
-            self.here.cells[numbers[0]] = kind, tuple(numbers[1:])
+            keep(self.here.cells, numbers[0], (kind, tuple(numbers[1:])), "cells")
             if name:
                 self.here.sets.setdefault(name, []).append(numbers[0])
             numbers = []
+        if numbers and count_of(kind):
+            raise MeshError(f"ends within the cell {numbers[0]} of *ELEMENT of type {kind}.")
         if numbers:
             self.here.cells[numbers[0]] = kind, tuple(numbers[1:])
 
@@ -244,7 +245,7 @@ class _Deck:
 
     def stored(self) -> StoredMesh:
         """Return the cells of all instances, or those of the deck that has none."""
-        found, points, more = Elements(masses=self.spread), list[FloatArray](), list[str]()
+        found = Elements(masses=self.spread)
         bodies: list[tuple[str, Part, list[list[str]]]] = [
             ("", body, []) for body in (self.plain, self.assembly)
         ]
@@ -261,12 +262,12 @@ class _Deck:
         if not self.instances:  # a part alone stands where its nodes are
             bodies += [(name, part, []) for name, part in self.parts.items()]
             used = set(self.parts)
-        more += [f"the part {name}, of which there is no instance" for name in self.parts if name not in used]
+        more = [f"the part {name}, of which there is no instance" for name in self.parts if name not in used]
         for name, body, moves in bodies:
-            points.append(placed(body, moves, found, sum(len(one) for one in points), name))
+            place(body, moves, found, name)
         if self.stated:
             more.append("materials, supports, loads and steps of the deck: the scene states its own")
-        return found.stored(np.concatenate(points), *self.more, *more)
+        return found.stored(*self.more, *more)
 
 
 def _cartesian(place: FloatArray, kind: str) -> FloatArray:

@@ -8,9 +8,10 @@ import numpy as np
 
 from meshes.arrays import FloatArray
 from meshes.errors import MeshError
-from meshes.reading.stored import NODES, Elements, PointMass, number_of
+from meshes.reading.stored import NODES, Elements, PointMass
+from meshes.reading.text import number_of
 
-__all__ = ["Part", "count_of", "placed"]
+__all__ = ["Part", "count_of", "place"]
 
 # Nodes of a cell by the letters of its type: continuum elements C3D8, C3D8R, C3D8I, CSS8, heat DC3D8, ...
 VOLUME = ("C3D", "DC3D", "DCC3D", "AC3D", "Q3D", "CSS", "SC6", "SC8")
@@ -45,7 +46,7 @@ class Part:
     masses : of each of a set of points of mass, by its name
     """
 
-    nodes: dict[int, FloatArray] = field(default_factory=dict)
+    nodes: dict[int, tuple[float, ...]] = field(default_factory=dict)
     cells: dict[int, tuple[str, tuple[int, ...]]] = field(default_factory=dict)
     sets: dict[str, list[int]] = field(default_factory=dict)
     node_sets: dict[str, list[int]] = field(default_factory=dict)
@@ -73,40 +74,39 @@ class Part:
         )
 
 
-def placed(body: Part, moves: list[list[str]], found: Elements, first: int, name: str) -> FloatArray:
-    """Add the cells of a body to those ``found``; return its nodes (k, 3) where the instance puts them."""
-    place = {number: first + k for k, number in enumerate(body.nodes)}
+def place(body: Part, moves: list[list[str]], found: Elements, name: str) -> None:
+    """Add a body to the elements ``found``, where the moves of its instance put it."""
+    first = len(found.place)
+    number = {own: first + k for k, own in enumerate(body.nodes)}  # all instances count their nodes from 1
+    points = np.array(list(body.nodes.values()), dtype=np.float64).reshape(-1, 3)
+    for own, point in enumerate(_moved(points, moves, name).tolist(), first):
+        found.node(own, point)
     members: dict[int, list[str]] = {}
     for one, numbers in body.sets.items():
-        for number in set(numbers):
-            members.setdefault(number, []).append(one)
-    for number, (kind, all_nodes) in body.cells.items():
+        for cell in set(numbers):
+            members.setdefault(cell, []).append(one)
+    for cell, (kind, all_nodes) in body.cells.items():
         # CalculiX gives nodes of its own to the incompatible modes of C3D8I
         nodes = all_nodes[:8] if kind == "C3D8I" else all_nodes
-        told = _volume(kind, len(nodes))
-        if told is None:
-            if kind == "MASS":
-                stated = [body.masses[one] for one in members.get(number, []) if one in body.masses]
-                found.masses.append(PointMass("MASS", (*stated, nan)[0], place.get(nodes[0], -1)))
-            else:
-                found.add_face(kind, [place.get(node, -1) for node in nodes], *members.get(number, []))
-            continue
-        missing = [node for node in nodes if node not in place]
-        if missing:
-            raise MeshError(f"has a cell {number} that names the node {missing[0]}, which is not there.")
-        found.add(
-            told, tuple(place[node] for node in nodes), *([name] if name else []), *members.get(number, [])
-        )
+        told, named = _volume(kind, len(nodes)), members.get(cell, [])
+        places = [number.get(node, -1) for node in nodes]
+        if told is None and kind == "MASS":
+            stated = [body.masses[one] for one in named if one in body.masses]
+            found.masses.append(PointMass("MASS", (*stated, nan)[0], places[0]))
+        elif told is None:
+            found.add_face(kind, places, *named)
+        elif min(places) < 0:
+            missing = nodes[places.index(-1)]
+            raise MeshError(f"has a cell {cell} that names the node {missing}, which is not there.")
+        else:
+            found.add(told, tuple(places), *([name] if name else []), *named)
     for surface, rows in body.surfaces.items():
         for text, side in rows:
-            for number in _numbers([text], body.sets):
-                for face in _faces(*body.cells.get(number, ("", ())), side):
-                    found.add_face("", [place.get(node, -1) for node in face], surface)
+            for cell in _numbers([text], body.sets):
+                for face in _faces(*body.cells.get(cell, ("", ())), side):
+                    found.add_face("", [number.get(node, -1) for node in face], surface)
     for one, numbers in body.node_sets.items():
-        places = [place[node] for node in numbers if node in place]
-        found.node_sets.setdefault(one, []).extend(places)
-    points = np.array(list(body.nodes.values()), dtype=np.float64).reshape(-1, 3)
-    return _moved(points, moves, name)
+        found.add_nodes(one, (number.get(node, -1) for node in numbers))
 
 
 def _numbers(texts: list[str], sets: Mapping[str, list[int]]) -> list[int]:

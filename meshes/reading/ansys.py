@@ -6,10 +6,9 @@ from dataclasses import dataclass, field
 from math import nan
 from pathlib import Path
 
-import numpy as np
-
 from meshes.errors import MeshError
-from meshes.reading.stored import Elements, PointMass, StoredMesh, number_of, numbers_between, whole_number
+from meshes.reading.stored import Elements, PointMass, StoredMesh, keep
+from meshes.reading.text import lines_of, number_of, numbers_between, place_of, whole_number
 
 __all__ = ["ansys"]
 
@@ -28,15 +27,14 @@ class _Archive:
 
     Attributes
     ----------
-    nodes : place of each node by number
+    nodes : by number, (3,)
     types : number of the element's type by its number in the file
     cells : by number: type, nodes
     real, constants : number of its set of constants by cell, and the first of each set
     components, node_sets : by name: numbers of elements, of nodes
     """
 
-    points: list[list[float]] = field(default_factory=list)
-    nodes: dict[int, int] = field(default_factory=dict)
+    nodes: dict[int, tuple[float, ...]] = field(default_factory=dict)
     types: dict[int, int] = field(default_factory=dict)
     cells: dict[int, tuple[int, list[int]]] = field(default_factory=dict)
     real: dict[int, int] = field(default_factory=dict)
@@ -53,7 +51,7 @@ def ansys(path: Path) -> StoredMesh:
     MeshError
         If it makes nodes or cells by commands, or names what is not there.
     """
-    archive, lines = _Archive(), iter(path.read_text(encoding="latin-1").splitlines())
+    archive, lines = _Archive(), iter(lines_of(path))
     for line in lines:
         words = [word.strip() for word in line.split("!")[0].split(",")]
         name = words[0].upper()
@@ -94,9 +92,8 @@ def _nodes(lines: Iterator[str], archive: _Archive) -> None:
         if line.strip().startswith(("N,", "-1")):
             return
         number, start = whole_number(line[:width], "NBLOCK"), count * width
-        archive.nodes[number] = len(archive.points)
-        texts = (line[start + k * wide : start + (k + 1) * wide] for k in range(3))
-        archive.points.append([number_of(text, f"node {number}") for text in texts])
+        texts = [line[start + k * wide : start + (k + 1) * wide] for k in range(3)]
+        keep(archive.nodes, number, place_of(texts, number), "nodes")
 
 
 def _constants(lines: Iterator[str], count: int, archive: _Archive) -> None:
@@ -135,7 +132,7 @@ def _cells(lines: Iterator[str], archive: _Archive, solid: bool) -> None:
             kind, number, nodes = (
                 (numbers[1], numbers[10], numbers[11:]) if solid else (0, numbers[0], numbers[5:])
             )
-            archive.cells[number] = kind, nodes
+            keep(archive.cells, number, (kind, nodes), "cells")
             archive.real[number] = numbers[2] if solid else 0
             numbers = []
 
@@ -160,30 +157,28 @@ def _ranges(members: list[int]) -> list[int]:
 
 def _stored(archive: _Archive) -> StoredMesh:
     found, sets = Elements(), dict[int, list[str]]()
+    for number, place in archive.nodes.items():
+        found.node(number, place)
     for name, members in archive.components.items():
         for member in members:
             sets.setdefault(member, []).append(name)
     for number, (slot, nodes) in archive.cells.items():
+        if slot and slot not in archive.types and len(nodes) >= 4:
+            raise MeshError(f"has a cell {number} of a type {slot} that no command ET of it defines.")
         kind = archive.types.get(slot, 0)
-        missing = [node for node in nodes if node and node not in archive.nodes]
-        if kind in SOLIDS | TETRA4 | TETRA10 and missing:
-            raise MeshError(f"has a cell {number} that names the node {missing[0]}, which is not there.")
         told = _kind(kind, len(nodes))
-        if told is None and kind in MASSES:
+        if told:
+            found.solid(told, nodes, f"a cell {number}", *sets.get(number, []))
+        elif kind in MASSES:
             mass = archive.constants.get(archive.real[number], nan)
-            found.masses.append(PointMass(f"MASS{kind}", mass, archive.nodes.get(nodes[0], -1)))
-            continue
-        if told is None and kind:
-            found.add_face(str(kind), [archive.nodes.get(node, -1) for node in nodes], *sets.get(number, []))
-            continue
-        if told is None:
+            found.masses.append(PointMass(f"MASS{kind}", mass, found.at(nodes)[0]))
+        elif kind:
+            found.add_face(str(kind), found.at(nodes), *sets.get(number, []))
+        else:
             found.leave("cell outside of solid blocks")
-            continue
-        numbers = tuple(archive.nodes[node] if node else -1 for node in nodes)
-        found.add(told, numbers, *sets.get(number, []))
     for name, members in archive.node_sets.items():
-        found.node_sets[name] = [archive.nodes[node] for node in members if node in archive.nodes]
-    return found.stored(np.array(archive.points, dtype=np.float64).reshape(-1, 3))
+        found.add_nodes(name, members)
+    return found.stored()
 
 
 def _kind(kind: int, count: int) -> str | None:

@@ -12,11 +12,12 @@ from meshes.arrays import IntArray
 from meshes.errors import MeshError
 from meshes.reading.stored import NODES, Elements, StoredMesh, counted
 
-__all__ = ["by_meshio", "parsed"]
+__all__ = ["WARNED", "as_stored", "by_meshio", "parsed"]
 
 VOXEL = (0, 1, 3, 2, 4, 5, 7, 6)  # corners of VTK's voxel in the order of a hexahedron
 FACES = ("triangle", "quad")
 FLAT = ("vertex", "line", "polygon")  # cells of points, lines and surfaces of any number of corners
+WARNED = "what meshio warns of: "
 VALUES = 50  # of a whole number of cells, up to which it counts as a mark of regions
 
 
@@ -49,13 +50,20 @@ def by_meshio(path: Path, kinds: list[str]) -> StoredMesh:
             # meshio passes on whatever its parsers raise on a broken file: XML, struct and index errors
             refused.append(f"{kind}: {' '.join(str(error).split())[:80] or type(error).__name__}")
         else:
-            found = _stored(stored)
-            told = (f"what meshio warns of: {warned[:80]}",) if warned else ()
+            found = as_stored(stored)
+            told = (f"{WARNED}{warned[:80]}",) if warned else ()
             return replace(found, ignored=(*found.ignored, *told))
     raise MeshError(f"is not readable ({'; '.join(refused)}). Write it again, as .vtu for example.")
 
 
-def _stored(mesh: Any) -> StoredMesh:
+def as_stored(mesh: Any) -> StoredMesh:
+    """Return what a mesh of meshio holds.
+
+    Raises
+    ------
+    MeshError
+        If it holds volume cells that are not read.
+    """
     blocks, ignored = [], []
     at, faces_at = list[IntArray](), list[IntArray]()  # numbers of the cells, or of the faces, of each block
     first, found = 0, Elements()

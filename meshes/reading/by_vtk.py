@@ -1,24 +1,16 @@
-"""Formats that VTK reads right: CGNS, EnSight, surfaces, and its own that are structured or in pieces."""
+"""Formats that VTK reads right: CGNS, EnSight, surfaces, and its own."""
 
 from pathlib import Path
 
-import numpy as np
-
-from meshes.arrays import IntArray
 from meshes.errors import MeshError
-from meshes.reading.stored import Elements, StoredMesh, counted
+from meshes.reading.by_meshio import WARNED, as_stored, by_meshio
+from meshes.reading.stored import StoredMesh
 
-__all__ = ["ENDINGS", "by_vtk"]
+__all__ = ["ENDINGS", "by_vtk", "vtu"]
 
 SURFACES = (".stl", ".obj", ".ply")
-ENDINGS = (".cgns", ".case", ".vts", ".vtr", ".vti", ".pvtu", ".pvts", ".pvtr", ".vtm", ".vtkhdf", *SURFACES)
-# kinds of cells by VTK's numbers
-KINDS = {10: "tetra", 12: "hexahedron", 13: "wedge", 14: "pyramid", 24: "tetra10", 25: "hexahedron20"}
-KINDS |= {26: "wedge15", 27: "pyramid13", 29: "hexahedron27"}
-VOXEL, VOXEL_CORNERS = 11, (0, 1, 3, 2, 4, 5, 7, 6)
-FACES = {5: "triangle", 9: "quad"}
-FLAT = {1: "vertex", 2: "vertex", 3: "line", 4: "line", 7: "polygon", 8: "pixel", 21: "line3"}
-FLAT |= {22: "triangle6", 23: "quad8", 28: "quad9"}
+PIECES = (".vtk", ".vts", ".vtr", ".vti", ".pvtu", ".pvts", ".pvtr", ".vtm", ".vtkhdf")
+ENDINGS = (".cgns", ".case", *PIECES, *SURFACES)
 
 
 def by_vtk(path: Path) -> StoredMesh:
@@ -35,24 +27,20 @@ def by_vtk(path: Path) -> StoredMesh:
         found = pyvista.read(path)
         if isinstance(found, pyvista.MultiBlock):
             found = found.combine(merge_points=False)
-    if not isinstance(found, pyvista.UnstructuredGrid):
-        if not hasattr(found, "cast_to_unstructured_grid"):
-            raise MeshError(f"holds a {type(found).__name__}, which is no mesh of cells.")
-        found = found.cast_to_unstructured_grid()
-    blocks: list[tuple[str, IntArray]] = []
-    ignored, faces = [], Elements()
-    for number, cells in found.cells_dict.items():
-        kind, nodes = int(number), np.asarray(cells, np.int64)
-        if kind == VOXEL:
-            blocks.append(("hexahedron", nodes[:, VOXEL_CORNERS]))
-        elif kind in KINDS:
-            blocks.append((KINDS[kind], nodes))
-        elif kind in FACES:
-            for around in nodes.tolist():
-                faces.add_face(FACES[kind], around)
-        elif kind in FLAT:
-            ignored.append(counted(len(nodes), f"cell of type {FLAT[kind]}"))
-        else:
-            raise MeshError(f"holds {counted(len(nodes), f'cell of VTK type {kind}')}, which are not read.")
-    points = np.asarray(found.points, np.float64)
-    return StoredMesh(points, tuple(blocks), {}, tuple(ignored), surfaces=faces.surfaces())
+    if not isinstance(found, pyvista.DataSet):
+        raise MeshError(f"holds a {type(found).__name__}, which is no mesh of cells.")
+    return as_stored(pyvista.to_meshio(found))
+
+
+def vtu(path: Path) -> StoredMesh:
+    """Read a file by meshio, which refuses a damaged one, over which VTK may end the process.
+
+    VTK reads one with cells that meshio skips, such as voxels.
+
+    Raises
+    ------
+    MeshError
+        As `by_vtk`, or if it is damaged.
+    """
+    found = by_meshio(path, ["vtu"])
+    return by_vtk(path) if any(told.startswith(WARNED) for told in found.ignored) else found

@@ -89,8 +89,7 @@ def _names(kept: Mapping[str, Any], of: str, k: int, what: str) -> list[str]:
 def _add_sets(kept: Mapping[str, Any], blocks: list[tuple[str | None, IntArray]], found: Elements) -> None:
     """Add the sets of sides of cells, which are counted through all blocks, and those of nodes."""
     first = np.cumsum([0, *(len(cells) for _, cells in blocks)])
-    k = 1
-    while f"elem_ss{k}" in kept:
+    for k in _numbered(kept, "elem_ss"):
         for number, side in zip(kept[f"elem_ss{k}"], kept[f"side_ss{k}"], strict=True):
             of = int(np.searchsorted(first, number, side="left")) - 1
             kind, cells = blocks[of]
@@ -98,12 +97,14 @@ def _add_sets(kept: Mapping[str, Any], blocks: list[tuple[str | None, IntArray]]
             nodes = cells[number - 1 - first[of]]
             if 1 <= side <= len(sides):
                 found.add_face("", nodes[list(sides[side - 1])].tolist(), *_names(kept, "ss", k, "SIDE SET"))
-        k += 1
-    k = 1
-    while f"node_ns{k}" in kept:
+    for k in _numbered(kept, "node_ns"):
         nodes = (np.asarray(kept[f"node_ns{k}"], np.int64) - 1).tolist()
         found.node_sets |= dict.fromkeys(_names(kept, "ns", k, "NODE SET"), nodes)
-        k += 1
+
+
+def _numbered(kept: Mapping[str, Any], stem: str) -> list[int]:
+    """Return the numbers of the variables of one kind; empty sets have a number and no variable."""
+    return sorted(int(name.removeprefix(stem)) for name in kept if name.startswith(stem))
 
 
 def _variables(path: Path) -> Mapping[str, Any]:

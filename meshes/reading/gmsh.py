@@ -3,11 +3,10 @@
 from collections.abc import Iterator
 from pathlib import Path
 
-import numpy as np
-
 from meshes.errors import MeshError
 from meshes.reading.gmsh_binary import sections_of
 from meshes.reading.stored import NODES, Elements, StoredMesh
+from meshes.reading.text import decoded
 
 __all__ = ["gmsh", "is_gmsh"]
 
@@ -39,7 +38,7 @@ def gmsh(path: Path) -> StoredMesh:
     """
     data = path.read_bytes()
     is_binary = data.startswith(b"$MeshFormat") and data.split(b"\n", 2)[1].split()[1:2] == [b"1"]
-    sections = sections_of(data) if is_binary else dict(_sections(data.decode("latin-1")))
+    sections = sections_of(data) if is_binary else dict(_sections(decoded(data)))
     version = sections["MeshFormat"][0].split()[0] if "MeshFormat" in sections else "1"
     names = {}
     for line in sections.get("PhysicalNames", [])[1:]:
@@ -47,7 +46,6 @@ def gmsh(path: Path) -> StoredMesh:
         *dimension, number = map(int, numbers.split())
         for of in dimension or (2, 3):  # the first of version 2 name no dimension
             names[of, number] = name.strip().strip('"')
-    numbered: dict[int, list[float]]
     if version.startswith("4"):
         numbered = _nodes_4(sections["Nodes"], version)
         cells = _cells_4(sections["Elements"], version)
@@ -55,37 +53,39 @@ def gmsh(path: Path) -> StoredMesh:
     else:
         lines = sections.get("NOD") or sections["Nodes"]
         rows = (line.split() for line in lines[1 : 1 + int(lines[0])])
-        numbered = {int(row[0]): [float(part) for part in row[1:4]] for row in rows}
+        numbered = ((int(row[0]), [float(part) for part in row[1:4]]) for row in rows)
         cells = _cells_2(sections.get("ELM") or sections["Elements"], "ELM" in sections)
         groups = {2: {}, 3: {}}
-    place = {number: k for k, number in enumerate(numbered)}
-    found = Elements()
+    found, known = Elements(), dict[tuple[str, int, tuple[int, ...]], int]()
+    for node, place in numbered:
+        found.node(node, place)
     for kind, nodes, entity, marks in cells:
         of = 2 if kind in FACES else 3
         physical = [mark for mark in (*marks, *groups[of].get(entity, [])) if mark]
         sets = {names.get((of, mark), f"PHYSICAL {mark}") for mark in physical}
         if kind in FACES:
-            at = [place.get(node, -1) for node in nodes]
-            found.add_face(FACES[kind], at, *sets, *([f"SURFACE {entity}"] if entity else []))
+            found.add_face(FACES[kind], found.at(nodes), *sets, *([f"SURFACE {entity}"] if entity else []))
             continue
         if kind in FLAT:
             found.leave(f"cell of type {FLAT[kind]}")
             continue
         if kind not in KINDS:
             raise MeshError(f"holds cells of Gmsh's type {kind}, which are not read. Save them of order 1.")
-        missing = [node for node in nodes if node not in place]
-        if missing:
-            raise MeshError(f"has a cell that names the node {missing[0]}, which is not there.")
         name = KINDS[kind]
-        nodes = [nodes[k] for k in REORDERED.get(name, range(NODES[name]))]
-        found.add(name, tuple(place[node] for node in nodes), *sets, f"VOLUME {entity}")
-    return found.stored(np.array(list(numbered.values()), dtype=np.float64).reshape(-1, 3))
+        cell = name, entity, tuple(nodes[k] for k in REORDERED.get(name, range(NODES[name])))
+        if cell in known:  # version 2 holds it once for each of its physical groups
+            for one in sets:
+                found.sets.setdefault(one, []).append(known[cell])
+            continue
+        known[cell] = len(found.cells)
+        found.solid(name, cell[2], "a cell", *sets, f"VOLUME {entity}")
+    return found.stored()
 
 
 def _sections(text: str) -> Iterator[tuple[str, list[str]]]:
     """Yield the name and the lines of each section."""
     name, lines = "", list[str]()
-    for line in text.splitlines():
+    for line in text.split("\n"):
         bare = line.strip()
         if bare.startswith("$") and not name:
             name, lines = bare[1:], []
@@ -107,9 +107,8 @@ def _cells_2(lines: list[str], first_version: bool) -> Iterator[tuple[int, list[
             yield row[1], row[3 + row[2] :], (*tags, 0, 0)[1], tags[:1]
 
 
-def _nodes_4(lines: list[str], version: str) -> dict[int, list[float]]:
-    """Return the nodes of version 4 by number; coordinates on their curve or surface are left out."""
-    numbered: dict[int, list[float]] = {}
+def _nodes_4(lines: list[str], version: str) -> Iterator[tuple[int, list[float]]]:
+    """Yield number and place of the nodes of version 4, without coordinates on their curve or surface."""
     blocks, at = int(lines[0].split()[0]), 1
     for _ in range(blocks):
         count = int(lines[at].split()[3])
@@ -122,8 +121,7 @@ def _nodes_4(lines: list[str], version: str) -> dict[int, list[float]]:
             rows = [line.split() for line in lines[at : at + count]]
             at += count
         for row in rows:
-            numbered[int(row[0])] = [float(part) for part in row[1:4]]
-    return numbered
+            yield int(row[0]), [float(part) for part in row[1:4]]
 
 
 def _cells_4(lines: list[str], version: str) -> Iterator[tuple[int, list[int], int, list[int]]]:

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from meshes.errors import MeshError
+from meshes.reading.text import decoded
 
 __all__ = ["sections_of"]
 
@@ -63,7 +64,7 @@ def sections_of(data: bytes) -> dict[str, list[str]]:
 
 def _lines(name: str, version: str, body: bytes) -> Iterator[str]:
     if name == "PhysicalNames":
-        return iter(body.decode("latin-1").splitlines())
+        return filter(None, decoded(body).split("\n"))
     if version == "4.1":
         return {"Entities": _entities, "Nodes": _nodes, "Elements": _elements}[name](_Stream(body))
     count, _, rest = body.partition(b"\n")

@@ -3,10 +3,8 @@
 import re
 from pathlib import Path
 
-import numpy as np
-
-from meshes.errors import MeshError
-from meshes.reading.stored import Elements, PointMass, StoredMesh, number_of, whole_number
+from meshes.reading.stored import Elements, PointMass, StoredMesh, keep
+from meshes.reading.text import lines_of, place_of, whole_number
 
 __all__ = ["kratos"]
 
@@ -37,15 +35,13 @@ def kratos(path: Path) -> StoredMesh:
     Raises
     ------
     MeshError
-        If a cell names what is not there.
+        If a cell names what is not there, or a number stands for two.
     """
-    place: dict[int, int] = {}
-    points: list[list[float]] = []
     cells: dict[int, tuple[str | None, list[int], str]] = {}
     conditions: dict[int, tuple[str, list[int]]] = {}
     members: dict[str, dict[int, list[str]]] = {"Elements": {}, "Conditions": {}, "Nodes": {}}
     found, opened = Elements(), list[tuple[str, str]]()
-    for raw in path.read_text(encoding="latin-1").splitlines():
+    for raw in lines_of(path):
         line = raw.split("//")[0].strip()
         words = line.split()
         if not words:
@@ -55,41 +51,31 @@ def kratos(path: Path) -> StoredMesh:
         elif words[0] == "End" and opened:
             opened.pop()
         elif opened and opened[-1][0] == "Nodes":
-            place[whole_number(words[0], "Nodes")] = len(points)
-            points.append([number_of(text, f"node {words[0]}") for text in words[1:4]])
+            found.node(whole_number(words[0], "Nodes"), place_of(words[1:], words[0]))
         elif opened and opened[-1][0] == "Elements":
             name = opened[-1][1]
             numbers = [whole_number(text, name) for text in words]
-            cells[numbers[0]] = _kind(name, len(numbers) - 2), numbers[2:], f"PROPERTIES {numbers[1]}"
+            solid = re.search(r"3D\d*N?$", name) and not any(word in name.upper() for word in SURFACES)
+            kind = KINDS.get(len(numbers) - 2) if solid else None
+            keep(cells, numbers[0], (kind, numbers[2:], f"PROPERTIES {numbers[1]}"), "cells")
         elif opened and (of := opened[-1][0].removeprefix("SubModelPart")) in members and len(opened) > 1:
             names = [name for kind, name in opened if kind == "SubModelPart"]
             members[of].setdefault(whole_number(words[0], opened[-1][0]), []).extend(names)
         elif opened and opened[-1][0] == "Conditions":
             numbers = [whole_number(text, "Conditions") for text in words]
-            conditions[numbers[0]] = opened[-1][1], numbers[2:]
+            keep(conditions, numbers[0], (opened[-1][1], numbers[2:]), "conditions")
     for number, (kind, nodes, properties) in cells.items():
         named = members["Elements"].get(number, [])
         if kind is None and len(nodes) == 1:
-            found.masses.append(PointMass("element of 1 node", node=place.get(nodes[0], -1)))
-            continue
-        if kind is None:
-            corners = [place.get(node, -1) for node in nodes]
-            found.add_face(f"{len(nodes)} nodes that fills no volume", corners, *named)
-            continue
-        missing = [node for node in nodes if node not in place]
-        if missing:
-            raise MeshError(f"has a cell {number} that names the node {missing[0]}, which is not there.")
-        nodes = [nodes[k] for k in REORDERED.get(kind, range(len(nodes)))]
-        found.add(kind, tuple(place[node] for node in nodes), properties, *named)
+            found.masses.append(PointMass("element of 1 node", node=found.at(nodes)[0]))
+        elif kind is None:
+            found.add_face(f"{len(nodes)} nodes that fills no volume", found.at(nodes), *named)
+        else:
+            nodes = [nodes[k] for k in REORDERED.get(kind, range(len(nodes)))]
+            found.solid(kind, nodes, f"a cell {number}", properties, *named)
     for number, (name, nodes) in conditions.items():
-        found.add_face(name, [place.get(node, -1) for node in nodes], *members["Conditions"].get(number, []))
+        found.add_face(name, found.at(nodes), *members["Conditions"].get(number, []))
     for node, names in members["Nodes"].items():
-        for one in names if node in place else []:
-            found.node_sets.setdefault(one, []).append(place[node])
-    return found.stored(np.array(points, dtype=np.float64).reshape(-1, 3))
-
-
-def _kind(name: str, count: int) -> str | None:
-    """Return the kind of cells of an element by its name and number of nodes, None where it is no solid."""
-    solid = re.search(r"3D\d*N?$", name) and not any(word in name.upper() for word in SURFACES)
-    return KINDS.get(count) if solid else None
+        for one in names:
+            found.add_nodes(one, [node])
+    return found.stored()

@@ -4,12 +4,9 @@ from collections.abc import Iterator
 from math import nan
 from pathlib import Path
 
-import numpy as np
-
 from meshes.errors import MeshError
-from meshes.reading.includes import full_text
-from meshes.reading.sections import fixed_fields, sections
-from meshes.reading.stored import Elements, PointMass, StoredMesh, number_of, whole_number
+from meshes.reading.stored import Elements, PointMass, StoredMesh, part_names
+from meshes.reading.text import fixed_fields, lines_of, number_of, place_of, sections, whole_number
 
 __all__ = ["lsdyna"]
 
@@ -24,13 +21,14 @@ REFUSED = {
 }
 SOLIDS = ("ELEMENT_SOLID", "ELEMENT_SOLID_TITLE", "ELEMENT_TSHELL")
 LINES_MORE = {"ORTHO": 2, "DOF": 1}  # that an option adds to each element
-# widths of the fields of a line of masses, long ones, and which of them is the mass
+# how many whole numbers stand before the mass
 MASSES = {
-    "ELEMENT_MASS": ([8, 8, 16], [20, 20, 20], 2),
-    "ELEMENT_MASS_NODE_SET": ([8, 8, 16], [20, 20, 20], 2),
-    "ELEMENT_MASS_PART": ([8, 16], [20, 20], 1),
-    "ELEMENT_MASS_PART_SET": ([8, 16], [20, 20], 1),
+    "ELEMENT_MASS": 2,
+    "ELEMENT_MASS_NODE_SET": 2,
+    "ELEMENT_MASS_PART": 1,
+    "ELEMENT_MASS_PART_SET": 1,
 }
+SETS = ("SET_SEGMENT", "SET_NODE", "SET_NODE_LIST")
 
 
 def lsdyna(path: Path) -> StoredMesh:
@@ -43,61 +41,68 @@ def lsdyna(path: Path) -> StoredMesh:
     MeshError
         If the deck includes or moves what it does not hold, or names what is not there.
     """
-    place: dict[int, int] = {}
-    points: list[list[float]] = []
     titles: dict[int, str] = {}
     solids: list[tuple[int, list[int]]] = []
-    found, flat, sets = Elements(), list[list[int]](), list[tuple[str, bool, list[str]]]()
-    masses: list[tuple[str, bool, str]] = []
-    for name, long, lines in _keywords(full_text(path, "lsdyna")):
+    found, flat, sets = Elements(), list[list[int]](), list[tuple[str, int, list[str]]]()
+    masses: list[tuple[str, int, str]] = []
+    for name, width, lines in _keywords(lines_of(path, "lsdyna")):
+        stated = [line for line in lines if line]
         for start, problem in REFUSED.items():
             if name.startswith(start):
                 raise MeshError(problem.format(name))
         if name == "NODE":
-            for line in lines:
-                number, *rest = _split(line, [20] * 4 if long else [8, 16, 16, 16])
-                place[whole_number(number, "*NODE")] = len(points)
-                points.append([number_of(text, f"node {number}") for text in (rest + [""] * 3)[:3]])
+            for line in stated:
+                number, *rest = _split(line, [width] + [_wide(width)] * 3)
+                found.node(whole_number(number, "*NODE"), place_of(rest, number))
         elif name == "PART":
             for title, numbers in zip(lines[::2], lines[1::2], strict=False):
-                part = whole_number(_split(numbers, [20 if long else 10])[0], "*PART")
-                titles[part] = title.strip()
+                if (number := _split(numbers, [max(width, 10)])[0]).isdigit():
+                    titles[int(number)] = title.strip()
         elif name.startswith(("ELEMENT_SOLID", "ELEMENT_TSHELL")):
-            solids += _solids(name, lines, 20 if long else 8)
+            solids += _solids(name, lines, width)
         elif name == "ELEMENT_SHELL":
-            flat += [_numbers(line, 20 if long else 8, name, 6) for line in lines]
-        elif name.startswith(("SET_SEGMENT", "SET_NODE_LIST")):
-            sets.append((name, long, lines))
+            flat += [_numbers(line, width, name, 6) for line in stated]
+        elif name.removesuffix("_TITLE") in SETS:
+            sets.append((name, max(width, 10), lines))
+        elif name.startswith(("SET_SEGMENT", "SET_NODE")):
+            found.leave(f"set (*{name})")
         elif name.startswith(("ELEMENT_MASS", "ELEMENT_INERTIA")):
-            masses += [(name, long, line) for line in lines]
+            masses += [(name, width, line) for line in stated]
         elif name.startswith("ELEMENT_"):
-            found.leave(f"line of *{name}", len(lines))
+            found.leave(f"line of *{name}", len(stated))
         elif name.startswith("RIGIDWALL"):
             found.leave(f"wall (*{name})")
     for part, nodes in solids:
         kind = {8: "hexahedron", 10: "tetra10"}[len(nodes)]
-        found.add_of_part(kind, nodes, place, str(part), titles.get(part, ""))
+        found.solid(kind, nodes, f"a solid of part {part}", *part_names(part, titles.get(part, "")))
     for _, part, *nodes in flat:
-        names = {f"PART {part}", titles.get(part, "")} - {""}
-        found.add_face("SHELL", [place.get(node, -1) for node in nodes], *names)
-    for name, long, line in masses:
-        found.masses.append(_mass(name, long, line, place))
-    for name, long, lines in sets:
-        _take_set(name, lines, 20 if long else 10, place, found)
-    return found.stored(np.array(points, dtype=np.float64).reshape(-1, 3))
+        found.add_face("SHELL", found.at(nodes), *part_names(part, titles.get(part, "")))
+    for name, width, line in masses:
+        found.masses.append(_mass(name, width, line, found))
+    for name, width, lines in sets:
+        _take_set(name, lines, width, found)
+    return found.stored()
 
 
-def _keywords(text: str) -> Iterator[tuple[str, bool, list[str]]]:
-    """Yield each keyword up to *END, whether its fields are long, and its lines."""
-    every = False
-    for head, lines in sections(text, "*", "$"):
+def _keywords(lines: list[str]) -> Iterator[tuple[str, int, list[str]]]:
+    """Yield each keyword up to *END, the width of its whole numbers, and its lines.
+
+    The width is 8 letters; 10 where the deck states I10 or a keyword ends in %, 20 where it states LONG or +.
+    """
+    every = 8
+    for head, held in sections(lines, "*", "$"):
         if head.startswith("KEYWORD"):
-            every = "LONG=Y" in head.replace(" ", "")
-        long = (every or head.endswith("+")) and not head.endswith("-")
+            bare = head.replace(" ", "")
+            every = 20 if "LONG=Y" in bare else 10 if "I10=Y" in bare else 8
         name = head.rstrip("+-% ").strip()
         if name == "END":
             return
-        yield name, long, lines
+        yield name, {"+": 20, "%": 10, "-": 8}.get(head[-1:], every), held
+
+
+def _wide(width: int) -> int:
+    """Return the width of the numbers that stand beside whole ones of a ``width``."""
+    return 20 if width == 20 else 16
 
 
 def _split(line: str, widths: list[int]) -> list[str]:
@@ -110,31 +115,31 @@ def _numbers(line: str, width: int, name: str, most: int = 10) -> list[int]:
     return [whole_number(text, f"*{name}") for text in _split(line, [width] * most)[:most] if text]
 
 
-def _mass(name: str, long: bool, line: str, place: dict[int, int]) -> PointMass:
+def _mass(name: str, width: int, line: str, found: Elements) -> PointMass:
     """Return the mass of a line; of a part that is given its final mass, it is not known."""
     if name not in MASSES:
         return PointMass(name)
-    short, wide, at = MASSES[name]
-    fields = _split(line, wide if long else short)
+    at = MASSES[name]
+    fields = _split(line, [width] * at + [_wide(width)])
     number = number_of(fields[at], f"*{name}")
-    node = place.get(whole_number(fields[1], name), -1) if name == "ELEMENT_MASS" else -1
+    node = found.at([whole_number(fields[1], name)])[0] if name == "ELEMENT_MASS" else -1
     return PointMass(name, number if number or "PART" not in name else nan, node)
 
 
-def _take_set(name: str, lines: list[str], width: int, place: dict[int, int], found: Elements) -> None:
+def _take_set(name: str, lines: list[str], width: int, found: Elements) -> None:
     """Add a set of segments or nodes, by its number and its title."""
-    titled = name.endswith("_TITLE")
+    titled, what = name.endswith("_TITLE"), "SEGMENT" if "SEGMENT" in name else "NODE"
     head, *rest = lines[titled:]
     number = whole_number(_split(head, [width])[0], f"*{name}")
-    names = {lines[0].strip() if titled else "", f"{'SEGMENT' if 'SEGMENT' in name else 'NODE'} SET {number}"}
-    for line in rest:
+    names = {lines[0].strip() if titled else "", f"{what} SET {number}"} - {""}
+    for line in filter(None, rest):
         # attributes of a segment follow its nodes
-        nodes = [place.get(node, -1) for node in _numbers(line, width, name, 4 if "SEGMENT" in name else 8)]
-        if "SEGMENT" in name:
-            found.add_face("", nodes, *(names - {""}))
+        nodes = _numbers(line, width, name, 4 if what == "SEGMENT" else 8)
+        if what == "SEGMENT":
+            found.add_face("", found.at(nodes), *names)
             continue
-        for one in names - {""}:
-            found.node_sets.setdefault(one, []).extend(node for node in nodes if node >= 0)
+        for one in names:
+            found.add_nodes(one, nodes)
 
 
 def _solids(name: str, lines: list[str], width: int) -> Iterator[tuple[int, list[int]]]:
@@ -147,6 +152,9 @@ def _solids(name: str, lines: list[str], width: int) -> Iterator[tuple[int, list
     more, at = LINES_MORE.get(option, 0), 0
     while at < len(lines):
         line = lines[at]
+        if not line:
+            at += 1
+            continue
         while line.rstrip().endswith(",") and at + 1 < len(lines):
             at += 1
             line += lines[at]

@@ -9,8 +9,8 @@ import numpy as np
 
 from meshes.arrays import FloatArray
 from meshes.errors import MeshError
-from meshes.reading.includes import full_text
-from meshes.reading.stored import Elements, PointMass, StoredMesh, number_of, whole_number
+from meshes.reading.stored import Elements, PointMass, StoredMesh, keep
+from meshes.reading.text import lines_of, number_of, place_of, whole_number
 
 __all__ = ["nastran"]
 
@@ -21,7 +21,10 @@ SOLIDS = {
     "CPENTA": (6, "wedge", 15, "wedge15"),
     "CTETRA": (4, "tetra", 10, "tetra10"),
     "CPYRAM": (5, "pyramid", 13, "pyramid13"),
+    "CPYRA": (5, "pyramid", 13, "pyramid13"),
 }
+MESH = ("GRID", *SOLIDS)
+OTHER_SOLIDS = ("CHEX", "CIHEX", "CPEN", "CWEDGE", "CTET", "CPYR")
 REORDERED = {
     "hexahedron20": (*range(12), *range(16, 20), *range(12, 16)),
     "wedge15": (*range(9), 12, 13, 14, 9, 10, 11),
@@ -86,48 +89,48 @@ def nastran(path: Path) -> StoredMesh:
     Raises
     ------
     MeshError
-        If the file includes others, or names what is not there.
+        If the file makes nodes or cells by rules, or names what is not there.
     """
-    cards = list(_cards(full_text(path, "nastran")))
-    grids, defined, found, scale = {}, {}, Elements(), 1.0
+    cards = list(_cards(lines_of(path, "nastran")))
+    grids, defined, found, scale = dict[int, tuple[int, tuple[float, ...]]](), {}, Elements(), 1.0
     default = next((fields[1] for name, fields in cards if name == "GRDSET"), "")
     for name, fields in cards:
         if name == "GRID":
             number = whole_number(fields[0], "GRID")
-            place = [number_of(text, f"GRID {number}") for text in (fields[2:5] + [""] * 3)[:3]]
-            system = fields[1] or default
-            grids[number] = whole_number(system, f"GRID {number}") if system else 0, np.array(place)
+            system = whole_number(fields[1] or default or "0", f"GRID {number}")
+            keep(grids, number, (system, place_of(fields[2:5], number)), "nodes")
         elif name.startswith(("CORD1", "CORD2")):
             for number, one in _definitions(name, fields):
                 defined[number] = one
         elif name == "PARAM" and fields[0].upper() == "WTMASS":
             scale = number_of(fields[1], "PARAM,WTMASS")
     systems = _Systems(defined, grids)
-    points = np.array([systems.place(number) for number in grids]).reshape(-1, 3)
-    numbered = {number: k for k, number in enumerate(grids)}
+    for number in grids:
+        found.node(number, systems.place(number).tolist())
     for name, fields in cards:
         if name in SOLIDS:
-            _add(name, fields, numbered, found)
+            _add(name, fields, found)
+        elif name.startswith(OTHER_SOLIDS):
+            raise MeshError(f"holds cells of type {name}, which are not read. Write them as CHEXA.")
         elif name in MASSES:
-            found.masses.append(_mass(name, fields, numbered, scale))
+            found.masses.append(_mass(name, fields, found, scale))
         elif corners := 3 * name.startswith("CTRI") + 4 * name.startswith("CQUAD"):
             nodes = [int(text) if text.isdigit() else 0 for text in fields[2 : 2 + corners]]
-            found.add_face(name, [numbered.get(node, -1) for node in nodes], f"PID {fields[1] or fields[0]}")
+            found.add_face(name, found.at(nodes), f"PID {fields[1] or fields[0]}")
         elif name.startswith(SURFACES):
             found.leave(f"cell of type {name}")
-    return found.stored(points)
+    return found.stored()
 
 
-def _mass(name: str, fields: list[str], place: dict[int, int], scale: float) -> PointMass:
+def _mass(name: str, fields: list[str], found: Elements, scale: float) -> PointMass:
     """Return the mass of a card, whose number counts ``scale`` times."""
     grid, mass = (fields[at] if at is not None else "" for at in MASSES[name])
     number = scale * number_of(mass, f"{name} {fields[0]}") if mass else nan
-    return PointMass(name, number, place.get(whole_number(grid, name), -1) if grid else -1)
+    return PointMass(name, number, found.at([whole_number(grid, name)])[0] if grid else -1)
 
 
-def _cards(text: str) -> Iterator[tuple[str, list[str]]]:
+def _cards(lines: list[str]) -> Iterator[tuple[str, list[str]]]:
     """Yield each card's name with its fields from the second on, those of its continuations joined."""
-    lines = text.splitlines()
     begin = [k for k, line in enumerate(lines) if line.upper().split()[:2] == ["BEGIN", "BULK"]]
     name, fields = "", []
     for raw in lines[begin[0] + 1 if begin else 0 :]:
@@ -139,6 +142,8 @@ def _cards(text: str) -> Iterator[tuple[str, list[str]]]:
                 raise MeshError(problem)
         if line.upper().startswith("ENDDATA"):
             break
+        if line.startswith("=") and name in MESH:
+            raise MeshError(f"repeats lines of {name} by =, which is not read. Write it with all lines.")
         first, more = _fields(line)
         if not first or first[0] in "+*":
             fields += more
@@ -155,6 +160,8 @@ def _fields(line: str) -> tuple[str, list[str]]:
     if "," in line:
         first, *rest = (part.strip() for part in line.split(","))
         wide = 4 if first.endswith("*") or first.startswith("*") else 8
+        if any(rest[wide + 1 :]) and first.rstrip("*").upper() in MESH:  # the mark of a continuation is one
+            raise MeshError(f"has a line {line[:30]!r} of more than ten fields. Continue it in the next.")
         return first, (rest + [""] * wide)[:wide]
     first = line[:8].strip()
     width, count = (16, 4) if first.endswith("*") or first.startswith("*") else (8, 8)
@@ -182,7 +189,7 @@ class _Systems:
     def __init__(
         self,
         defined: dict[int, tuple[str, int, list[FloatArray] | list[int]]],
-        grids: dict[int, tuple[int, FloatArray]],
+        grids: dict[int, tuple[int, tuple[float, ...]]],
     ) -> None:
         self.defined, self.grids, self.known = defined, grids, {0: BASIC}
 
@@ -191,7 +198,7 @@ class _Systems:
         if node not in self.grids:
             raise MeshError(f"has a system of coordinates that names the node {node}, which is not there.")
         system, place = self.grids[node]
-        return self.system(system).basic(place)
+        return self.system(system).basic(np.array(place))
 
     def system(self, number: int, asked: tuple[int, ...] = ()) -> _System:
         """Return a system by its number."""
@@ -213,20 +220,18 @@ class _Systems:
         return self.known[number]
 
 
-def _add(name: str, fields: list[str], place: dict[int, int], found: Elements) -> None:
+def _add(name: str, fields: list[str], found: Elements) -> None:
     """Add a solid element; middles of edges that are left out have no place."""
     corners, kind, all_nodes, fine = SOLIDS[name]
+    what = f"a cell {name} {fields[0]}"
     nodes = [whole_number(text, f"{name} {fields[0]}") if text else 0 for text in fields[2 : 2 + all_nodes]]
     if any(fields[2 + all_nodes :]):
-        raise MeshError(f"has a cell {name} {fields[0]} of more than {all_nodes} nodes, which is none.")
-    missing = [node for node in nodes if node and node not in place]
-    if missing or len(nodes) < corners or not all(nodes[:corners]):
-        what = f"the node {missing[0]}, which is not there" if missing else f"fewer than {corners} corners"
-        raise MeshError(f"has a cell {name} {fields[0]} that names {what}.")
+        raise MeshError(f"has {what} of more than {all_nodes} nodes, which is none.")
+    if len(nodes) < corners or not all(nodes[:corners]):
+        raise MeshError(f"has {what} that names fewer than {corners} corners.")
     names = (f"PID {fields[1] or fields[0]}",)
     if not any(nodes[corners:]):
-        found.add(kind, tuple(place[node] for node in nodes[:corners]), *names)
+        found.solid(kind, nodes[:corners], what, *names)
         return
     nodes += [0] * (all_nodes - len(nodes))
-    numbers = [place[nodes[k]] if nodes[k] else -1 for k in REORDERED.get(fine, range(all_nodes))]
-    found.add(fine, tuple(numbers), *names)
+    found.solid(fine, [nodes[k] for k in REORDERED.get(fine, range(all_nodes))], what, *names)

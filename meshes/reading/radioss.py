@@ -4,12 +4,9 @@ from collections.abc import Iterator
 from math import nan
 from pathlib import Path
 
-import numpy as np
-
 from meshes.errors import MeshError
-from meshes.reading.includes import full_text
-from meshes.reading.sections import fixed_fields, sections
-from meshes.reading.stored import Elements, PointMass, StoredMesh, number_of, whole_number
+from meshes.reading.stored import Elements, PointMass, StoredMesh, part_names
+from meshes.reading.text import fixed_fields, lines_of, number_of, place_of, sections, whole_number
 
 __all__ = ["radioss"]
 
@@ -18,12 +15,13 @@ KINDS = {8: "hexahedron", 4: "tetra", 6: "wedge", 10: "tetra10", 20: "hexahedron
 # /BRIC20 numbers the edges between both ends before those of the upper end
 REORDERED = {20: (*range(12), *range(16, 20), *range(12, 16))}
 FLAT = {"SHELL": 4, "SH3N": 3}
-OTHERS = ("TRUSS", "BEAM", "SPRING", "QUAD", "TRIA")
+OTHERS = ("TRUSS", "BEAM", "SPRING", "QUAD", "TRIA", "SPHCEL", "XELEM")
 # kinds of /ADMAS of which each line states a mass to add: to a group of nodes, to parts, to a node
 ADDED, EACH, NODE = ("0", "1", "3", "5", "6"), "0", "5"
 REFUSED = {
     "TRANSFORM": "moves nodes by /{0}. Write the deck with the nodes where they are.",
     "SUBMODEL": "holds a submodel by /{0}. Write it as one model.",
+    "SHEL16": "holds cells of /{0}, which are not read. Mesh the body with /BRICK or /BRIC20.",
 }
 
 
@@ -37,58 +35,56 @@ def radioss(path: Path) -> StoredMesh:
     MeshError
         If the deck includes or moves what it does not hold, or names what is not there.
     """
-    place: dict[int, int] = {}
-    points: list[list[float]] = []
     titles: dict[str, str] = {}
     solids: list[tuple[str, list[int]]] = []
     found, flat, segments = Elements(), list[tuple[str, str, list[int]]](), list[tuple[set[str], list[int]]]()
     groups: list[tuple[set[str], list[int]]] = []
     masses: list[tuple[str, list[str]]] = []
-    for name, lines in sections(full_text(path, "radioss"), "/", "#"):
+    for name, lines in sections(lines_of(path, "radioss"), "/", "#"):
+        stated, after_title = ([line for line in some if line] for some in (lines, lines[1:]))
         for start, problem in REFUSED.items():
             if name.removeprefix("/").startswith(start):
                 raise MeshError(problem.format(name))
         kind, _, part = name.partition("/")
         if kind == "NODE":
-            for line in lines:
+            for line in stated:
                 number, *rest = _split(line, [10, 20, 20, 20])
-                place[whole_number(number, "/NODE")] = len(points)
-                points.append([number_of(text, f"node {number}") for text in (rest + [""] * 3)[:3]])
+                found.node(whole_number(number, "/NODE"), place_of(rest, number))
         elif kind == "PART" and lines:
             titles[part.split("/")[0]] = lines[0].strip()
         elif kind in SOLIDS:
-            solids += [(part, nodes) for nodes in _solids(kind, lines)]
+            solids += [(part, nodes) for nodes in _solids(kind, stated)]
         elif kind in FLAT:
-            flat += [(kind, part, _numbers(line, name)[1 : 1 + FLAT[kind]]) for line in lines]
+            flat += [(kind, part, _numbers(line, name)[1 : 1 + FLAT[kind]]) for line in stated]
         elif name.startswith(("SURF/SEG/", "GRNOD/NODE/")) and lines:
-            names = {lines[0].strip(), " ".join([kind, name.split("/")[2]])}
-            rows = [_numbers(line, name) for line in lines[1:]]
+            names = {lines[0].strip(), " ".join([kind, name.split("/")[2]])} - {""}
+            rows = [_numbers(line, name) for line in after_title]
             if kind == "SURF":
                 segments += [(names, row[1:5]) for row in rows]
             else:
                 groups += [(names, row) for row in rows]
         elif kind in OTHERS:
-            found.leave(f"line of /{kind}", len(lines))
+            found.leave(f"line of /{kind}", len(stated))
         elif kind == "ADMAS":
-            masses += [(part.split("/")[0], _split(line, [20, 10])) for line in lines[1:]]
+            masses += [(part.split("/")[0], _split(line, [20, 10])) for line in after_title]
         elif kind == "RWALL":
             found.leave("wall (/RWALL)")
     for part, nodes in solids:
-        found.add_of_part(KINDS[len(nodes)], nodes, place, part, titles.get(part, ""))
+        names_of = part_names(part, titles.get(part, ""))
+        found.solid(KINDS[len(nodes)], nodes, f"a solid of part {part}", *names_of)
     for kind, part, nodes in flat:
-        names = {f"PART {part}", titles.get(part, "")} - {""}
-        found.add_face(kind, [place.get(node, -1) for node in nodes], *names)
+        found.add_face(kind, found.at(nodes), *part_names(part, titles.get(part, "")))
     for names, nodes in segments:
-        found.add_face("", [place.get(node, -1) for node in nodes], *names)
+        found.add_face("", found.at(nodes), *names)
     for names, nodes in groups:
         for one in names:
-            found.node_sets.setdefault(one, []).extend(place[node] for node in nodes if node in place)
+            found.add_nodes(one, nodes)
     for kind, (text, of, *_) in masses:
         times = len(found.node_sets.get(f"GRNOD {of}", [])) if kind == EACH else 1
         mass = times * number_of(text, "/ADMAS") if kind in ADDED and times else nan
-        node = place.get(whole_number(of, "/ADMAS"), -1) if kind == NODE else -1
+        node = found.at([whole_number(of, "/ADMAS")])[0] if kind == NODE else -1
         found.masses.append(PointMass(f"/ADMAS/{kind}", mass, node))
-    return found.stored(np.array(points, dtype=np.float64).reshape(-1, 3))
+    return found.stored()
 
 
 def _split(line: str, widths: list[int]) -> list[str]:

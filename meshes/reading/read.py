@@ -7,7 +7,7 @@ from meshes.errors import MeshError, MissingReaderError
 from meshes.reading.abaqus import abaqus
 from meshes.reading.ansys import ansys
 from meshes.reading.by_meshio import by_meshio
-from meshes.reading.by_vtk import ENDINGS, by_vtk
+from meshes.reading.by_vtk import ENDINGS, by_vtk, vtu
 from meshes.reading.exodus import exodus
 from meshes.reading.gmsh import gmsh, is_gmsh
 from meshes.reading.kratos import kratos
@@ -42,6 +42,7 @@ READERS: dict[str, Reader] = {
     ".avs": ucd,
     ".ucd": ucd,
     ".unv": universal,
+    ".vtu": vtu,
 }
 # formats of other programs that are not read, and what makes of each a file that is
 CONVERTED = {

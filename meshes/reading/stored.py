@@ -1,10 +1,9 @@
 """What a mesh file holds: its nodes, its volume cells, their sets, and what of it is left out."""
 
-import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from math import inf, nan
-from typing import NamedTuple
+from math import nan
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
@@ -18,14 +17,11 @@ __all__ = [
     "StoredMesh",
     "Surfaces",
     "counted",
-    "number_of",
-    "numbers_between",
-    "whole_number",
+    "keep",
+    "part_names",
 ]
 
-MOST = 10**7  # numbers in a range
-# a number, of which Fortran may leave the E of the exponent out
-NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+))(?:E([+-]?\d+)|(?<=[\d.])([+-]\d+))?")
+T = TypeVar("T")
 #: Nodes of each kind of volume cell; corners first, then the middles of edges, in VTK's order.
 NODES = {
     "tetra": 4,
@@ -103,20 +99,24 @@ class StoredMesh:
 
 @dataclass(slots=True)
 class Elements:
-    """Volume cells while a deck is read, by numbers of the deck.
+    """Nodes and cells while a deck is read.
 
     Attributes
     ----------
+    nodes : by number, (3,) in the unit of the file
+    place : of each node in the list of points, by number
     kinds : kind of each cell
-    nodes : places of its nodes in the list of points
+    cells : places of the nodes of each
     sets : names of sets, with the places of their cells
     left_out : what is left out, with its count
     masses : masses without volume
     faces, face_kinds, face_sets, node_sets : as in `Surfaces`
     """
 
+    nodes: dict[int, tuple[float, ...]] = field(default_factory=dict)
+    place: dict[int, int] = field(default_factory=dict)
     kinds: list[str] = field(default_factory=list)
-    nodes: list[tuple[int, ...]] = field(default_factory=list)
+    cells: list[tuple[int, ...]] = field(default_factory=list)
     sets: dict[str, list[int]] = field(default_factory=dict)
     faces: list[tuple[int, ...]] = field(default_factory=list)
     face_kinds: list[str] = field(default_factory=list)
@@ -124,6 +124,35 @@ class Elements:
     node_sets: dict[str, list[int]] = field(default_factory=dict)
     left_out: dict[str, int] = field(default_factory=dict)
     masses: list[PointMass] = field(default_factory=list)
+
+    def node(self, number: int, place: Iterable[float]) -> None:
+        """Add a node at its place (3,).
+
+        Raises
+        ------
+        MeshError
+            If its number stands for another place already.
+        """
+        keep(self.nodes, number, tuple(place), "nodes")
+        self.place.setdefault(number, len(self.place))
+
+    def at(self, nodes: Iterable[int]) -> list[int]:
+        """Return the places of nodes in the list of points, -1 of those that are not there."""
+        return [self.place.get(node, -1) for node in nodes]
+
+    def solid(self, kind: str, nodes: Sequence[int], what: str, *names: str) -> None:
+        """Add a cell by the numbers of its nodes, 0 for the middle of an edge that is left out.
+
+        Raises
+        ------
+        MeshError
+            If a node is not there, or their number is not that of the kind; ``what`` says which cell it is.
+        """
+        corners = NODES[kind.rstrip("0123456789")]
+        for k, node in enumerate(nodes):
+            if node not in self.place and (node or k < corners):
+                raise MeshError(f"has {what} that names the node {node}, which is not there.")
+        self.add(kind, tuple(self.at(nodes)), *names)
 
     def add(self, kind: str, nodes: tuple[int, ...], *names: str) -> int:
         """Add a cell that is in sets of those names; return its place.
@@ -137,30 +166,10 @@ class Elements:
             raise MeshError(f"has a cell of type {kind} with {len(nodes)} nodes instead of {NODES[kind]}.")
         place = len(self.kinds)
         self.kinds.append(kind)
-        self.nodes.append(nodes)
+        self.cells.append(nodes)
         for name in names:
             self.sets.setdefault(name, []).append(place)
         return place
-
-    def add_of_part(
-        self, kind: str, nodes: list[int], place: Mapping[int, int], part: str, title: str
-    ) -> None:
-        """Add a cell of a part by the numbers of its nodes, whose places in the list of points are known.
-
-        It is in the sets of the part's number and of its title, if there is one.
-
-        Raises
-        ------
-        MeshError
-            If a node is not there, or their number is not that of the kind.
-        """
-        missing = [node for node in nodes if node not in place]
-        if missing:
-            raise MeshError(
-                f"has a solid of part {part} that names the node {missing[0]}, which is not there."
-            )
-        names = {f"PART {part}", title} - {""}
-        self.add(kind, tuple(place[node] for node in nodes), *names)
 
     def add_face(self, kind: str, nodes: Sequence[int], *names: str) -> None:
         """Add a cell of a ``kind`` that may be one of a surface, or a face (""), in sets of those names.
@@ -177,22 +186,27 @@ class Elements:
         self.faces.append((*corners, -1)[:4])
         self.face_kinds.append(kind)
 
+    def add_nodes(self, name: str, nodes: Iterable[int]) -> None:
+        """Add nodes, by their numbers, to the set of a name; those that are not there are left out."""
+        self.node_sets.setdefault(name, []).extend(place for place in self.at(nodes) if place >= 0)
+
     def leave(self, what: str, count: int = 1) -> None:
         """Count what is left out, in one word or more."""
         self.left_out[what] = self.left_out.get(what, 0) + count
 
-    def stored(self, points: FloatArray, *more: str) -> StoredMesh:
+    def stored(self, *more: str) -> StoredMesh:
         """Return what was read, cells of one kind together, with ``more`` that is left out."""
         kinds = np.array(self.kinds)
         order, blocks = [], []
         for kind in dict.fromkeys(self.kinds):
             here = np.flatnonzero(kinds == kind)
             order.append(here)
-            blocks.append((kind, np.array([self.nodes[k] for k in here], dtype=np.int64)))
+            blocks.append((kind, np.array([self.cells[k] for k in here], dtype=np.int64)))
         new = np.empty(len(kinds), dtype=np.int64)
         new[np.concatenate([*order, np.zeros(0, np.int64)])] = np.arange(len(kinds))
         sets = {name: np.unique(new[places]) for name, places in self.sets.items() if places}
         told = (counted(count, what) for what, count in self.left_out.items())
+        points = np.array(list(self.nodes.values()), dtype=np.float64).reshape(-1, 3)
         return StoredMesh(points, tuple(blocks), sets, (*told, *more), tuple(self.masses), self.surfaces())
 
     def surfaces(self) -> Surfaces:
@@ -205,51 +219,25 @@ class Elements:
         return Surfaces(corners, tuple(self.face_kinds), of_faces, of_nodes)
 
 
+def keep(known: dict[int, T], number: int, new: T, what: str) -> None:
+    """Add what a number stands for.
+
+    Raises
+    ------
+    MeshError
+        If it stands for something else already; ``what`` says for nodes or cells.
+    """
+    if known.setdefault(number, new) != new:
+        raise MeshError(f"has two {what} {number} that differ. Number them apart, or leave one of them out.")
+
+
+def part_names(part: int | str, title: str) -> list[str]:
+    """Return the names of the set of a part: its number and its title, if there is one."""
+    return [f"PART {part}", title] if title else [f"PART {part}"]
+
+
 def counted(count: int, what: str) -> str:
     """Return "1 cell of type S4R" or "3 cells of type S4R": the first word is the one that is counted."""
     first, _, rest = what.partition(" ")
     plural = first if count == 1 else f"{first}es" if first.endswith("s") else f"{first}s"
     return f"{count} {plural} {rest}".rstrip()
-
-
-def number_of(text: str, where: str) -> float:
-    """Return a number of a deck, "1.5-3", "2.D+4" and blanks, which are 0, included.
-
-    Raises
-    ------
-    MeshError
-        If it is none; ``where`` says what it belongs to.
-    """
-    bare = text.strip().upper().replace("D", "E")
-    found = NUMBER.fullmatch(bare or "0")
-    number = float(f"{found[1]}E{found[2] or found[3] or 0}") if found else inf
-    if abs(number) == inf:
-        raise MeshError(f"has {text.strip()!r} for a number of {where}.")
-    return number
-
-
-def numbers_between(low: int, high: int, step: int, where: str) -> range:
-    """Return the whole numbers of a range that a deck states, both ends included.
-
-    Raises
-    ------
-    MeshError
-        If they are no range, or more than a mesh has; ``where`` says what they belong to.
-    """
-    if step < 1 or (high - low) // step > MOST:
-        raise MeshError(f"has {low} to {high} in steps of {step} for a range of numbers of {where}.")
-    return range(low, high + 1, step)
-
-
-def whole_number(text: str, where: str) -> int:
-    """Return a whole number of a deck.
-
-    Raises
-    ------
-    MeshError
-        If it is none; ``where`` says what it belongs to.
-    """
-    try:
-        return int(text)
-    except ValueError:
-        raise MeshError(f"has {text.strip()!r} for a whole number of {where}.") from None

@@ -3,10 +3,9 @@
 from collections.abc import Iterator
 from pathlib import Path
 
-import numpy as np
-
 from meshes.errors import MeshError
-from meshes.reading.stored import Elements, PointMass, StoredMesh, number_of
+from meshes.reading.stored import Elements, PointMass, StoredMesh, keep
+from meshes.reading.text import fixed_fields, lines_of, place_of
 
 __all__ = ["universal"]
 
@@ -40,51 +39,44 @@ def universal(path: Path) -> StoredMesh:
     MeshError
         If it gives nodes in local systems of coordinates, or names what is not there.
     """
-    place: dict[int, int] = {}
-    points: list[list[float]] = []
+    found = Elements()
     cells: dict[int, tuple[int, list[int]]] = {}
     groups: dict[int, dict[int, list[str]]] = {NODE: {}, ELEMENT: {}}
     local = False
-    for number, lines in _sets(path.read_text(encoding="latin-1")):
+    for number, lines in _sets(lines_of(path)):
         if number in (2411, 781):
             for head, line in zip(lines[::2], lines[1::2], strict=False):
-                place[int(head.split()[0])] = len(points)
-                points.append([number_of(line[k : k + 25], "a node") for k in (0, 25, 50)])
-                local |= head.split()[1:2] not in (["0"], ["1"])
+                label, system, *_ = head.split()
+                texts = line.split() if len(line.split()) == 3 else fixed_fields(line, [25] * 3)
+                found.node(int(label), place_of(texts, label))
+                local |= system not in ("0", "1")
         elif number == 2412:
             _cells(lines, cells)
         elif number in (2467, 2477, 2452, 2435):
             _groups(lines, groups)
     if local:
         raise MeshError("gives nodes in local systems of coordinates. Write it in the global one.")
-    found = Elements()
     for number, (kind, nodes) in cells.items():
         named = groups[ELEMENT].get(number, [])
         if 41 <= kind <= 99 and kind % 10 in FLAT:
-            corners = nodes[:: FLAT[kind % 10]]
-            found.add_face(str(kind), [place.get(node, -1) for node in corners], *named)
-            continue
-        if kind in MASSES:
-            found.masses.append(PointMass(f"type {kind}", node=place.get(nodes[0], -1)))
-            continue
-        if kind not in KINDS:
+            found.add_face(str(kind), found.at(nodes[:: FLAT[kind % 10]]), *named)
+        elif kind in MASSES:
+            found.masses.append(PointMass(f"type {kind}", node=found.at(nodes)[0]))
+        elif kind in KINDS:
+            nodes = [nodes[k] for k in REORDERED.get(kind, range(len(nodes)))]
+            found.solid(KINDS[kind], nodes, f"a cell {number}", *named)
+        else:
             found.leave(f"cell of type {kind}")
-            continue
-        missing = [node for node in nodes if node not in place]
-        if missing:
-            raise MeshError(f"has a cell {number} that names the node {missing[0]}, which is not there.")
-        nodes = [nodes[k] for k in REORDERED.get(kind, range(len(nodes)))]
-        found.add(KINDS[kind], tuple(place[node] for node in nodes), *named)
     for node, names in groups[NODE].items():
-        for name in names if node in place else []:
-            found.node_sets.setdefault(name, []).append(place[node])
-    return found.stored(np.array(points, dtype=np.float64).reshape(-1, 3))
+        for name in names:
+            found.add_nodes(name, [node])
+    return found.stored()
 
 
-def _sets(text: str) -> Iterator[tuple[int, list[str]]]:
+def _sets(every: list[str]) -> Iterator[tuple[int, list[str]]]:
     """Yield the number of each set of data with its lines."""
     lines, open_ = list[str](), False
-    for line in text.splitlines():
+    for line in every:
         if line.strip() != "-1":
             lines.append(line)
             continue
@@ -104,7 +96,7 @@ def _cells(lines: list[str], cells: dict[int, tuple[int, list[int]]]) -> None:
             at += 1
         if len(nodes) != head[5]:
             raise MeshError(f"has a cell {head[0]} with {len(nodes)} nodes instead of {head[5]}.")
-        cells[head[0]] = head[1], nodes
+        keep(cells, head[0], (head[1], nodes), "cells")
 
 
 def _groups(lines: list[str], groups: dict[int, dict[int, list[str]]]) -> None:

@@ -469,3 +469,123 @@ def test_what_would_not_end_is_refused(tmp_path):
     (tmp_path / "b.inp").write_text("*INCLUDE, INPUT=b.inp\n" * 9 + text)
     with pytest.raises(MeshError, match=r"includes the file 'b\.inp' within itself"):
         read_own(tmp_path / "b.inp")
+
+
+# by ending: what is put for what in a deck of the bar, and what is told of it
+SPOILED = {
+    "two nodes.inp": ("*material", "*NODE\n1, 9., 9., 9.\n*material", "two nodes 1 that differ"),
+    "two cells.inp": (
+        "*material",
+        "*ELEMENT, TYPE=C3D4\n1, 1, 2, 3, 9\n*material",
+        "two cells 1 that differ",
+    ),
+    "moved.inp": ("*material", "*IMPERFECTION, FILE=a\n*material", r"makes nodes or cells by \*IMPERFECTION"),
+    "short.inp": (
+        "*element, type=s3",
+        "*ELEMENT, TYPE=C3D8\n900, 1, 2\n*element, type=s3",
+        "ends within the cell 900",
+    ),
+    "two nodes.bdf": ("ENDDATA", "GRID,1,,9.,9.,9.\nENDDATA", "two nodes 1 that differ"),
+    "repeated.bdf": ("ENDDATA", "GRID,900,,9.,9.,9.\n=,*(1),=,*(1.)\nENDDATA", "repeats lines of GRID by ="),
+    "long.bdf": ("ENDDATA", "CTETRA,900,7,1,2,3,9,1,2,3,4,5,6\nENDDATA", "more than ten fields"),
+    "old.bdf": ("ENDDATA", "CIHEX1,900,7,1,2,3,9\nENDDATA", "cells of type CIHEX1, which are not read"),
+    "two nodes.k": ("*END", f"*NODE\n{1:8d}{9:16d}{9:16d}{9:16d}\n*END", "two nodes 1 that differ"),
+    "two nodes.rad": ("/PART", f"/NODE\n{1:10d}{9:20d}{9:20d}{9:20d}\n/PART", "two nodes 1 that differ"),
+    "thick.rad": ("/PART", "/SHEL16/4\n1\n/PART", "cells of /SHEL16/4, which are not read"),
+    "untyped.cdb": ("ET,1,185", "ET,MAT,185", "a cell 1 of a type 1 that no command ET of it defines"),
+    "two nodes.mdpa": ("End Nodes", "1 9. 9. 9.\nEnd Nodes", "two nodes 1 that differ"),
+}
+
+
+@pytest.mark.parametrize("name", SPOILED)
+def test_what_would_change_the_body_in_silence_is_refused(tmp_path, name):
+    """Numbers that stand for two nodes or cells, and cells by rules or of kinds that are not read."""
+    path = decks.write(tmp_path / name, *square())
+    old, new, reason = SPOILED[name]
+    text = path.read_text()
+    assert old in text
+    path.write_text(text.replace(old, new, 1))
+    with pytest.raises(MeshError, match=reason):
+        read_own(path, 1e-3)
+
+
+@pytest.mark.parametrize("ending", [".inp", ".bdf", ".k", ".rad", ".cdb", ".unv", ".mdpa", ".ucd"])
+def test_letters_of_any_alphabet_and_a_mark_at_the_beginning_do_not_matter(tmp_path, ending):
+    """The last byte of an A with a ring is an end of line in some encodings: it must not end a comment."""
+    path = decks.write(tmp_path / f"a{ending}", *square())
+    comment = {".inp": "** ", ".bdf": "$ ", ".k": "$ ", ".rad": "#", ".cdb": "!", ".mdpa": "//", ".ucd": "# "}
+    head = f"{comment[ending]}\u00c5ngstr\u00f6m\n" if ending in comment else ""
+    path.write_bytes(f"\ufeff{head}{path.read_text()}".replace("\n", "\r\n").encode())
+    assert volume_of(path) == pytest.approx(8640.0)
+
+
+@pytest.mark.parametrize("stated", ["*KEYWORD I10=Y", "*KEYWORD", "*KEYWORD LONG=Y"])
+def test_fields_of_ten_letters_of_lsdyna(tmp_path, stated):
+    points, cells = square()
+    wide, far = (20, 20) if "LONG" in stated else (10, 16)
+    node = [f"{n:{wide}d}{x:{far}.4f}{y:{far}.4f}{z:{far}.4f}" for n, (x, y, z) in decks.numbered(points)]
+    solid = ["".join(f"{v:{wide}d}" for v in (n, 3, *cell)) for n, cell in decks.numbered(cells + 1)]
+    mark = "%" if stated == "*KEYWORD" else ""
+    part = ["*PART", "", f"{3:{wide}d}", "with a blank title", f"{4:{wide}d}", ""]
+    some = [
+        "*SET_NODE_LIST_GENERATE",
+        "1",
+        "1, 4",
+        f"*ELEMENT_MASS{mark}",
+        f"{900:{wide}d}{2:{wide}d}{0.5:{far}.3f}",
+    ]
+    lines = [stated, *part, f"*NODE{mark}", *node, "", f"*ELEMENT_SOLID{mark}", "", *solid, *some, "*END", ""]
+    (tmp_path / "i.k").write_text("\n".join(lines))
+    assert volume_of(tmp_path / "i.k") == pytest.approx(8640.0)
+    body = read_own(tmp_path / "i.k", 1e-3)
+    assert (set(body.sets), body.masses[0].mass) == ({"PART 3"}, 0.5)
+    assert body.told[0] == "left out: 1 set (*SET_NODE_LIST_GENERATE)"
+
+
+def test_a_blank_title_of_radioss_is_one_line(tmp_path):
+    path = decks.write(tmp_path / "a.rad", *square())
+    group = f"/GRNOD/NODE/6\n\n{1:10d}\n{3:10d}\n/ADMAS/0/1\n\n{0.25:20.3f}{6:10d}\n"
+    path.write_text(path.read_text() + group)
+    (mass,) = read_own(path, 1e-3).masses
+    assert mass.mass == pytest.approx(0.5)
+
+
+def test_a_cell_that_gmsh_writes_once_for_each_of_its_groups_is_one(tmp_path):
+    points, cells = square()
+    lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$Nodes", str(len(points))]
+    lines += [f"{n} {x} {y} {z}" for n, (x, y, z) in decks.numbered(points)]
+    rows = [f"5 2 {group} 1 {' '.join(map(str, cell))}" for group in (7, 8) for cell in (cells + 1).tolist()]
+    lines += ["$EndNodes", "$Elements", str(len(rows)), *(f"{n} {row}" for n, row in enumerate(rows, 1))]
+    (tmp_path / "two.msh").write_text("\n".join([*lines, "$EndElements", ""]))
+    assert volume_of(tmp_path / "two.msh") == pytest.approx(8640.0)
+    assert set(read_own(tmp_path / "two.msh", 1e-3).sets) == {"VOLUME 1", "PHYSICAL 7", "PHYSICAL 8"}
+
+
+@pytest.mark.parametrize("ending", [".vtk", ".vtu", ".vti"])
+@pytest.mark.parametrize("binary", [True, False])
+def test_grids_and_voxels_of_vtk_are_hexahedra_with_their_regions(tmp_path, ending, binary):
+    import pyvista
+
+    grid = pyvista.ImageData(dimensions=(3, 3, 6), spacing=(6.0, 6.0, 12.0), origin=(-6.0, -6.0, 0.0))
+    grid.cell_data["region"] = np.repeat([1, 2], 10)
+    (grid if ending == ".vti" else grid.cast_to_unstructured_grid()).save(
+        tmp_path / f"g{ending}", binary=binary
+    )
+    body = read_own(tmp_path / f"g{ending}", 1e-3, meshes.Stated("whole"))
+    assert 2e9 * meshes.volume(body.half) == pytest.approx(8640.0)
+    assert set(body.sets) == {"region 1", "region 2"}
+
+
+def test_a_wedge_given_as_a_hexahedron_of_20_nodes_keeps_the_middles_of_its_edges():
+    """One edge of length 2 at x = 0 bulges by 0.3: the two faces and the volume beside it follow."""
+    corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 2], [1, 0, 2], [0, 1, 2]], dtype=float)
+    wedge = [(0, 1), (1, 2), (2, 0), (3, 4), (4, 5), (5, 3), (0, 3), (1, 4), (2, 5)]
+    middles = np.array([corners[list(pair)].mean(axis=0) for pair in wedge])
+    middles[6, 0] -= 0.3
+    points = np.vstack([corners, middles])
+    plain = as_hexahedra(points, (("wedge15", np.arange(15)[None]),))
+    fallen = [0, 1, 2, 2, 3, 4, 5, 5, 6, 7, 2, 8, 9, 10, 5, 11, 12, 13, 14, 14]
+    found = as_hexahedra(points, (("hexahedron20", np.array([fallen])),))
+    places = [np.unique(one.points[one.cells].reshape(-1, 3).round(9), axis=0) for one in (found, plain)]
+    assert places[0] == pytest.approx(places[1])
+    assert (found.points[:, 0].min(), len(found.cells)) == (-0.3, 6)
