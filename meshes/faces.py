@@ -76,7 +76,9 @@ def file_faces(stored: StoredMesh, chosen: BoolArray) -> FileFaces:
     owner, corners, surfaces = np.concatenate(owners), np.concatenate(quads), stored.surfaces
     owner, corners = owner[chosen[owner]], corners[chosen[owner]]
     # one number for all that have the same corners, in any order; those without an area are none
-    keys = _sorted(np.concatenate([corners, surfaces.corners]))
+    keys = np.sort(np.concatenate([corners, surfaces.corners]), axis=1)
+    keys[:, 1:][keys[:, 1:] == keys[:, :-1]] = -1
+    keys.sort(axis=1)
     number, count = np.unique(keys, axis=0, return_inverse=True, return_counts=True)[1:]
     number = number.reshape(-1)
     of_cells = np.bincount(number[: len(owner)], minlength=len(count))
@@ -94,13 +96,6 @@ def file_faces(stored: StoredMesh, chosen: BoolArray) -> FileFaces:
         sets[name] = np.asarray(here | sets.get(name, np.zeros_like(here)))
     found = {name: faces for name, faces in sets.items() if faces.any()}
     return FileFaces(owner, corners, found, named & (place >= 0))
-
-
-def _sorted(corners: IntArray) -> IntArray:
-    """Return the nodes (k, 4) of faces from the lowest on, each once, -1 for those that are not there."""
-    keys = np.sort(corners, axis=1)
-    keys[:, 1:][keys[:, 1:] == keys[:, :-1]] = -1
-    return np.asarray(np.sort(keys, axis=1))
 
 
 def face_at(

@@ -115,7 +115,8 @@ def as_hexahedra(points: FloatArray, blocks: tuple[tuple[str, IntArray], ...]) -
     MeshError
         If a cell is a pyramid, or a hexahedron whose nodes fall together is none of these.
     """
-    groups = [part for at, block in zip(_starts(blocks), blocks, strict=True) for part in _groups(block, at)]
+    starts = np.cumsum([0, *(len(cells) for _, cells in blocks)]).tolist()
+    groups = [part for at, block in zip(starts, blocks, strict=False) for part in _groups(block, at)]
     told: list[str] = []
     if all(kind is HEXAHEDRON and cells.shape[1] == 8 for kind, cells, _ in groups):
         made = [(kind, cells, numbers) for kind, cells, numbers in groups]
@@ -149,10 +150,6 @@ def _agreed(outside_in: BoolArray, own: BoolArray, parent: IntArray, kind: _Kind
         return outside_in if outside_in.sum() == own.sum() else np.zeros_like(own)
     parts, bad = (np.bincount(parent[here], minlength=parent.max() + 1) for here in (own, outside_in))
     return np.asarray(own & ((parts > 0) & (parts == bad))[parent])
-
-
-def _starts(blocks: tuple[tuple[str, IntArray], ...]) -> list[int]:
-    return [sum(len(cells) for _, cells in blocks[:k]) for k in range(len(blocks))]
 
 
 def _groups(block: tuple[str, IntArray], first: int) -> list[tuple[_Kind, IntArray, IntArray]]:

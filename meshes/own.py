@@ -121,7 +121,9 @@ def read_own(path: str | Path, unit: float = 1.0, stated: Stated | None = None) 
     parent = np.flatnonzero(chosen)[of[made.parent]]
     if cut:
         stated = replace(stated, symmetry="half", tip="-z" if stated.tip else None)
-    body, origin = _own(Part(made.points, made.cells, _corners(made.cells)), stated, _set_hint(stored))
+    names = ", ".join(f'"{name}"' for name in sorted(stored.sets)[:8])
+    hint = f" Or name those that are the body: mesh_sets = [...] of {names}." if names else ""
+    body, origin = _own(Part(made.points, made.cells, _corners(made.cells)), stated, hint)
     files = file_faces(stored, chosen)
     of = parent[origin // 8]  # (m, 8), all corners of a cell are of one cell of the file
     sets = {name: np.isin(of[:, 0], cells) for name, cells in stored.sets.items()}
@@ -238,11 +240,6 @@ def _halved(
     return places, tuple(made.items()), own[np.concatenate([of["tetra"], of["wedge"]])], (told,)
 
 
-def _set_hint(stored: StoredMesh) -> str:
-    names = ", ".join(f'"{name}"' for name in sorted(stored.sets)[:8])
-    return f" Or name those that are the body: mesh_sets = [...] of {names}." if names else ""
-
-
 def _own(part: Part, stated: Stated, hint: str) -> tuple[OwnBody, IntArray]:
     """Return the body of hexahedra, and the `Part.origin` (m, 8) of its cells."""
     points, cells = part.points, part.cells
@@ -255,7 +252,7 @@ def _own(part: Part, stated: Stated, hint: str) -> tuple[OwnBody, IntArray]:
     _require_one(mesh, hint)
     _require_closed(mesh)
     if stated.tip:
-        part = _turned(part, stated.tip)
+        part = replace(part, points=_axes(part.points, stated.tip))
     elif stated.symmetry is None:
         _require_upright(part, 1.0)  # what mirror images add makes it wider, not longer
     part = half_of(part, stated.symmetry)
@@ -344,11 +341,6 @@ def _require_closed(mesh: HexMesh) -> None:
             f"has an outer surface that is not closed: at the edge about {where} {count[count != 2][0]} "
             "outer faces meet, not two. Cells that touch at an edge alone must share a face or no node."
         )
-
-
-def _turned(part: Part, tip: Tip) -> Part:
-    """Return a part turned so that its tip, which points along an axis of the file, points to -z."""
-    return replace(part, points=_axes(part.points, tip))
 
 
 def _axes(points: FloatArray, tip: Tip | None) -> FloatArray:

@@ -72,7 +72,8 @@ def turned(
     tip = None if body.is_stack else _tip(body, near, len(zones))
     tail = None
     if body.line[-1, 0] <= 0.0:
-        tail = end_of(_mirrored(body.line), body.half, across, closed=body.length - body.bored_from_to[1])
+        upside_down = np.stack([body.line[::-1, 0], body.line[-1, 1] - body.line[::-1, 1]], axis=1)
+        tail = end_of(upside_down, body.half, across, closed=body.length - body.bored_from_to[1])
     start = tip.start if tip else 0.0
     low, high = _reached(body, start, zones, buffer)
     heights = _heights(body, start, body.length - (tail.start if tail else 0.0), planes, high)
@@ -86,7 +87,10 @@ def turned(
         (tail, len(points) - nodes + np.arange(nodes), True),
     ):
         if end is not None:
-            more, below = _nose(body, end, len(points), layer, flipped)
+            more, below = nose_cells(body.half, end.grid, len(points), layer, end.hollow)
+            if flipped:
+                more[:, 2] = body.length - more[:, 2]
+                below = below[:, [4, 5, 6, 7, 0, 1, 2, 3]]
             points = np.concatenate([points, more])
             parts.append((below, np.full(len(below), len(heights) if flipped else -1)))
     return _finished(body, points, parts, heights, exact, zones, buffer)
@@ -121,10 +125,6 @@ def _tip(body: Revolved, near: FloatArray | None = None, levels: int = 0) -> Sha
     if first <= 0.0:
         return end_of(body.line, body.half, body.across, near, levels, body.bore)
     return end_of(body.line, body.half, body.across, near, levels, closed=first)
-
-
-def _mirrored(line: FloatArray) -> FloatArray:
-    return np.asarray(np.stack([line[::-1, 0], line[-1, 1] - line[::-1, 1]], axis=1))
 
 
 def _reached(body: Revolved, start: float, zones: Sequence[Zone | Cloud], buffer: int) -> tuple[float, float]:
@@ -203,17 +203,6 @@ def _sections(
     ]
     layer_of = np.repeat(np.arange(len(cells)), [len(part) for part in cells])
     return points, np.concatenate(cells), layer_of
-
-
-def _nose(
-    body: Revolved, end: ShapeEnd, first: int, layer: IntArray, flipped: bool
-) -> tuple[FloatArray, IntArray]:
-    """Nodes and cells of the nose at one end; at the tail it is flipped over."""
-    points, cells = nose_cells(body.half, end.grid, first, layer, end.hollow)
-    if flipped:
-        points[:, 2] = body.length - points[:, 2]
-        cells = cells[:, [4, 5, 6, 7, 0, 1, 2, 3]]
-    return points, cells
 
 
 def _finished(

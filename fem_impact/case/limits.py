@@ -72,6 +72,7 @@ def scene_limitations(bodies: Bodies, meshed_through: bool) -> tuple[Limitation,
         _surface(scene, active),
         _sliding(bodies),
     )
+    missing = [name for name in ("friction", "rod-plasticity", "barrier-elastoplastic") if name not in active]
     idealised = limitations(
         "model",
         ELASTIC_SEGMENTS if scene.projectile.segments else "",
@@ -80,7 +81,7 @@ def scene_limitations(bodies: Bodies, meshed_through: bool) -> tuple[Limitation,
         BONDED_LAYERS if scene.barrier.layers else "",
         thin_plate(bodies, meshed_through),
         _cones(bodies),
-        _idealised(active),
+        f"idealised: without {', '.join(missing)}; no test corresponds to it" if missing else "",
         _unstated_slope(scene.impact),
     )
     return (*unmeasured, *idealised)
@@ -186,12 +187,6 @@ def _surface(scene: Scene, active: Collection[str]) -> str:
         return ""
     f, source = scene.surface.friction, scene.surface.source
     return f"friction f = {f:g} is not the value of a shipped state of the surface ({source})"
-
-
-def _idealised(active: Collection[str]) -> str:
-    real = ("friction", "rod-plasticity", "barrier-elastoplastic")
-    missing = [name for name in real if name not in active]
-    return f"idealised: without {', '.join(missing)}; no test corresponds to it" if missing else ""
 
 
 def require_shallow(bodies: Bodies) -> None:

@@ -85,7 +85,11 @@ def read_means(path: str | Path, others: Collection[str] = ()) -> Means:
             arms[arm].append(finite(f"{place}, column {arm}_m", row[f"{arm}_m"]))
     if not means:
         raise ResultError(f"{path}: holds no line below its header.")
-    _check_correlations(means, path)
+    for name, mean in means.items():
+        for other, r in mean.correlation.items():
+            if other not in means or not abs(r) <= 1 or (other == name and r != 1):
+                known = f"-1 to 1, with one of {', '.join(means)}"
+                raise ResultError(f"{path}: {name}, column {CORRELATION}{other}: {r:g} is none from {known}.")
     return Means(means, one_pair(arms, path))
 
 
@@ -133,15 +137,6 @@ def _read_row(row: Mapping[str, str], scatter: str, place: str, others: Collecti
     columns = (column for column, cell in row.items() if column.startswith(CORRELATION) and cell)
     together = {c.removeprefix(CORRELATION): finite(f"{place}, column {c}", row[c]) for c in columns}
     return name, Mean(mean, sd, int(tests), shared, together)
-
-
-def _check_correlations(means: Mapping[str, Mean], path: str | Path) -> None:
-    """Refuse a correlation with a quantity that has no row, or one that no two means can have."""
-    for name, mean in means.items():
-        for other, r in mean.correlation.items():
-            if other not in means or not abs(r) <= 1 or (other == name and r != 1):
-                known = f"-1 to 1, with one of {', '.join(means)}"
-                raise ResultError(f"{path}: {name}, column {CORRELATION}{other}: {r:g} is none from {known}.")
 
 
 def _check_likely(name: str, mean: float, place: str) -> None:

@@ -122,7 +122,9 @@ def _changed(scene: Scene, changes: Mapping[str, Any]) -> dict[str, Any]:
     if new := moved(changes):
         data["impact"] = restated(scene.impact, data["impact"], new)
     if any(key.startswith("projectile.") for key in changes) and "projectile.segments" not in changes:
-        _end_at_tail(data["projectile"])
+        segments = data["projectile"].get("segments") if isinstance(data["projectile"], dict) else None
+        if segments:
+            segments[-1].pop("to", None)  # the last one follows the tail
     if LENGTH & changes.keys() and "projectile.bore" not in changes:
         _open_at_tail(data["projectile"], scene.projectile)
     return data
@@ -158,13 +160,6 @@ def moved(changes: Iterable[str]) -> set[str]:
     return {bare(key.removeprefix("impact.")) for key in changes if key.startswith("impact.")}
 
 
-def _end_at_tail(rod: Any) -> None:
-    """Let the last segment follow the tail of a changed projectile."""
-    segments = rod.get("segments") if isinstance(rod, dict) else None
-    if segments:
-        segments[-1].pop("to", None)
-
-
 def _open_at_tail(rod: Any, was: ProjectileSpec) -> None:
     """Let a bore that is open at the tail follow it; one with another point behind the new tail stays."""
     bore = rod.get("bore")
@@ -178,7 +173,9 @@ def _open_at_tail(rod: Any, was: ProjectileSpec) -> None:
 def _change(data: dict[str, Any], key: str, value: Any) -> None:
     *path, last = key.split(".")
     if path[-2:] in (["material", "rate"], ["material", "flow"], ["material", "skin"]):
-        _open_law(_section(data, path[:-1], key), path[-1], last)
+        material = _section(data, path[:-1], key)
+        if last == "law" or path[-1] not in material:
+            material[path[-1]] = {}  # another law leaves none of the old one's numbers
     if not path and last not in data:
         _refuse_bare(key, data)
     table = _section(data, path, key)
@@ -198,7 +195,9 @@ def _change(data: dict[str, Any], key: str, value: Any) -> None:
         metal = _section(data, path[: path.index("material") + 1], key)
         metal["name"] = f"{metal['name'].removesuffix(CHANGED)}{CHANGED}"
     if path == ["accuracy"]:
-        _keep_one(table, last)
+        mesh = [key for key in table if key.removesuffix("_m") in fields.MESH]
+        for other in mesh if last == "target" else ["target"] if last in mesh else []:
+            table.pop(other, None)  # a mesh replaces a target, and a target a mesh
 
 
 def bare(key: str) -> str:
@@ -254,19 +253,6 @@ def _section(data: dict[str, Any], path: list[str], key: str) -> dict[str, Any]:
             raise SceneError("is not a key of a scene.", key=key, remedy=hint)
         table = inner
     return table
-
-
-def _open_law(material: dict[str, Any], kind: str, last: str) -> None:
-    """Make the table of a law or a skin; another law leaves none of the old one's numbers."""
-    if last == "law" or kind not in material:
-        material[kind] = {}
-
-
-def _keep_one(table: dict[str, Any], last: str) -> None:
-    """Let a mesh replace a target, and a target a mesh."""
-    mesh = [key for key in table if key.removesuffix("_m") in fields.MESH]
-    for key in mesh if last == "target" else ["target"] if last in mesh else []:
-        table.pop(key, None)
 
 
 def _rename(table: dict[str, Any], path: list[str], last: str) -> None:

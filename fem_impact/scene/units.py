@@ -138,7 +138,9 @@ def parse_quantity(value: Any, dimension: str, key: str) -> float:
         raise SceneError(f"a bare number is not {article} {dim.name}.", key=key, value=value, remedy=remedy)
     match = _QUANTITY.fullmatch(value) if len(value) <= _LONGEST else None
     if match is None:
-        raise SceneError(_why_not(value, dim), key=key, value=value, remedy=remedy)
+        endless = value.strip().lower().lstrip("+-").startswith(("nan", "inf"))
+        problem = "must be a finite number." if endless else f"cannot be read as {dim.name}."
+        raise SceneError(problem, key=key, value=value, remedy=remedy)
     number, symbol = match.group(1), _plain(match.group(2) or "")
     if symbol.startswith(","):
         raise SceneError("has a decimal comma; write a decimal point.", key=key, value=value, remedy=remedy)
@@ -212,13 +214,6 @@ def _plain(symbol: str) -> str:
     """Fold the usual spellings of a unit into one."""
     folded = symbol.strip().replace(" ", "").replace("³", "3").replace("^3", "3").replace("°", "deg")
     return folded.replace("µ", "u").replace("μ", "u")
-
-
-def _why_not(text: str, dim: Dimension) -> str:
-    lowered = text.strip().lower().lstrip("+-")
-    if lowered.startswith(("nan", "inf")):
-        return "must be a finite number."
-    return f"cannot be read as {dim.name}."
 
 
 def _kind(value: Any) -> str:

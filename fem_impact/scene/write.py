@@ -16,7 +16,7 @@ from fem_impact.scene import fields, material_fields
 from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.flow import Flow, TableFlow
 from fem_impact.scene.impact import FIRST, Impact
-from fem_impact.scene.material import Material, SkinSpec
+from fem_impact.scene.material import Material
 from fem_impact.scene.own_mesh import OwnMesh
 from fem_impact.scene.parameter import Parameter
 from fem_impact.scene.projectile import ProjectileSpec
@@ -143,15 +143,12 @@ def material_table(material: Material) -> dict[str, Any]:
     rate = material.rate
     rates = {"rate": {"law": rate.law, **_written(rate, material_fields.RATES[rate.law])}} if rate else {}
     flow = {"flow": _flow(material.flow)} if material.flow else {}
-    skin = {"skin": _skin(material.skin)} if material.skin else {}
+    skin = material.skin
+    skins = {"skin": {**_written(skin, material_fields.SKIN), "shape": skin.shape}} if skin else {}
     words = {"family": material.family} if material.family else {}
     sources = {"sources": dict(material.sources)} if material.sources else {}
     numbers = _written(material, material_fields.MATERIAL)
-    return {"name": material.name, **words, **numbers, **law, **flow, **rates, **skin, **sources}
-
-
-def _skin(skin: SkinSpec) -> dict[str, Any]:
-    return {**_written(skin, material_fields.SKIN), "shape": skin.shape}
+    return {"name": material.name, **words, **numbers, **law, **flow, **rates, **skins, **sources}
 
 
 def _flow(flow: Flow) -> dict[str, Any]:

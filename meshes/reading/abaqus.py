@@ -122,7 +122,7 @@ class _Deck:
             "ASSEMBLY": self._assembly,
             "END ASSEMBLY": self._end,
             "INSTANCE": self._instance,
-            "END INSTANCE": self._end_instance,
+            "END INSTANCE": self._assembly,
             "SYSTEM": self._system,
             "NODE": self._nodes,
             "ELEMENT": self._elements,
@@ -154,9 +154,6 @@ class _Deck:
         name, part = card.options.get("NAME", ""), card.options.get("PART", "").upper()
         self.instances[name.upper()] = _Instance(part, own, card.lines)
         self.here, self.level, self.system = own, "instance", None
-
-    def _end_instance(self, _: _Card) -> None:
-        self.here, self.level, self.system = self.assembly, "assembly", None
 
     def _system(self, card: _Card) -> None:
         numbers = [number_of(text, "*SYSTEM") for line in card.lines for text in line if text]

@@ -113,20 +113,16 @@ def nastran(path: Path) -> StoredMesh:
         elif name.startswith(OTHER_SOLIDS):
             raise MeshError(f"holds cells of type {name}, which are not read. Write them as CHEXA.")
         elif name in MASSES:
-            found.masses.append(_mass(name, fields, found, scale))
+            grid, mass = (fields[at] if at is not None else "" for at in MASSES[name])
+            weight = scale * number_of(mass, f"{name} {fields[0]}") if mass else nan
+            at = found.at([whole_number(grid, name)])[0] if grid else -1
+            found.masses.append(PointMass(name, weight, at))
         elif corners := 3 * name.startswith("CTRI") + 4 * name.startswith("CQUAD"):
             nodes = [int(text) if text.isdigit() else 0 for text in fields[2 : 2 + corners]]
             found.add_face(name, found.at(nodes), f"PID {fields[1] or fields[0]}")
         elif name.startswith(SURFACES):
             found.leave(f"cell of type {name}")
     return found.stored()
-
-
-def _mass(name: str, fields: list[str], found: Elements, scale: float) -> PointMass:
-    """Return the mass of a card, whose number counts ``scale`` times."""
-    grid, mass = (fields[at] if at is not None else "" for at in MASSES[name])
-    number = scale * number_of(mass, f"{name} {fields[0]}") if mass else nan
-    return PointMass(name, number, found.at([whole_number(grid, name)])[0] if grid else -1)
 
 
 def _cards(lines: list[str]) -> Iterator[tuple[str, list[str]]]:

@@ -9,7 +9,6 @@ from rigid import sliding_path
 
 if TYPE_CHECKING:
     from fem_impact.case.bodies import Bodies
-    from fem_impact.physics.contact import ContactPair
 
 
 def number(bodies: Bodies) -> float:
@@ -18,16 +17,12 @@ def number(bodies: Bodies) -> float:
     A second contact comes about a bending period after the first. The last spin is that of a rigid rod whose
     contact gives back all that it takes up along the normal.
     """
-    before, after = bodies.scene.impact.omega, _spin_after(bodies.contact)
-    turned = 0.5 * abs(before + after) * bodies.estimate.duration
-    return turned + abs(after) * bodies.bending_period
-
-
-def _spin_after(pair: ContactPair) -> float:
-    """Return the spin, rad/s, after an impact of a rigid rod with friction and a restitution of 1."""
+    pair, before = bodies.contact, bodies.scene.impact.omega
     (d_c, d_d), (_, k2) = pair.arms, pair.reduced
     path = sliding_path(pair.v_n, pair.v_t, omega=pair.omega, e=1.0, f=pair.f, d_c=d_c, d_d=d_d, k2=k2)
-    return float(path.motion.Omega)
+    after = float(path.motion.Omega)
+    turned = 0.5 * abs(before + after) * bodies.estimate.duration
+    return turned + abs(after) * bodies.bending_period
 
 
 def fill(bodies: Bodies, spec: ModelSpec) -> None:
