@@ -9,7 +9,7 @@ import numpy as np
 
 from fem_impact.figures.panels import Panel, Picture, Series, ShadedMap, half_widths, numbers
 from fem_impact.figures.style import INK, QUIET, colour_of, label_sides
-from fem_impact.tables.text import markup
+from fem_impact.tables.text import markup, plain, with_band
 
 DIGITS = 5
 """Significant digits of the numbers in a page; those of a shaded map have `SHADED`."""
@@ -122,6 +122,17 @@ def _trace(series: Series, at: int, panel: Panel) -> dict[str, Any]:
     if series.drawn == "area":
         trace |= {"fillcolor": colour}
     if series.band is not None:
+        pairs = zip(
+            numbers(series.x if panel.horizontal else series.y), numbers(half_widths(series)), strict=True
+        )
+        trace["customdata"] = [
+            ""
+            if value is None
+            else plain(value, 4)
+            if half is None
+            else with_band(value, half).replace("+-", "±")
+            for value, half in pairs
+        ]
         band = {"type": "data", "array": numbers(half_widths(series), DIGITS), "color": colour}
         trace["error_x" if panel.horizontal else "error_y"] = band | BAND.get(
             series.drawn, {"thickness": 1.2, "width": 3}
@@ -135,9 +146,9 @@ def _hover(label: str, series: Series, panel: Panel) -> str:
         return "%{y:.4g}"
     x, y = ("%{x:.4g}", "%{y:.4g}")
     if panel.horizontal:
-        x += " ± %{error_x.array:.2g}" if series.band is not None else ""
+        x = x if series.band is None else "%{customdata}"
         return f"<b>{label or '%{y}'}</b><br>{markup(panel.title or panel.x)}: {x}<extra></extra>"
-    y += " ± %{error_y.array:.2g}" if series.band is not None else ""
+    y = y if series.band is None else "%{customdata}"
     named = "<br>%{text}" if series.texts else ""
     return f"<b>{label}</b>{named}<br>{markup(panel.x)}: {x}<br>{markup(panel.y)}: {y}<extra></extra>"
 

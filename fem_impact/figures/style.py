@@ -12,7 +12,7 @@ from fem_impact.errors import MissingLibraryError
 from fem_impact.figures.panels import Mark
 from fem_impact.files.atomic import atomic_path, write_text
 from fem_impact.tables.table import Cell, Table
-from fem_impact.tables.text import plain
+from fem_impact.tables.text import plain, with_band
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -130,17 +130,16 @@ def label_sides(
 
 
 def percent(fraction: float, band: float | None = None) -> str:
-    """Return a fraction of E_0 as text in per cent, with two digits or more; with its band, as many places.
+    """Return a fraction of E_0 as text in per cent, with two digits or more; with its band as `with_band`.
 
     Examples
     --------
     >>> percent(0.626), percent(0.00219), percent(0.0412, 0.00027)
-    ('62.6 %', '0.22 %', '4.12 ± 0.03 %')
+    ('62.6 %', '0.22 %', '4.120 ± 0.027 %')
     """
     value = 100.0 * fraction
     if band:
-        places = max(1, -math.floor(math.log10(100.0 * band)))
-        return f"{value:.{places}f} ± {100.0 * band:.{places}f} %"
+        return f"{with_band(value, 100.0 * band)} %".replace("+-", "±")
     if abs(value) >= 0.95:
         return f"{value:.1f} %"
     return f"{plain(value, 2)} %" if value else "0 %"

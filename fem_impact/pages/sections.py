@@ -26,7 +26,7 @@ from fem_impact.scene.types import OWN, Scene
 from fem_impact.scene.write import digest
 from fem_impact.tables.history import read_history
 from fem_impact.tables.table import DASH, Cell, Marked, Missing, Table, number
-from fem_impact.tables.text import markup
+from fem_impact.tables.text import markup, with_band
 
 LENGTHS = (
     f"The film of a run of a study has {STUDY_FRAMES} pictures, of a quick study {QUICK_FRAMES}; "
@@ -331,14 +331,17 @@ def _cells(row: Mapping[str, Any]) -> list[Cell]:
     low, high = row["measured_low"], row["measured_high"]
     measured = row["measured_mean"] is not None
     style = ("inside" if is_inside(row["verdict"]) else "outside") if measured else ""
-    spread = "" if row["measured_sd"] is None else f" ± {row['measured_sd']:.2g}"
     return [
-        Marked(_three(row["model"]) + ("" if row["band"] is None else f" ± {row['band']:.2g}"), style),
-        _three(row["measured_mean"]) + spread,
+        Marked(_with(row["model"], row["band"]), style),
+        _with(row["measured_mean"], row["measured_sd"]),
         None if low is None or high is None else f"{_three(low)} to {_three(high)}",
         row["n"],
         Marked(str(row["verdict"] or DASH), style),
     ]
+
+
+def _with(value: float | None, spread: float | None) -> str:
+    return _three(value) if value is None or spread is None else html.signed(with_band(value, spread))
 
 
 def _three(value: float | None) -> str:

@@ -50,8 +50,11 @@ def rounded_up(value: float, places: int) -> str:
     return f"{ceil(round(value * 10.0**places, 6)) / 10.0**places:.{max(0, places)}f}"
 
 
+LEAST = 1e-4  # of a number, its least half-width: no model holds more digits
+
+
 def with_band(value: float, band: float) -> str:
-    """Return a number with its half-width, both to the second digit of that.
+    """Return a number with its half-width, of `LEAST` at least, both to the second digit of that.
 
     Examples
     --------
@@ -59,9 +62,12 @@ def with_band(value: float, band: float) -> str:
     ('0.368 +- 0.019', '17 +- 15', '0.25 +- 0')
     >>> with_band(53737.0, 21240.0), with_band(5.43e9, 1.2e8)
     ('54000 +- 22000', '(5.43 +- 0.12)e9')
+    >>> with_band(11.0, 0.0074), with_band(11.0, 1e-9)
+    ('11.0000 +- 0.0074', '11.0000 +- 0.0011')
     """
     if band <= 0.0:
         return f"{value:.4g} +- 0"
+    band = max(band, LEAST * abs(value))
     power = floor(log10(max(abs(value), band)))
     if not -5 < power < 6:
         return f"({with_band(value / 10.0**power, band / 10.0**power)})e{power}"

@@ -87,11 +87,12 @@ def _anywhere(v: Verdict) -> str:
 
 def _vibration(v: Verdict) -> str:
     here = v.here
-    share = f"{100 * here.E_vib:.2g} % of the energy"
+    share, half = with_band(100 * here.E_vib, max(100 * here.E_vib_band, LEAST_HALF / 100)).split(" +- ")
+    share = f"{share} % of the energy"
     if or_none(here.free.energy.below_floor):
         return f"{share}, which is below the numerical floor of the model"
     least, most = here.E_vib - here.E_vib_band, here.E_vib + here.E_vib_band
-    range_ = f"0 to {100 * most:.2g} %" if least < 0 else f"± {100 * here.E_vib_band:.2g} %"
+    range_ = f"0 to {100 * most:.2g} %" if least < 0 else f"± {half} %"
     return f"{share} ({range_}: {here.error})"
 
 
