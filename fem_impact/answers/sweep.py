@@ -55,7 +55,7 @@ EXPLAINED = (
 MOST_CURVES, MOST_ROWS = 8, 50
 UNMESHED = (
     "accuracy = {:.3g} % is for finite elements: the {} model, which has no mesh to refine, leaves it out "
-    "(--fidelity solid keeps it)"
+    "(fidelity solid keeps it)"
 )
 CELLS = ("tip_size_m", "barrier_size_m")
 

@@ -211,7 +211,7 @@ def _not_compared(value: Num, band: float | None, fidelity: str) -> str:
     if isinstance(value, Unknown):
         return value.reason
     if band is None and fidelity == "modal":
-        return "how far the reduced model is off in it is not known; use --fidelity solid."
+        return "how far the reduced model is off in it is not known; use fidelity solid."
     return ""
 
 
@@ -226,8 +226,8 @@ def _friction(scene: Scene) -> dict[str, Ends]:
     """Return the interval of friction of a scene as its one uncertain input (UsageError: it has none)."""
     surface = scene.surface
     if surface.friction_low == surface.friction_high:
-        remedy = "State one, such as --uncertain impact.angle=44,46deg."
-        raise UsageError("is missing: no input of the scene is uncertain.", key="--uncertain", remedy=remedy)
+        remedy = "State one, such as impact.angle=44,46deg."
+        raise UsageError("is missing: no input of the scene is uncertain.", key="uncertain", remedy=remedy)
     return {FRICTION: (surface.friction_low, surface.friction_high)}
 
 

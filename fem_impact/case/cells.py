@@ -79,7 +79,7 @@ def body_cell(bodies: Bodies) -> float:
             f"touches with a nose so sharp that its cells are {edge * 1e6:.2g} um wide.",
             key="projectile",
             remedy=f"Give it a radius of at least {ceil(0.5e6 * FINEST * bodies.scene.across)} um there, or "
-            "use --fidelity rigid.",
+            "use fidelity rigid.",
         )
     return edge
 

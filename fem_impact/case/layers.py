@@ -72,7 +72,7 @@ def require_layers(bodies: Bodies, fidelity: str) -> None:
         raise SceneError(
             "are not known to the reduced model, which has one material there.",
             key="barrier.layers",
-            remedy="Use --fidelity solid, or leave the layers out.",
+            remedy="Use fidelity solid, or leave the layers out.",
         )
     if fidelity == "solid" and bodies.contact.compliant:
         zones = zones_of(bodies)

@@ -364,7 +364,7 @@ def _any_part(fidelity: str) -> str:
     """Return what to use where not a point of the tip touches, in place of a fidelity."""
     if fidelity == "solid":
         return "`fem-impact run` finds what touches, on several meshes (accuracy.levels above 1)."
-    return f"Use --fidelity solid{', or state restitution' if fidelity == 'rigid' else ''}."
+    return f"Use fidelity solid{', or state restitution' if fidelity == 'rigid' else ''}."
 
 
 def _angle(bodies: Bodies) -> str:
@@ -397,7 +397,7 @@ def require_own_mesh(bodies: Bodies, fidelity: str) -> None:
         problem = (
             "has no radii of a smooth tip and no outline, on which the reduced model's contact law rests."
         )
-        remedy = "Use --fidelity solid or rigid, or state the shape as a profile."
+        remedy = "Use fidelity solid or rigid, or state the shape as a profile."
         raise SceneError(problem, key="projectile.mesh", value=mesh.path, remedy=remedy)
     if fidelity == "solid" and "machined-skin" in bodies.effects and bodies.contact.rod.skin:
         problem = "has a hardened layer, but how deep a node lies under a mesh's facets is not computed."

@@ -15,7 +15,7 @@ from rigid import Turned
 
 FINER = (8, 10, 12, 16, 20)  # cells over the diameter that are tried for a remedy
 THICKEST, TRIALS = 1.5, 12  # closed ends that are tried: up to so many diameters, and how many
-NO_MESH = "--fidelity rigid needs no mesh; the modes of modal are those of a mesh."
+NO_MESH = "fidelity rigid needs no mesh; the modes of modal are those of a mesh."
 FARTHER = "Let the bore end farther from the end of the projectile, or be open there."
 
 

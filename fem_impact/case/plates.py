@@ -138,7 +138,7 @@ def require_plate(bodies: Bodies, meshed_through: bool) -> None:
     if not barrier.bends or barrier.thickness is None:
         return
     if is_wider(bodies) and not meshed_through:
-        by_mesh = ", or use --fidelity solid, which meshes the plate through its thickness"
+        by_mesh = ", or use fidelity solid, which meshes the plate through its thickness"
         raise SceneError(
             f"is less than the width of the contact, {contact_width(bodies) * 1e3:.2g} mm: it is no local "
             "one, and the plate would bulge under it.",

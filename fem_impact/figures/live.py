@@ -75,7 +75,10 @@ def live(picture: Picture) -> dict[str, Any]:
                 "title": markup(panel.title),
                 "alt": ", ".join(words for words in (panel.title, panel.y, panel.x) if words),
                 "height": _height(panel),
-                "data": _traces(panel),
+                "data": [
+                    *([_map(panel.shaded, panel)] if panel.shaded else []),
+                    *(_trace(series, at, panel) for at, series in enumerate(panel.series)),
+                ],
                 "layout": _layout(panel),
             }
             for panel in picture.panels
@@ -97,11 +100,6 @@ def _height(panel: Panel) -> int:
     if panel.rows:
         return 28 * len(panel.rows) + (90 if panel.x else 66)
     return 420 if panel.shaded else 340
-
-
-def _traces(panel: Panel) -> list[dict[str, Any]]:
-    shaded = [_map(panel.shaded, panel)] if panel.shaded else []
-    return [*shaded, *(_trace(series, at, panel) for at, series in enumerate(panel.series))]
 
 
 def _trace(series: Series, at: int, panel: Panel) -> dict[str, Any]:

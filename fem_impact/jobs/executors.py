@@ -182,7 +182,7 @@ def on_scheduler(address: str) -> Iterator[Executor]:
     try:
         from distributed import Client
     except ImportError:
-        problem = "--scheduler needs dask.distributed: pip install 'fem-impact[cluster]'."
+        problem = "a scheduler needs dask.distributed: pip install 'fem-impact[cluster]'."
         raise MissingLibraryError(problem) from None
     try:
         client = Client(address, timeout=SCHEDULER_PATIENCE, set_as_default=False)
@@ -198,4 +198,4 @@ def on_scheduler(address: str) -> Iterator[Executor]:
 
 def _refused(address: str, problem: str) -> UsageError:
     remedy = "Start `dask scheduler` and `dask worker ADDRESS --nthreads 1`."
-    return UsageError(problem, key="--scheduler", value=address, remedy=remedy)
+    return UsageError(problem, key="scheduler", value=address, remedy=remedy)

@@ -205,11 +205,15 @@ def write_all(results: Path, out: Path) -> Path:
     ResultError
         There is no study in the folder, or one is damaged.
     """
-    studies = [read_study(folder) for folder in _folders(results)]
+    folders = [stored.parent for stored in results.glob("*/study.json")]
+    # that of the measured sets first
+    studies = [read_study(one) for one in sorted(folders, key=lambda one: (one.name != "sets", one.name))]
     if not studies:
         raise ResultError(f"{results}: holds no study. Run one, such as fem-impact study gamma --quick.")
     figures = make_directory(out / "figures")
-    ledger = _ledger(studies)
+    runs = ((study.folder.name, read_csv(study.folder / "runs.csv")) for study in studies)
+    rows = [(name, *cells) for name, table in runs for cells in zip(*map(table.cells, LEDGER), strict=True)]
+    ledger = Table.of(("study", *LEDGER), rows, left=range(len(LEDGER) + 1))
     write_text(out / "ledger.csv", ledger.csv())
     concluded = conclusions(studies)
     write_text(out / "summary.md", _markdown(studies, conclusion_text(concluded)))
@@ -232,13 +236,6 @@ def write_all(results: Path, out: Path) -> Path:
     return write_text(out / "report.html", text)
 
 
-def _folders(results: Path) -> list[Path]:
-    """Return the folders that hold a study, that of the measured sets first."""
-    places = results.iterdir() if results.is_dir() else ()
-    folders = [place for place in places if (place / "study.json").is_file()]
-    return sorted(folders, key=lambda place: (place.name != "sets", place.name))
-
-
 def _answer(study: StudyRecord) -> Markup:
     """Return the question of a study, its answer, which is its first finding, and the link to its part."""
     question, answer = QUESTIONS.get(study.study, study.title), "".join(study.findings[:1])
@@ -258,13 +255,6 @@ def _parts(study: StudyRecord, figures: Path) -> list[Markup]:
         verdict_section(verdicts(study.rows), figures),
         marker_section(study.rows),
     ]
-
-
-def _ledger(studies: Iterable[StudyRecord]) -> Table:
-    """Return one table of the runs of all studies."""
-    runs = ((study.folder.name, read_csv(study.folder / "runs.csv")) for study in studies)
-    rows = [(name, *cells) for name, table in runs for cells in zip(*map(table.cells, LEDGER), strict=True)]
-    return Table.of(("study", *LEDGER), rows, left=range(len(LEDGER) + 1))
 
 
 def _ledger_part(ledger: Table) -> Markup:

@@ -72,13 +72,20 @@ def write_sheet(folder: Path, document: str = "", revision: str = "") -> Path:
     criterion, lines = _verdict(folder, case)
     spread = friction_spread(scene, origin.fidelity)
     rows = [
-        (label, html.signed(_told(outcome, key, unit)), unit, html.signed(spread.told(key, _scale(unit))))
+        (
+            label,
+            html.signed(outcome.told(key, _scale(unit))),
+            unit,
+            html.signed(spread.told(key, _scale(unit))),
+        )
         for label, key, unit in _listed(outcome)
     ]
     numbers = Table.of(("quantity", "value", "unit", "what f changes"), rows, left=(0, 2, 3))
     limits = outcome.validity.limitations
     others = (kind for kind in HEAVIEST_FIRST if kind not in WRONG_NUMBERS)
     uncovered = [sentence for kind in others for sentence in texts(limits, kind)]
+    blank = [(role, "", "", "") for role in ROLES]
+    signatures = Table.of(("", "name", "date", "signature"), blank, left=range(4))
     state = "" if outcome.validity.finished else f"The run did not finish: {outcome.validity.stopped_because}"
     body = (
         html.paragraph(state, "notice"),
@@ -96,7 +103,7 @@ def write_sheet(folder: Path, document: str = "", revision: str = "") -> Path:
         ),
         html.section("Inputs and their sources", html.table(inputs(scene), compact=False)),
         html.section("Not covered", html.bullets((*never_covered(scene), *uncovered))),
-        html.section("Signatures", html.table(_signatures())),
+        html.section("Signatures", html.table(signatures)),
     )
     film = next((name for name in html.FILMS if (folder / name).is_file()), "")
     footer = (
@@ -153,10 +160,6 @@ def _scale(unit: str) -> float:
     return 100.0 if unit == "%" else 1.0
 
 
-def _told(outcome: Outcome, key: Key, unit: str) -> str:
-    return outcome.told(key, _scale(unit))
-
-
 def _dent(outcome: Outcome) -> Markup:
     """Return how deep and wide the places of contact are, nothing where that is not known."""
     sites = or_none(outcome.contact.sites) or ()
@@ -168,7 +171,3 @@ def _dent(outcome: Outcome) -> Markup:
     return html.paragraph(
         f"Widest place of contact {1e3 * width:.2g} mm, known to about a cell, {1e3 * cell:.2g} mm{dent}."
     )
-
-
-def _signatures() -> Table:
-    return Table.of(("", "name", "date", "signature"), [(role, "", "", "") for role in ROLES], left=range(4))

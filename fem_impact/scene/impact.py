@@ -141,7 +141,7 @@ def _refuse_one_of_two(old: Impact, new: Collection[str]) -> None:
     raise SceneError(
         f"is one of two velocities, but the scene states its impact by {way} along the rod's axis.",
         key=f"impact.{key}",
-        remedy=f"Change impact.{way}, or state both velocities: add --set impact.{other}=...",
+        remedy=f"Change impact.{way}, or state both velocities: add impact.{other}.",
     )
 
 

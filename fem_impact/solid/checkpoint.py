@@ -144,7 +144,7 @@ class Checkpoint:
             _check_stamp(str(stored.pop(_STAMP, "")), self.stamp)
             put_back(self.holders, stored)
         except _BROKEN as error:
-            raise ResultError(f"{self.path}: {error} Run again without --resume to start anew.") from error
+            raise ResultError(f"{self.path}: {error} Run again without resuming to start anew.") from error
 
 
 def _read(path: Path, largest: int) -> dict[str, np.ndarray]:

@@ -194,7 +194,7 @@ def test_a_spoiled_checkpoint_is_refused_by_the_command(cli, tmp_path):
     (tmp_path / "here" / "run.checkpoint").write_bytes(b"nothing like it")
     code, out, err = cli("run", "t5b", *words, "--resume", "--quiet", "--out", "here")
     assert (code, out) == (5, "")
-    assert "is damaged" in err and "Run again without --resume to start anew." in err
+    assert "is damaged" in err and "Run again without resuming to start anew." in err
 
 
 def test_a_body_that_does_not_yield_has_no_residual_stress(cli, stand):

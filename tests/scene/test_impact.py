@@ -102,7 +102,7 @@ def test_a_changed_velocity_takes_the_place_of_the_stated_one(changes, way, v):
 @pytest.mark.parametrize("way", ["speed", "height"])
 def test_one_velocity_alone_of_a_fall_is_refused_with_what_to_do(one, other, way):
     scene = stated(**{way: "2 m" if way == "height" else "2 m/s"})
-    words = rf"impact\.{one}.*states its impact by {way}.*Change impact\.{way}.*add --set impact\.{other}"
+    words = rf"impact\.{one}.*states its impact by {way}.*Change impact\.{way}.*add impact\.{other}"
     with pytest.raises(SceneError, match=words):
         replace(scene, f"impact.{one}", "-1 m/s")
 

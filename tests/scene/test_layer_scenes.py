@@ -74,7 +74,7 @@ def test_the_advised_cells_take_the_thin_layer():
 
 
 def test_the_reduced_model_is_refused_and_the_estimates_are_told():
-    with pytest.raises(SceneError, match=r"which has one material there\. Use --fidelity solid"):
+    with pytest.raises(SceneError, match=r"which has one material there\. Use fidelity solid"):
         layered([PLATE], "modal")
     planned = Case.of(load("layered"))
     assert any("first layer alone" in sentence for sentence in texts(planned.limitations, "model"))

@@ -269,7 +269,7 @@ def stopped(tmp_path_factory):
 def refusal(scene, place):
     """The words with which the run is refused; the files stay as they were."""
     before = {path.name: path.read_bytes() for path in place.iterdir()}
-    with pytest.raises(ResultError, match=r"Run again without --resume to start anew\.") as refused:
+    with pytest.raises(ResultError, match=r"Run again without resuming to start anew\.") as refused:
         kept(scene, place, resume=True)
     assert {path.name: path.read_bytes() for path in place.iterdir()} == before
     return str(refused.value)

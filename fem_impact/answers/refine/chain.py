@@ -142,7 +142,7 @@ class LevelChain:
         elif read_text(out / "scene.toml") != to_toml(self.scene):
             raise ResultError(
                 f"{out / 'scene.toml'}: is another scene than the one that is to go on. Go on with that one, "
-                "or leave out --resume: the older run is kept beside the new one."
+                "or do not resume: the older run is kept beside the new one."
             )
 
     @cached_property
@@ -330,7 +330,7 @@ class LevelChain:
         wanted = self.meshes.wanted(radius) - counted.splits
         short = (
             f"The contact, {2e3 * radius:.2g} mm wide, would be resolved as advised by cells halved "
-            f"{wanted} times more: give a larger accuracy.levels or --budget."
+            f"{wanted} times more: give a larger accuracy.levels or budget."
             if wanted > 0 and (counted.splits < self.finest or not self.meshes.is_sized)
             else ""
         )
@@ -383,8 +383,8 @@ class LevelChain:
             return "No finer level is tried."
         more_s = self.forecast_s(then)
         return (
-            f"One level finer takes about {about_s(more_s)} more: for that give --budget "
-            f'"{about_s(self.spent_s + LONGER * more_s)}".'
+            f"One level finer takes about {about_s(more_s)} more: for that give a budget of "
+            f"{about_s(self.spent_s + LONGER * more_s)}."
         )
 
     def _without_unresolved(self, counted: LevelRun) -> Outcome:

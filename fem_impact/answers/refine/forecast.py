@@ -67,7 +67,7 @@ def require_pilot(time: float, limit_s: float) -> None:
 def _for_two(pilot_s: float) -> str:
     """Say which budget holds two levels, by the time of the first, s."""
     enough = about_s(pilot_s * (1 + LONGER * MIDDLE))
-    return f'For it and a finer one, which tell the error of each number, give --budget "{enough}".'
+    return f"For it and a finer one, which tell the error of each number, give a budget of {enough}."
 
 
 @dataclass

@@ -65,7 +65,7 @@ class LevelRun:
         return (
             f"The contact is {rows} node{'s' * (rows > 1)} wide across its narrow side, and {ROWS} resolve "
             f"it: half-widths are {NARROW:g} times the largest change from level to level. A larger "
-            "accuracy.levels or --budget adds finer levels."
+            "accuracy.levels or budget adds finer levels."
         )
 
     @property

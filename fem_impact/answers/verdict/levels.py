@@ -107,6 +107,6 @@ def _why_stopped(levels: LevelChain) -> tuple[str, str]:
     note = (
         f"Level {len(levels.done) + 1}, finer, would take about {about_s(more_s)} more, and "
         f"{plain(left_s, 2)} s are left of the budget of {levels.budget_s:g} s. For it give "
-        f'--budget "{enough}".'
+        f"a budget of {enough}."
     )
     return note, f'--budget "{enough}"'

@@ -157,7 +157,7 @@ def _heat(run: Outcome) -> str:
     """Return how hot the contact becomes, or why that is not known."""
     heat = run.heat
     if isinstance(heat.power, Unknown):
-        elsewhere = " (--fidelity solid)" if run.provenance.fidelity == "modal" else ""
+        elsewhere = " (fidelity solid)" if run.provenance.fidelity == "modal" else ""
         return f"not known: {heat.power.reason}{elsewhere}."
     if isinstance(heat.temperature, Unknown):
         return f"the mean temperature of the patch is {heat.temperature.reason}."

@@ -50,7 +50,7 @@ def _require_computed(name: str, fidelity: str, changed: Sequence[str]) -> None:
             f"is not computed by the fidelity {fidelity}, which would leave it out.",
             key="effects",
             value=name,
-            remedy=f"Use --fidelity {' or '.join(effect.fidelities)}, or leave the effect out.",
+            remedy=f"Use fidelity {' or '.join(effect.fidelities)}, or leave the effect out.",
         )
     items = effect.forces is not no_items or effect.impulses is not no_items
     unread = [slot for slot in changed if slot not in READ[fidelity]]

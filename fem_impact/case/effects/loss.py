@@ -60,7 +60,7 @@ def require_closed_form(bodies: Bodies, spec: ModelSpec, fidelity: str) -> None:
         f"{number(bodies):.2g}.",
         key="loss_factor",
         value=f"{bodies.contact.loss_factor:.3g}",
-        remedy=f'Use --fidelity rigid{other}, or add "-contact-loss" to effects.',
+        remedy=f'Use fidelity rigid{other}, or add "-contact-loss" to effects.',
     )
 
 

@@ -86,7 +86,7 @@ def require_skins(bodies: Bodies, fidelity: str) -> None:
         raise SceneError(
             "holds machined-skin, which the reduced model does not compute: its contact has one flow curve.",
             key="effects",
-            remedy='Use --fidelity solid, or add "-machined-skin" to effects.',
+            remedy='Use fidelity solid, or add "-machined-skin" to effects.',
         )
 
 

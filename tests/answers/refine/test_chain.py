@@ -223,7 +223,7 @@ def test_a_budget_ends_the_levels_and_tells_what_is_missing():
     outcome = levels.run()
     assert len(levels.done) == 1
     assert any("would take about" in getattr(one, "text", "") for one in notices)
-    assert any("larger accuracy.levels or --budget" in one.text for one in outcome.validity.limitations)
+    assert any("larger accuracy.levels or budget" in one.text for one in outcome.validity.limitations)
 
 
 def test_a_level_that_leaves_its_zones_is_repeated_with_more_room(monkeypatch):

@@ -102,7 +102,7 @@ def test_an_error_that_is_not_reached_tells_what_more_would_cost(ran):
     (sentence,) = told(short)
     assert re.search(r"e is known to [\d.]+ % and E_vib is known to [\d.]+ %", sentence)
     levels, _ = len({size for size, _ in ran}), ran.clear()
-    enough = float(re.search(r'--budget "(\d+) s"', sentence)[1])
+    enough = float(re.search(r"a budget of (\d+) s", sentence)[1])
     assert short.validity.achieved_wall <= budget < enough
     simulate(scene, budget_s=enough)
     assert len({size for size, _ in ran}) > levels

@@ -78,7 +78,7 @@ def heated(short, **values):
 
 def test_the_verdict_tells_how_hot_the_contact_becomes(short):
     told = dict(basis(short))["heat of the contact"]
-    assert told == "not known: heat is followed on the finite elements only (--fidelity solid)."
+    assert told == "not known: heat is followed on the finite elements only (fidelity solid)."
     told = heated(short)
     assert "431 K in the mean" in told and "No spot exceeds 1200 K" in told and "Tian & Kennedy" in told
     assert "What single spots reach is not resolved: why." in heated(
@@ -128,7 +128,7 @@ def test_a_share_that_two_meshes_know_has_its_band(short):
 
 def test_energy_of_vibration_is_not_said_to_fall_below_none(short):
     wide = replace(short, here=replace(short.here, E_vib=0.002, E_vib_band=0.003))
-    assert box(wide)[1][1].startswith("0.2 % of the energy (0 to 0.5 %: ")
+    assert box(wide)[1][1].startswith("0.20 % of the energy (0 to 0.5 %: ")
 
 
 def test_a_plate_is_called_a_plate_with_its_thickness(short):
@@ -376,7 +376,7 @@ def test_a_budget_that_allows_one_level_leaves_the_reduced_model_and_says_so(mon
     assert (found.fidelity, found.answer, len(asked)) == ("modal", "undecided", 1)
     first, second = found.notes
     assert "Level 2, finer, would take about" in first
-    assert re.search(r'give --budget "\d+ s"', first)
+    assert re.search(r"give a budget of \d+ s", first)
     assert "alone does not tell its error" in second
 
 
@@ -568,7 +568,7 @@ def test_a_mesh_of_the_users_own_is_decided_on_levels(monkeypatch, striker):
 
 
 def test_the_reduced_model_is_refused_for_them_with_the_remedy(striker):
-    for scene, words in ((striker, "no radii of a smooth tip"), (load("layered"), "--fidelity solid")):
+    for scene, words in ((striker, "no radii of a smooth tip"), (load("layered"), "fidelity solid")):
         with pytest.raises(SceneError, match=words):
             assess(scene, "modal")
 

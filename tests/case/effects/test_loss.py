@@ -108,7 +108,7 @@ def test_finite_elements_say_what_they_do_not_hold_and_each_remedy_works(key, va
         tree["projectile"].pop("material")
     section, name = key.split(".")
     tree[section][name] = values[value]
-    with pytest.raises(SceneError, match=rf"contact-loss, which {reason}.* does not have.*--fidelity rigid"):
+    with pytest.raises(SceneError, match=rf"contact-loss, which {reason}.* does not have.*fidelity rigid"):
         Case.of(read_dict(tree))
     assert Case.of(read_dict(tree), "rigid")
     assert Case.of(read_dict(tree | {"effects": ["auto", "-contact-loss"]}))
@@ -135,7 +135,7 @@ def test_a_body_that_flows_is_refused_in_the_reduced_model():
     }
     scene = replace(ball(), "projectile.material", flows)
     with pytest.raises(
-        SceneError, match=r"yields in the reduced model does not have.*--fidelity rigid, or add"
+        SceneError, match=r"yields in the reduced model does not have.*fidelity rigid, or add"
     ):
         Case.of(scene, "modal")
     assert Case.of(scene, "rigid") and Case.of(replace(scene, "effects", ["auto", "-contact-loss"]), "modal")
