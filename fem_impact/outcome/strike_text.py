@@ -5,11 +5,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import degrees
 
-from fem_impact.outcome.keys import Num, Unknown
+from fem_impact.outcome.keys import Num, Unknown, keys_of, known, or_none
 from fem_impact.outcome.strikes import StrikeRecord, Strikes, StrikeSpread
 from fem_impact.tables.table import Table
+from fem_impact.tables.text import with_band
 
-HEAD = ("", "time, ms", "part", "angle, deg", "approach, m/s", "e", "mu", "lost, J", "friction, J", "model")
+HEAD = ("", "part", "time, ms", "angle, deg", "approach, m/s", "e", "mu", "left, J", "friction, J", "model")
+ROW = {
+    key: {"time": 1e3, "alpha": degrees(1.0)}.get(key.path[-1], 1.0)
+    for key in keys_of(StrikeRecord)
+    if key.path[-1] in ("time", "alpha", "approach", "e", "mu", "after", "friction")
+}
+"""Numbers of a row, and what they are multiplied by."""
 SPREAD = ("strike", "tip", "tail", "other", "none", "time, ms", "approach, m/s")
 
 
@@ -28,10 +35,10 @@ def told(strikes: Strikes) -> list[str]:
 
 def levels_told(levels: Sequence[Strikes]) -> str:
     """Say how far the strikes of the last two levels of meshes differ, nothing where there are no two."""
-    known = [one.each for one in levels[-2:] if not isinstance(one.each, Unknown)]
-    if len(known) < 2:
+    each = [one.each for one in levels[-2:] if not isinstance(one.each, Unknown)]
+    if len(each) < 2:
         return ""
-    coarse, fine = known
+    coarse, fine = each
     changes = [
         f"strike {number} {a.approach:.3g} to {b.approach:.3g} m/s with e {a.e:.3g} to {b.e:.3g}"
         for number, (a, b) in enumerate(zip(coarse, fine, strict=False), 1)
@@ -40,14 +47,14 @@ def levels_told(levels: Sequence[Strikes]) -> str:
     return f"From the last level of meshes but one to the last: {', '.join(changes)}." if changes else ""
 
 
-def strikes_table(each: Sequence[StrikeRecord]) -> Table:
-    """Return a row a strike."""
-    rows = [_row(number, one) for number, one in enumerate(each, 1)]
-    return Table.of(HEAD, rows, left=(2, 9))
+def strikes_table(strikes: Strikes, most: int | None = None) -> Table:
+    """Return a row for each of the first strikes, numbers with their half-widths."""
+    rows = [_row(strikes, number, one) for number, one in enumerate(known(strikes.each)[:most], 1)]
+    return Table.of(HEAD, rows, left=(1, 9))
 
 
 def spread_table(spread: Sequence[StrikeSpread]) -> Table:
-    """Return a row a strike: what strikes in how many sequences, when and how fast in most."""
+    """Return a row a strike: what strikes in how many sequences, when and how fast in nine tenths of them."""
     rows = [
         (
             *(str(count) for count in (one.number, one.tip, one.tail, one.other, one.none)),
@@ -59,10 +66,12 @@ def spread_table(spread: Sequence[StrikeSpread]) -> Table:
     return Table.of(SPREAD, rows)
 
 
-def _row(number: int, one: StrikeRecord) -> tuple[str, ...]:
-    values = 1e3 * one.time, degrees(one.alpha), one.approach, one.e, one.mu, one.lost, one.friction
-    time, *rest = (f"{value:.4g}" for value in values)
-    return (str(number), time, one.part, *rest, one.fidelity)
+def _row(strikes: Strikes, number: int, one: StrikeRecord) -> tuple[str, ...]:
+    told = []
+    for key, scale in ROW.items():
+        value, half = getattr(one, key.path[-1]), or_none(strikes.half_width(number, key.name))
+        told.append(with_band(scale * value, scale * half) if half else f"{scale * value:.4g}")
+    return (str(number), one.part, *told, one.fidelity)
 
 
 def _other_end(strikes: Strikes) -> str:
@@ -74,19 +83,19 @@ def _other_end(strikes: Strikes) -> str:
 
 
 def _certain(strikes: Strikes) -> list[str]:
-    """Return how many strikes hold over the stated intervals, nothing where none is stated."""
+    """Return how many strikes are certain and what that holds, or why nothing is known of it."""
     certain, ends = strikes.certain, (strikes.other_end_low, strikes.other_end_high)
     if isinstance(certain, Unknown):
-        return []
-    known = [f"{end:.3g}" for end in ends if not isinstance(end, Unknown)]
+        return [f"Errors of the strikes are not known: {certain.reason}."]
+    between_ends = [f"{end:.3g}" for end in ends if not isinstance(end, Unknown)]
     between = (
-        f" What is not known of them lets the other end strike {' to '.join(known)} times as fast."
-        if len(known) == 2
+        f" The other end strikes {' to '.join(between_ends)} times as fast as the first strike came."
+        if len(between_ends) == 2
         else ""
     )
     return [
-        f"In rigid sequences over the stated intervals of friction, angle and speed the order of the first "
-        f"{certain} is the same; later strikes are one path of many.{between}"
+        f"The first {certain} strike the same part of the body in all of 64 sequences; of later ones, one "
+        f"path of many, a table tells what strikes how often. {strikes.holds}{between}"
     ]
 
 
@@ -96,8 +105,10 @@ def _hardest(strikes: Strikes) -> str:
         ("by force", strikes.hardest_force),
         ("by friction heat", strikes.hardest_heat),
     )
-    known = ", ".join(f"{name} {number}" for name, number in names if not isinstance(number, Unknown))
-    return f"Hardest strike: {known}."
+    told = ", ".join(f"{name} {number}" for name, number in names if not isinstance(number, Unknown))
+    agree = strikes.hardest_agree
+    of = "" if isinstance(agree, Unknown) else f"; that by energy is the same in {agree} of 64 sequences"
+    return f"Hardest strike: {told}{of}."
 
 
 def _totals(strikes: Strikes) -> str:
@@ -109,7 +120,9 @@ def _totals(strikes: Strikes) -> str:
         ("settled", strikes.settled),
         ("left", strikes.left),
     )
-    known = ", ".join(f"{name} {v:.3g} J" for name, v in parts if not isinstance(v, Unknown) and v)
+    sums = ", ".join(f"{name} {v:.3g} J" for name, v in parts if not isinstance(v, Unknown) and v)
+    half = strikes.friction_half
+    rubbed = "" if isinstance(half, Unknown) else f" Friction is known to {half:.2g} J."
     time = "" if isinstance(strikes.time, Unknown) else f" after {strikes.time:.4g} s"
     gravity = "" if isinstance(strikes.gravity, Unknown) else f" Gravity gave {strikes.gravity:.3g} J."
-    return f"The end comes{time}: {known}.{gravity}"
+    return f"The end comes{time}: {sums}.{gravity}{rubbed}"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from fem_impact.outcome.keys import Num, Unknown, group, key, known
@@ -10,6 +11,10 @@ if TYPE_CHECKING:
     import pandas
 
 _N = " (number from 1)"
+NO_SHARES = (
+    "E_after_J and W_friction_J tell with errors what a strike takes; how that along its normal is divided, "
+    "and the force, have none"
+)
 
 
 @group
@@ -64,10 +69,16 @@ class StrikeSpread:
     tail: int = key("tail", "-", "Sequences in which the tail strikes.")
     other: int = key("other", "-", "Sequences in which a face, a side or a ball strikes.")
     none: int = key("none", "-", "Sequences that have ended before.")
-    time_low: float = key("time_low_s", "s", "Time below which a tenth of those that strike do.")
-    time_high: float = key("time_high_s", "s", "Time above which a tenth of them do.")
-    approach_low: float = key("approach_low_m_per_s", "m/s", "Speed below which a tenth of them come.")
-    approach_high: float = key("approach_high_m_per_s", "m/s", "Speed above which a tenth of them come.")
+    time_low: float = key("time_low_s", "s", "Time below which a twentieth of those that strike do.")
+    time_high: float = key("time_high_s", "s", "Time above which a twentieth of them do.")
+    approach_low: float = key("approach_low_m_per_s", "m/s", "Speed below which a twentieth of them come.")
+    approach_high: float = key("approach_high_m_per_s", "m/s", "Speed above which a twentieth of them come.")
+    half_widths: Mapping[str, float] = key(
+        "half_widths",
+        "as its number",
+        "Half-widths about the numbers of the strike, by its keys; none from the first strike on that is not "
+        "of the same part of the body in all sequences.",
+    )
 
 
 @group
@@ -99,23 +110,33 @@ class Strikes:
     certain: int | Unknown = key(
         "strikes_certain",
         "-",
-        "First strikes that are of the same part of the body in all rigid sequences over the stated "
-        "intervals of friction, angle and speed.",
+        "First strikes that are of the same part of the body in 64 sequences, which fill the stated "
+        "intervals of friction, angle and speed and the half-widths of each strike.",
     )
     spread: tuple[StrikeSpread, ...] | Unknown = key(
-        "strikes_spread", "s, m/s", "The first strikes in 64 rigid sequences over those intervals."
+        "strikes_spread", "s, m/s", "The first strikes in those sequences."
+    )
+    holds: str | Unknown = key("strikes_errors_hold", "", "What those sequences and half-widths hold.")
+    hardest_agree: int | Unknown = key(
+        "strikes_hardest_agree",
+        "-",
+        "Of those 64 sequences, how many have the same strike as the hardest by energy.",
     )
     other_end_low: Num = key(
         "strikes_other_end_over_first_low",
         "-",
-        "strikes_other_end_over_first, less by as much as a tenth of those sequences stay below that of the "
-        "scene itself as a rigid body.",
+        "strikes_other_end_over_first, less by as much as a twentieth of those sequences stay below it.",
     )
     other_end_high: Num = key(
-        "strikes_other_end_over_first_high", "-", "The same, more by as much as a tenth of them exceed it."
+        "strikes_other_end_over_first_high", "-", "The same, more by as much as a twentieth exceed it."
     )
     gravity: Num = key("strikes_W_gravity_J", "J", "Work of gravity, all flights and contacts.")
     friction: Num = key("strikes_W_friction_J", "J", "Friction of all strikes, and of sliding between them.")
+    friction_half: Num = key(
+        "strikes_W_friction_half_J",
+        "J",
+        "Its half-width: nine in ten of those sequences, and all after six strikes.",
+    )
     plastic: Num = key("strikes_E_plastic_J", "J", "Plastic work of all strikes.")
     damping: Num = key("strikes_W_damping_J", "J", "Viscous loss of all contacts, and damping of the modes.")
     other: Num = key("strikes_E_other_J", "J", "What else the strikes took: see E_other_J of each.")
@@ -126,6 +147,15 @@ class Strikes:
     residual: Num = key(
         "strikes_residual_over_E_0", "-", "What the balance over all strikes misses, over E_0."
     )
+
+    def half_width(self, number: int, name: str) -> Num:
+        """Return the half-width of a number of a strike, from 1, by its key, or why there is none."""
+        if isinstance(self.spread, Unknown):
+            return self.spread
+        if isinstance(self.certain, Unknown) or number > self.certain:
+            return Unknown(f"it is not certain what strike {number} is of: see strikes_spread")
+        half = self.spread[number - 1].half_widths.get(name)
+        return Unknown(NO_SHARES) if half is None else half
 
     def to_dataframe(self) -> pandas.DataFrame:
         """Return a row a strike, with the columns of its JSON (ResultError: there are none)."""

@@ -24,7 +24,7 @@ from fem_impact.files.atomic import make_directory, read_text, write_text
 from fem_impact.files.digests import signed
 from fem_impact.outcome.keys import Key, Unknown, or_none
 from fem_impact.outcome.record import KEY_TABLE, KEYS, Outcome, utc_now
-from fem_impact.outcome.strike_text import strikes_table, told
+from fem_impact.outcome.strike_text import spread_table, strikes_table, told
 from fem_impact.pages import html, sections
 from fem_impact.pages.html import Markup
 from fem_impact.physics.flash import ASSUMPTIONS
@@ -170,13 +170,14 @@ def _strikes(outcome: Outcome, scene: Scene | None, folder: Path) -> Markup:
         return Markup("")
     g, vertical = gravity_of(scene), scene.impact.vertical
     shape, pull = outline(scene.projectile.rigid_body), (g * cos(vertical), g * sin(vertical))
-    figures = make_directory(folder / "figures")
+    figures, spread = make_directory(folder / "figures"), or_none(outcome.strikes.spread)
     return html.section(
         "From the first strike to rest",
         html.paragraph(" ".join(told(outcome.strikes))),
         html.figure(path_picture(each, shape, pull), figures),
         html.figure(accounts_picture(each), figures),
-        html.details("Each strike", html.table(strikes_table(each))),
+        html.details("Each strike of the path computed", html.table(strikes_table(outcome.strikes))),
+        *([html.details("What strikes in 64 sequences", html.table(spread_table(spread)))] if spread else []),
     )
 
 

@@ -1,12 +1,16 @@
-"""What is certain of a sequence of strikes: rigid sequences over the stated intervals of what comes in."""
+"""What is certain of a sequence of strikes: sequences over what is not known of inputs and of strikes.
+
+Each is that of a rigid body whose strikes are moved from its law by as much as those of the run are, and by
+what their model leaves open, as long as the same parts of the body strike.
+"""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import pi
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -14,41 +18,171 @@ from fem_impact.case.case import Case
 from fem_impact.errors import SceneError
 from fem_impact.outcome.keys import Num, Unknown, known, or_none
 from fem_impact.outcome.strikes import StrikeRecord, Strikes, StrikeSpread
+from fem_impact.run.modal_error import HELD, TOLD, place_at, stored
 from fem_impact.run.strikes import Followed, other_end
+from rigid import critical_ratio
+from rigid.strikes import State, Strike
 
 if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
 
 RUNS = 64
-"""Sequences over the intervals."""
+"""Sequences over what is not known."""
 SEEN = 6
 """Strikes of each that are looked at: later ones are as good as drawn by lot."""
-INNER = 0.1, 0.9
+INNER = 0.05, 0.95
 """Quantiles that are told."""
 EXACT = Unknown(
-    "the scene states no interval: surface.friction_low and friction_high, strikes.angle_error or speed_error"
+    "rigid theory tells no error of its own, and the scene states no interval: surface.friction_low and "
+    "friction_high, strikes.angle_error or speed_error"
 )
+ERRED = (
+    *(
+        "time",
+        "x",
+        "z",
+        "along",
+        "alpha",
+        "approach",
+        "sliding",
+        "v_n",
+        "v_t",
+        "omega",
+        "V_n",
+        "V_t",
+        "Omega",
+    ),
+    *("e", "mu", "impulse_n", "impulse_t", "before", "after", "friction"),
+)
+"""Numbers of a strike that have half-widths."""
+NAMES = {one: StrikeRecord.__dataclass_fields__[one].metadata["key"][0] for one in ERRED}
+INTERVALS = "the stated intervals of friction, angle and speed"
+BY = {
+    "modal": "the half-widths of the reduced model's e, mu and friction in each of its strikes, which know "
+    "nothing of vibration that comes in",
+    "solid": "the change of e, mu and friction in strikes by finite elements from the last mesh but one to "
+    "the last",
+    "rigid": "in strikes of a rigid body, how far it lies from the finer model in the last strike of that",
+}
+OPEN = {
+    "solid": "the error of the mesh, which one mesh does not tell",
+    "rigid": "the error of rigid theory, which a run with modes tells",
+}
 
 
-def with_spread(case: Case, strikes: Strikes) -> Strikes:
-    """Return strikes with what rigid sequences over the stated intervals tell of them."""
+class Doubt(NamedTuple):
+    """Half-widths of what the model of a strike gives: e, impulse ratio, and loss to friction, J."""
+
+    e: float = 0.0
+    mu: float = 0.0
+    friction: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Known:
+    """A strike of the run, the same strike by the law of rigid runs, and what its model leaves open.
+
+    ``doubt`` is None where nothing is known of that.
+    """
+
+    own: StrikeRecord
+    law: StrikeRecord
+    doubt: Doubt | None
+
+
+def with_spread(case: Case, strikes: Strikes, coarser: Strikes | None = None) -> Strikes:
+    """Return strikes with what is certain of them; ``coarser`` are those of the last mesh but one."""
     own = or_none(strikes.each)
-    if own is None or not _varies(case):
-        return replace(strikes, certain=EXACT, spread=EXACT, other_end_low=EXACT, other_end_high=EXACT)
+    if own is None:
+        return strikes
     try:
-        runs = [_rigid(scene) for scene in _drawn(case)]
+        each = _each(case, own, () if coarser is None else or_none(coarser.each) or ())
+        if not (_varies(case) or any(one.doubt for one in each)):
+            return _without(strikes, EXACT)
+        plain = _run(case.scene, each)
+        runs = [_run(scene, each, *moved) for scene, *moved in _drawn(case)]
     except SceneError as error:
-        none = Unknown(f"rigid theory does not follow the scene: {error.problem}")
-        return replace(strikes, certain=none, spread=none, other_end_low=none, other_end_high=none)
-    length = case.contact.body.length
-    ends, plain = [other_end(run, length) for run in runs], other_end(_rigid(case.scene), length)
+        return _without(strikes, Unknown(f"rigid theory does not follow the scene: {error.problem}"))
+    certain, length = _common([own, plain, *runs]), case.contact.body.length
+    ends = [other_end(run, length) for run in runs]
+    first, rubbed = other_end(plain, length), sum(one.friction for one in plain)
+    later = known(strikes.friction) - sum(one.friction for one in own[:SEEN])
     return replace(
         strikes,
-        certain=_common([own, *runs]),
-        spread=tuple(_spread(number, runs) for number in range(1, 1 + max(len(run) for run in runs))),
-        other_end_low=_moved(strikes.other_end, plain, _quantile(ends, INNER[0])),
-        other_end_high=_moved(strikes.other_end, plain, _quantile(ends, INNER[1])),
+        certain=certain,
+        spread=tuple(
+            _spread(number, struck, *([own[number - 1], plain[number - 1]] if number <= certain else []))
+            for number, struck in _by_number(runs)
+        ),
+        holds=_holds(case, each),
+        hardest_agree=sum(_hardest(run) == _hardest(own) for run in runs),
+        friction_half=later + _half([sum(one.friction for one in run) for run in runs], rubbed),
+        other_end_low=_moved(strikes.other_end, first, _quantile(ends, INNER[0])),
+        other_end_high=_moved(strikes.other_end, first, _quantile(ends, INNER[1])),
     )
+
+
+def _without(strikes: Strikes, why: Unknown) -> Strikes:
+    return replace(
+        strikes,
+        certain=why,
+        spread=why,
+        holds=why,
+        hardest_agree=why,
+        friction_half=why,
+        other_end_low=why,
+        other_end_high=why,
+    )
+
+
+def _each(case: Case, own: Sequence[StrikeRecord], coarser: Sequence[StrikeRecord]) -> list[Known]:
+    """Return the first strikes with those of the law and with what their models leave open."""
+    found: list[Known] = []
+    for number, one in enumerate(own[:SEEN]):
+        body = Followed.of(case)
+        body.upto = 1
+        begin = body.touching(one.alpha, one.v_n, one.v_t, one.omega)
+        body.go_on(begin)
+        law, doubt = body.each[0], None
+        if one.fidelity == "modal":
+            doubt = _by_stored(case, body, begin, one)
+        elif one.fidelity == "solid":
+            same = [
+                old for old in coarser[number : number + 1] if (old.fidelity, old.part) == ("solid", one.part)
+            ]
+            doubt = next((_apart(one, old, one) for old in same), None)
+        else:
+            finer = [old for old in found if old.own.fidelity != "rigid"]
+            doubt = _apart(finer[-1].own, finer[-1].law, one) if finer else None
+        found.append(Known(one, law, doubt))
+    return found
+
+
+def _apart(one: StrikeRecord, other: StrikeRecord, of: StrikeRecord) -> Doubt:
+    """Return how far two models of a strike are apart, for a strike ``of`` another energy."""
+    rubbed = abs(one.friction - other.friction) * of.before / one.before
+    return Doubt(abs(one.e - other.e), abs(one.mu - other.mu), rubbed)
+
+
+def _by_stored(case: Case, body: Followed, begin: State, one: StrikeRecord) -> Doubt:
+    """Return the half-widths of the reduced model for a strike, by the stored scenes that are like it."""
+    pair = body.later(begin).contact
+    stops = float(
+        critical_ratio(
+            *(pair.v_n, pair.v_t),
+            e=one.e,
+            d_c=pair.arms[0],
+            d_d=pair.arms[1],
+            k2=body.pull.k2,
+            omega=pair.omega,
+        )
+    )
+    place, table = np.array(place_at(pair, case.bodies.bending_period, stops)), stored()
+    e, mu, friction = (
+        table.half_width(place, TOLD.index(name), bool(table.outside(place)))
+        for name in ("e_edge", "mu", "W_friction_over_E_0")
+    )
+    return Doubt(e, mu, friction * one.before)
 
 
 def _varies(case: Case) -> bool:
@@ -58,13 +192,25 @@ def _varies(case: Case) -> bool:
     return bool(rubs or errors.angle_error or errors.speed_error)
 
 
-def _drawn(case: Case) -> Iterator[Scene]:
-    """Yield scenes whose friction, angle and speed fill the stated intervals evenly."""
+def _holds(case: Case, each: Sequence[Known]) -> str:
+    """Return what the sequences hold, and what they do not."""
+    inside = {one.own.fidelity: BY[one.own.fidelity] for one in each if one.doubt}
+    outside = {one.own.fidelity: OPEN[one.own.fidelity] for one in each if one.doubt is None}
+    held = ", and ".join([*([INTERVALS] if _varies(case) else []), *inside.values()])
+    return f"They hold {held}" + (f"; not {' nor '.join(outside.values())}." if outside else ".")
+
+
+def _drawn(case: Case) -> Iterator[tuple[Scene, float, float]]:
+    """Yield scenes whose friction, angle and speed fill the stated intervals evenly.
+
+    With each come two places, nine in ten within -1 to 1: of e and of mu within what is not known of them.
+    """
     scene, surface, impact = case.scene, case.scene.surface, case.scene.impact
     low, high = surface.friction_low, surface.friction_high
     for run, share in enumerate(np.linspace(0.0, 1.0, RUNS).tolist(), 1):
-        off = (2.0 * _halton(run, 2) - 1.0) * (scene.strikes.angle_error or 0.0)
-        faster = 1.0 + (2.0 * _halton(run, 3) - 1.0) * (scene.strikes.speed_error or 0.0)
+        angle, speed, e, mu = (2.0 * _halton(run, base) - 1.0 for base in (2, 3, 5, 7))
+        off = angle * (scene.strikes.angle_error or 0.0)
+        faster = 1.0 + speed * (scene.strikes.speed_error or 0.0)
         moved = replace(
             impact,
             angle=min(max(impact.angle + off, -0.5 * pi), 0.5 * pi),
@@ -74,7 +220,7 @@ def _drawn(case: Case) -> Iterator[Scene]:
             slope=impact.vertical,
         )
         friction = low + share * (high - low)
-        yield replace(scene, surface=replace(surface, friction=friction), impact=moved)
+        yield replace(scene, surface=replace(surface, friction=friction), impact=moved), e / HELD, mu / HELD
 
 
 def _halton(number: int, base: int) -> float:
@@ -87,10 +233,26 @@ def _halton(number: int, base: int) -> float:
     return place
 
 
-def _rigid(scene: Scene) -> list[StrikeRecord]:
-    """Return the first strikes of a rigid body."""
+def _run(scene: Scene, each: Sequence[Known], e: float = 0.0, mu: float = 0.0) -> list[StrikeRecord]:
+    """Return the first strikes of a scene; ``e`` and ``mu`` are places within what is not known of both."""
     body = Followed.of(Case.of(scene, "rigid"))
-    body.upto = min(SEEN, scene.impact.most_strikes or SEEN)
+    mass, left = body.case.contact.body.mass, list(each)
+
+    def moved(strike: Strike) -> Strike:
+        before = strike.before
+        if not left or left[0].own.part != body.part_of(before.place, before.line, before.state.alpha):
+            left.clear()  # from here on another sequence
+            return strike
+        one = left.pop(0)
+        doubt, own, law = one.doubt or Doubt(), one.own, one.law
+        return strike.having(
+            max(0.0, strike.e + own.e - law.e + e * doubt.e),
+            strike.mu + own.mu - law.mu + mu * doubt.mu,
+            max(0.0, strike.friction + (own.friction - law.friction + mu * doubt.friction) / mass),
+            body.pull.k2,
+        )
+
+    body.moved, body.upto = moved, min(SEEN, scene.impact.most_strikes or SEEN)
     body.go_on(body.coming)
     return body.each
 
@@ -105,28 +267,60 @@ def _common(runs: Sequence[Sequence[StrikeRecord]]) -> int:
     return same
 
 
-def _spread(number: int, runs: Sequence[Sequence[StrikeRecord]]) -> StrikeSpread:
-    """Return what strikes in which of the runs as the strike of a ``number``, from 1."""
-    struck = [run[number - 1] for run in runs if len(run) >= number]
+def _by_number(runs: Sequence[Sequence[StrikeRecord]]) -> Iterator[tuple[int, list[StrikeRecord]]]:
+    """Yield the number of a strike, from 1, and that strike of each run that has it."""
+    for number in range(1, 1 + max(len(run) for run in runs)):
+        yield number, [run[number - 1] for run in runs if len(run) >= number]
+
+
+def _hardest(run: Sequence[StrikeRecord]) -> int:
+    """Return the place of the strike that takes most from the rigid motion."""
+    return int(np.argmax([one.lost for one in run[:SEEN]]))
+
+
+def _half(values: Sequence[float], plain: float) -> float:
+    """Return the larger way from a plain value to the quantiles of values."""
+    return float(np.abs(np.quantile(values, INNER) - plain).max())
+
+
+def _spread(
+    number: int,
+    struck: Sequence[StrikeRecord],
+    own: StrikeRecord | None = None,
+    plain: StrikeRecord | None = None,
+) -> StrikeSpread:
+    """Return what strikes in which of the runs as the strike of a ``number``, from 1.
+
+    Where it is of the same part in all of them, that lies about the run's ``own``, whose numbers have
+    half-widths: the ways from the ``plain`` sequence, in which nothing is moved.
+    """
     parts = Counter(one.part for one in struck)
     time, approach = (
-        np.quantile([getattr(one, key) for one in struck], INNER) for key in ("time", "approach")
+        np.quantile([getattr(one, key) for one in struck], INNER)
+        + (getattr(own, key) - getattr(plain, key) if own and plain else 0.0)
+        for key in ("time", "approach")
     )
     return StrikeSpread(
         number=number,
         tip=parts["tip"],
         tail=parts["tail"],
         other=len(struck) - parts["tip"] - parts["tail"],
-        none=len(runs) - len(struck),
+        none=RUNS - len(struck),
         time_low=float(time[0]),
         time_high=float(time[1]),
         approach_low=float(approach[0]),
         approach_high=float(approach[1]),
+        half_widths={
+            name: _half([getattr(one, key) for one in struck], getattr(plain, key))
+            for key, name in NAMES.items()
+        }
+        if plain
+        else {},
     )
 
 
 def _moved(own: Num, plain: Num, to: Num) -> Num:
-    """Return a ratio moved as far as from that of the rigid body ``to`` another, or why one is not known."""
+    """Return a ratio moved as far as from that of the plain sequence ``to`` another, or why it is unknown."""
     missing = next((one for one in (own, plain, to) if isinstance(one, Unknown)), None)
     return missing if missing is not None else known(own) + known(to) - known(plain)
 

@@ -22,6 +22,7 @@ from fem_impact.case.case import Case
 from fem_impact.case.measured import reduced_pairs
 from fem_impact.outcome.keys import or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
+from fem_impact.physics.contact import ContactPair
 from fem_impact.physics.contact_law import contact_law
 
 HELD = 0.9
@@ -74,17 +75,20 @@ CALLED = (
 
 def place_of(case: Case, outcome: Outcome) -> Place:
     """Return where a scene stands that the reduced model has computed."""
-    pair, bodies = case.contact, case.bodies
+    return place_at(case.contact, case.bodies.bending_period, or_none(outcome.restitution.mu_c) or 0.0)
+
+
+def place_at(pair: ContactPair, bending_period: float, stops: float) -> Place:
+    """Return where an impact stands: how both touch, period, s, and the ratio at which sliding stops."""
     law, depth = contact_law(pair), pair.estimate.depth
     begins = sqrt(0.8 * law.yield_force * law.yield_depth / pair.effective_mass) if law.limit < inf else inf
     x, z = pair.touch_point
-    bore = float(bodies.body.inner_radius(np.array(z))) if hasattr(bodies.body, "inner_radius") else 0.0
-    stops = abs(or_none(outcome.restitution.mu_c) or 0.0)
+    bore = float(pair.body.inner_radius(np.array(z))) if hasattr(pair.body, "inner_radius") else 0.0
     numbers = Place(
         yields=pair.approach / begins,
-        rings=bodies.bending_period / bodies.estimate.duration,
-        sticks=pair.f / stops if stops else inf,
-        wall=(max(abs(float(bodies.body.radius(np.array(z)))), abs(x)) - bore) / depth,
+        rings=bending_period / pair.estimate.duration,
+        sticks=pair.f / abs(stops) if stops else inf,
+        wall=(max(abs(float(pair.body.radius(np.array(z)))), abs(x)) - bore) / depth,
         edge=pair.principal_radii[0] / depth,
         turns=pair.reduced[0] / pair.effective_mass,
     )

@@ -21,11 +21,13 @@ from rigid.strikes import (
     RUNAWAY,
     Approach,
     Finish,
+    Moved,
     Outline,
     Pull,
     Round,
     State,
     Strike,
+    as_it_is,
     outline,
     sequence,
 )
@@ -84,6 +86,7 @@ class Followed:
     gravity, settled, heat : J, of gravity, of strikes too weak to count, of friction between strikes
     level, lossless : strikes of the rigid body that land level, and that lose nothing along the normal
     upto : strikes after which another model goes on, None where none does
+    moved : changes the strikes of the rigid body; see `sequence`
     """
 
     case: Case
@@ -97,6 +100,7 @@ class Followed:
     level: int = 0
     lossless: int = 0
     upto: int | None = None
+    moved: Moved = as_it_is
 
     @classmethod
     def of(cls, case: Case) -> Followed:
@@ -125,6 +129,7 @@ class Followed:
             least=LEAST_BY_LAW if self.case.scene.restitution is None else LEAST,
             energy=self.each[0].before / mass if self.each else None,
             strong=strong,
+            moved=self.moved,
         )
         self.each += [self._record(strike) for strike in found.strikes]
         self.gravity += self.work(begin, found.end)
@@ -255,6 +260,9 @@ class Followed:
             spread=ONE_PATH,
             other_end_low=ONE_PATH,
             other_end_high=ONE_PATH,
+            hardest_agree=ONE_PATH,
+            friction_half=ONE_PATH,
+            holds=ONE_PATH,
             gravity=self.gravity,
             **sums,
             settled=self.settled,

@@ -1,7 +1,7 @@
 """Strikes of a rigid body from the first to rest: outline, flight, contacts that are held, and records."""
 
 from ..rounds import Round
-from .course import LEAST, MOST, RUNAWAY, sequence
+from .course import LEAST, MOST, RUNAWAY, Moved, as_it_is, sequence
 from .flight import State, next_touch
 from .held import Ending, Held, Pull, hold
 from .outline import Outline, outline
@@ -15,6 +15,7 @@ __all__ = [
     "Ending",
     "Finish",
     "Held",
+    "Moved",
     "Outline",
     "Phase",
     "Pull",
@@ -22,6 +23,7 @@ __all__ = [
     "Sequence",
     "State",
     "Strike",
+    "as_it_is",
     "hold",
     "next_touch",
     "outline",

@@ -46,6 +46,12 @@ UNSTICK = 1e-4
 """Of that time, or of the time of a turn by a radian: so long a corner that lifts off is not looked at."""
 
 Restitution = Callable[[Approach], float]
+Moved = Callable[[Strike], Strike]
+
+
+def as_it_is(strike: Strike) -> Strike:
+    """Return a strike as the law of its restitution gives it."""
+    return strike
 
 
 def sequence(
@@ -59,6 +65,7 @@ def sequence(
     most: int = MOST,
     energy: float | None = None,
     strong: float = math.inf,
+    moved: Moved = as_it_is,
 ) -> Sequence:
     """Follow a rigid body from its first touch.
 
@@ -73,6 +80,7 @@ def sequence(
     most : strikes at most; a body that loses nothing strikes for ever
     energy : kinetic energy at the first touch of a body that has struck before, per unit mass, m2/s2
     strong : share of it along the normal at which to stop before a strike, for another model to take over
+    moved : changes a strike that counts, such as by what another model gives of it
 
     Raises
     ------
@@ -90,7 +98,7 @@ def sequence(
     >>> found.finish.value
     'rests'
     """
-    course = _Course(outline, pull, restitution, until, least, most, start, energy, strong)
+    course = _Course(outline, pull, restitution, until, least, most, start, energy, strong, moved)
     corner: int | None = None
     for _ in range(EVENTS * most):
         corner = course.fly() if corner is None else course.keep(corner)
@@ -112,6 +120,7 @@ class _Course:
     state: State
     energy: float | None
     strong: float
+    moved: Moved
     strikes: list[Strike] = field(default_factory=list)
     small: list[Strike] = field(default_factory=list)
     phases: list[Phase] = field(default_factory=list)
@@ -250,6 +259,7 @@ class _Course:
         counts = first or along_normal >= self.least * self.E_0
         e = self.restitution(before) if counts else 0.0
         strike = _resolved(before, e, self.pull)
+        strike = self.moved(strike) if counts else strike
         (self.strikes if counts else self.small).append(strike)
         self.state = strike.after
         if counts and len(self.strikes) == self.until:

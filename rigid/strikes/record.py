@@ -84,6 +84,21 @@ class Strike:
         """The motion just after it."""
         return self.before.state._replace(V_n=self.V_n, V_t=self.V_t, Omega=self.Omega)
 
+    def having(self, e: float, mu: float, friction: float, k2: float) -> Strike:
+        """Return it with another restitution, impulse ratio and friction loss; as it is where it would jam.
+
+        The contact point's normal velocity changes by p (1 + d_c (d_c - mu d_d)/k^2); ``k2``, m2.
+        """
+        before, state = self.before, self.before.state
+        ease = 1.0 + before.d_c * (before.d_c - mu * before.d_d) / k2
+        if ease <= 0.0:
+            return self
+        p = -before.normal * (1.0 + e) / ease
+        q, turn = mu * p, p * (before.d_c - mu * before.d_d) / k2
+        lost = -p * (state.V_n + 0.5 * p) - q * (state.V_t + 0.5 * q) - k2 * turn * (state.Omega + 0.5 * turn)
+        V_n, V_t, Omega = state.V_n + p, state.V_t + q, state.Omega + turn
+        return Strike(before, V_n, V_t, Omega, e, self.e_energetic, mu, p, q, lost - friction, friction)
+
 
 @dataclass(frozen=True, slots=True)
 class Phase:

@@ -39,9 +39,11 @@ from fem_impact.outcome.keys import Unknown, known
 from fem_impact.outcome.limitation import limitations
 from fem_impact.outcome.record import Outcome
 from fem_impact.outcome.strike_text import levels_told
+from fem_impact.outcome.strikes import Strikes
 from fem_impact.progress import Notice
 from fem_impact.run.resolution import NOT_RESOLVED, without
 from fem_impact.run.simulate import begin
+from fem_impact.scene.impact import FIRST
 from fem_impact.scene.types import Scene
 from fem_impact.scene.write import digest, to_toml
 from fem_impact.tables.text import plain
@@ -361,8 +363,17 @@ class LevelChain:
         return replace(
             outcome,
             validity=validity,
+            strikes=self._strikes(upto, outcome.strikes),
             provenance=replace(outcome.provenance, scene_digest=digest(self.scene)),
         )
+
+    def _strikes(self, upto: Sequence[LevelRun], strikes: Strikes) -> Strikes:
+        """Return the strikes with what is certain of them, by those of the last level but one."""
+        if len(upto) < 2 or self.scene.impact.until == FIRST:
+            return strikes
+        from fem_impact.run.certain import with_spread
+
+        return with_spread(upto[-1].cases[0], strikes, upto[-2].outcome.strikes)
 
     def _missed(self, errors: Mapping[str, float]) -> str:
         """Say why the wanted error is not reached, and what more would cost; empty where it is."""
