@@ -69,7 +69,7 @@ def test_words_and_table_name_the_hardest_strike_and_the_other_end(strikes):
     text = " ".join(told(strikes))
     assert f"by energy {strikes.hardest_energy}" in text
     assert "The other end strikes" in text
-    assert len(strikes_table(strikes.each).rows) == len(strikes.each)
+    assert len(strikes_table(strikes).rows) == len(strikes.each)
 
 
 def test_the_page_of_a_run_shows_the_strikes(tmp_path):
