@@ -37,6 +37,7 @@ from fem_impact.modal.motion import (
 from fem_impact.modal.pressed import pressed_sites
 from fem_impact.modal.rod import ModalRod, modal_rod
 from fem_impact.modal.sites import lowest_place
+from fem_impact.modal.touch import spent
 from fem_impact.outcome.groups import ContactSite
 from fem_impact.physics.beam import horizon
 from fem_impact.physics.contact import fall

@@ -12,8 +12,9 @@ from fem_impact.modal.flat import LAW
 from fem_impact.modal.motion import SITE, Touched
 from fem_impact.modal.rod import ModalRod
 from fem_impact.modal.sites import skin
-from fem_impact.modal.touch import OWN, flow_of
+from fem_impact.modal.touch import OWN
 from fem_impact.outcome.groups import ContactSite
+from fem_impact.physics.flow_law import FlowLaw
 
 
 def pressed_sites(case: Case, rod: ModalRod, held: Touched) -> tuple[ContactSite, ...]:
@@ -29,7 +30,7 @@ def pressed_sites(case: Case, rod: ModalRod, held: Touched) -> tuple[ContactSite
 
 def _pressed(case: Case, rod: ModalRod, held: Touched, s: int) -> ContactSite:
     """Return a site with a contact of its own."""
-    flow, of = flow_of(held, s), held.site[s]
+    flow, of = FlowLaw(*held.flow[s].tolist()), held.site[s]  # `flow_of` would be compiled in each process
     across = 2.0 * of[SITE.deepest] if flow.yields else of[SITE.deepest]  # a Hertzian contact is narrower
     half, wide = sqrt(flow.R1 * across), sqrt(flow.R2 * across)
     middle = skin(rod.sites, s, float(of[SITE.turned]))[0] - _first(case)
