@@ -254,10 +254,10 @@ def test_half_widths_grow_from_the_models_own_as_the_sequence_goes_on(steep):
     assert 0.0 < steep.friction_half < steep.friction
 
 
-def test_a_number_of_a_strike_without_a_half_width_has_a_reason(steep):
+def test_a_number_of_a_strike_without_a_half_width_has_a_reason(steep, floor):
     assert "how that along its normal is divided" in steep.half_width(1, "E_plastic_J").reason
     assert "strikes_spread" in steep.half_width(steep.certain + 1, "time_s").reason
-    assert steep.spread[steep.certain].half_widths == {}
+    assert floor.strikes.spread[floor.strikes.certain].half_widths == {}
     parts = {(one.tip, one.tail, one.other, one.none) for one in steep.spread[: steep.certain]}
     assert parts == {(64, 0, 0, 0), (0, 64, 0, 0)}
 
