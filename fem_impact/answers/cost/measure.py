@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from concurrent.futures import Executor
 from contextlib import nullcontext
 from dataclasses import asdict, dataclass, replace
@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fem_impact.answers.cost.judge import Judged, SettingKind, front, judged_levels, judged_model
-from fem_impact.answers.refine.extrapolate import MeshRuns, QuantityLimit, quantity_limits
+from fem_impact.answers.refine.extrapolate import QuantityLimit, quantity_limits
 from fem_impact.answers.refine.quantities import QUANTITIES
 from fem_impact.answers.refine.work import Levels, LevelsJob
 from fem_impact.case.case import Case
@@ -186,7 +186,8 @@ def conclude(scene: Scene, results: CostRuns) -> CostStudy:
     for places, found in levels.items():
         for n in range(2, len(found.meshes) + 1):
             first, is_default = found.meshes[:n], places == 1 and n == found.default
-            judged.append(judged_levels(_name(first, places), PLACES[places], first, finest, is_default))
+            called = f"{n} levels to {1e3 * first[-1].size:.3g} mm" + ", two places" * (places == 2)
+            judged.append(judged_levels(called, PLACES[places], first, finest, is_default))
     default = quantity_limits(levels[1].meshes[: levels[1].default]) if 1 in levels else {}
     for name, result in named.items():
         if isinstance(result, Outcome) and result.validity.finished:
@@ -199,7 +200,3 @@ def conclude(scene: Scene, results: CostRuns) -> CostStudy:
         for one in sorted(judged, key=lambda one: one.cpu_s)
     ]
     return CostStudy(scene, finest, levels, marked, failures, results)
-
-
-def _name(levels: Sequence[MeshRuns], places: int) -> str:
-    return f"{len(levels)} levels to {1e3 * levels[-1].size:.3g} mm" + ", two places" * (places == 2)
