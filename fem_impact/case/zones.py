@@ -187,6 +187,7 @@ def zones_of(bodies: Bodies) -> Zones:
         t, b, n = half_widths(size, h, share_of(contact_radius(bodies) / h, shares if graded else ()))
         return t, max(b, wide), n
 
+    slid = slide(bodies, half_widths(size, base / 2**below)[0])
     return Zones(
         base,
         rod_base,
@@ -194,7 +195,7 @@ def zones_of(bodies: Bodies) -> Zones:
         barrier=tuple(extents(base / 2**level, BARRIER_SHARES) for level in range(1, below + 1)),
         half=extents(min(rod_base / 2**levels, base / 2**below), ()),
         reach=reach,
-        along=_further(reach, slide(bodies, half_widths(size, base / 2**below)[0])),
+        along=(reach[0] + slid[0], reach[1] + slid[1]),
         conforming=conforming,
         skin_rows=rows,
         edges=plate_waves(pair)[1] if is_thin(bodies) else 0.0,
@@ -240,10 +241,6 @@ def skin_rows(bodies: Bodies, h: float) -> int:
     skin = skin_of(bodies.contact.barrier) if "machined-skin" in bodies.effects else None
     most = max(SKIN_ROWS, ceil(log2(h * (2**SKIN_ROWS - 1) / skin.depth))) if skin else SKIN_ROWS
     return min(max(halvings, 0), most)
-
-
-def _further(reach: Ways, slid: Ways) -> Ways:
-    return reach[0] + slid[0], reach[1] + slid[1]
 
 
 def face_reach(bodies: Bodies) -> tuple[Ways, float]:
