@@ -78,6 +78,13 @@ def simulate(
     UsageError, SceneError, OutputPathError, ResultError, RunError
         As `fem_impact.run.simulate.simulate`; or a wanted error is asked of a model without a mesh; or the
         budget does not hold the first level, with what the models without a mesh say.
+
+    Examples
+    --------
+    >>> from fem_impact.scene.shipped import load
+    >>> outcome = simulate(load("t5b"), "rigid")
+    >>> outcome.told("e_edge"), outcome.told("Omega_rad_per_s")
+    ('0.306', '7.75')
     """
     fidelity = fidelity or scene.strikes.first
     with watched(options.progress) as progress:

@@ -100,6 +100,13 @@ def sweep(
         Before any run: the fidelity is unknown, nothing varies, or no combination is a scene.
     OutputPathError
         ``out`` cannot be written, or another process writes to it.
+
+    Examples
+    --------
+    >>> from fem_impact.scene.shipped import load
+    >>> found = sweep(load("t5b"), {"impact.angle": ["15 deg", "30 deg"]}, "rigid")
+    >>> found.numbers("Omega_rad_per_s").round(1).tolist()
+    [-5.9, -4.1]
     """
     if fidelity not in FIDELITIES:
         hint = did_you_mean(fidelity, FIDELITIES, f"Use one of {', '.join(FIDELITIES)}.")

@@ -31,6 +31,11 @@ def load(id_or_path: str | Path) -> Scene:
         For an unknown id or a missing file.
     SceneError
         For any mistake in the file.
+
+    Examples
+    --------
+    >>> load("t5b").projectile.length
+    0.08
     """
     name = os.fspath(id_or_path)
     if name in shipped():
@@ -80,7 +85,13 @@ _SUFFIXES = sorted((f"_{dimension.suffix}" for dimension in DIMENSIONS.values())
 
 
 def replace(scene: Scene, key: str, value: Any) -> Scene:
-    """Return a checked copy of the scene with one dotted key changed; see `replace_all`."""
+    """Return a checked copy of the scene with one dotted key changed; see `replace_all`.
+
+    Examples
+    --------
+    >>> replace(load("t5b"), "projectile.length", "120 mm").projectile.length
+    0.12
+    """
     return replace_all(scene, {key: value})
 
 

@@ -190,7 +190,13 @@ def parse_number(value: Any, key: str) -> float:
 
 
 def format_quantity(value: float, dimension: str, symbol: str = "") -> str:
-    """Write an SI value with a unit, so that `parse_quantity` gives back the very same float."""
+    """Write an SI value with a unit, so that `parse_quantity` gives back the very same float.
+
+    Examples
+    --------
+    >>> format_quantity(0.019, "length"), format_quantity(0.019, "length", "um")
+    ('19 mm', '19000 um')
+    """
     dim = DIMENSIONS[dimension]
     unit = dim.unit(symbol or dim.written) or dim.units[0]
     decimal = Decimal(repr(value)).scaleb(-unit.power).normalize()
