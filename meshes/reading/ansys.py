@@ -94,6 +94,7 @@ def _nodes(lines: Iterator[str], archive: _Archive) -> None:
         number, start = whole_number(line[:width], "NBLOCK"), count * width
         texts = [line[start + k * wide : start + (k + 1) * wide] for k in range(3)]
         keep(archive.nodes, number, place_of(texts, number), "nodes")
+    raise MeshError("ends within an NBLOCK: it is cut off. Write it again.")
 
 
 def _constants(lines: Iterator[str], count: int, archive: _Archive) -> None:
@@ -135,6 +136,7 @@ def _cells(lines: Iterator[str], archive: _Archive, solid: bool) -> None:
             keep(archive.cells, number, (kind, nodes), "cells")
             archive.real[number] = numbers[2] if solid else 0
             numbers = []
+    raise MeshError("ends within an EBLOCK: it is cut off. Write it again.")
 
 
 def _integers(lines: Iterator[str], count: int) -> Iterator[int]:

@@ -3,6 +3,7 @@
 import re
 from pathlib import Path
 
+from meshes.errors import MeshError
 from meshes.reading.stored import Elements, PointMass, StoredMesh, keep
 from meshes.reading.text import lines_of, place_of, whole_number
 
@@ -64,6 +65,8 @@ def kratos(path: Path) -> StoredMesh:
         elif opened and opened[-1][0] == "Conditions":
             numbers = [whole_number(text, "Conditions") for text in words]
             keep(conditions, numbers[0], (opened[-1][1], numbers[2:]), "conditions")
+    if opened:
+        raise MeshError(f"ends within {opened[-1][0]}, without its End: it is cut off. Write it again.")
     for number, (kind, nodes, properties) in cells.items():
         named = members["Elements"].get(number, [])
         if kind is None and len(nodes) == 1:

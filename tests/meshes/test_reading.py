@@ -493,6 +493,12 @@ SPOILED = {
     "two nodes.rad": ("/PART", f"/NODE\n{1:10d}{9:20d}{9:20d}{9:20d}\n/PART", "two nodes 1 that differ"),
     "thick.rad": ("/PART", "/SHEL16/4\n1\n/PART", "cells of /SHEL16/4, which are not read"),
     "untyped.cdb": ("ET,1,185", "ET,MAT,185", "a cell 1 of a type 1 that no command ET of it defines"),
+    "cut.cdb": (
+        f"{-1:10d}\nCMBLOCK,FIRST,ELEM,{2:8d}\n(8i10)\n{1:10d}{-2:10d}\nFINISH\n",
+        "",
+        "ends within an EBLOCK",
+    ),
+    "cut.mdpa": ("End Elements", "", "ends within Elements, without its End"),
     "two nodes.mdpa": ("End Nodes", "1 9. 9. 9.\nEnd Nodes", "two nodes 1 that differ"),
 }
 
