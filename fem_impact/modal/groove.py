@@ -16,7 +16,7 @@ that the contact grows.
 
 from __future__ import annotations
 
-from math import exp, log, sqrt
+from math import atan, exp, log, pi, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -87,13 +87,26 @@ def smooth(reach: float) -> Groove:
 
 
 @inlined
-def hardness(widest: float, law: FlowLaw) -> float:
-    """Return H, Pa: Johnson's expanding cavity up to Tabor's fully plastic contact, at its strain .2 a/R."""
-    stress = law.yield_stress * (1.0 + law.slope * REPRESENTATIVE * widest / law.R) ** law.exponent
+def borne(widest: float, stress: float, slope: float, exponent: float, law: FlowLaw) -> float:
+    """Return a plane body's hardness, Pa: Johnson's cavity up to Tabor's contact, at the strain .2 a/R."""
+    stress *= (1.0 + slope * REPRESENTATIVE * widest / law.R) ** exponent
     strained = law.E_star * widest / (law.R * stress)
     nu = law.nu
     cavity = 2 / 3 * (2 + log((strained + 4 * (1 - 2 * nu)) / (6 * (1 - nu))))
     return float(stress * min(FULLY_PLASTIC, cavity))
+
+
+@inlined
+def hardness(widest: float, law: FlowLaw) -> float:
+    """Return H, Pa: that of the body that flows, at most that of the other one.
+
+    A tip that is flattened bears less: its flanks rise beside the contact, and slip lines turn by less.
+    """
+    own = borne(widest, law.yield_stress, law.slope, law.exponent, law)
+    other = borne(widest, law.other_yield_stress, law.other_slope, law.other_exponent, law)
+    if not law.ploughs:
+        own *= 1.0 - atan(widest / sqrt(law.R * law.R1)) / (1.0 + 0.5 * pi)
+    return min(own, other)
 
 
 @inlined

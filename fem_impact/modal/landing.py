@@ -105,7 +105,11 @@ def _set_face(
     held.flats.share[f] = 0.5 * (1.0 - np.sign(x) * place / flat)
     held.flats.base[f] = wide**2 - place**2
     held.flats.inner[f] = np.sqrt(np.maximum(bore**2 - place**2, 0.0))
-    _set_row(held, f, pair, flow, pair.modulus, FULLY_PLASTIC * flow.yield_stress, 2 * wide / CELLS, 0.0)
+    plane, column = flow.yield_stress, flow.other_yield_stress
+    if not flow.ploughs:
+        plane, column = column, plane
+    # a rod that is pressed over all its face yields as a column
+    _set_row(held, f, pair, flow, pair.modulus, min(FULLY_PLASTIC * plane, column), 2 * wide / CELLS, 0.0)
 
 
 def _set_side(

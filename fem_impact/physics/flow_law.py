@@ -4,6 +4,9 @@ Closed forms, none of them from an impact:
 
 - hardness H = 3 times the flow stress at the strain .2 a/R (Tabor 1951, The Hardness of Metals), and below
   that Johnson's expanding cavity (1985, Contact Mechanics, eq 6.32),
+- of a tip that is flattened, whose flanks meet the contact at an angle theta, (1 + pi/2 - theta) / (1 + pi/2)
+  of that: by Hencky's relation pressure grows by 2 k times the angle by which slip lines turn on their way
+  from a free surface to the contact. Tabor's 3 is that of dents, lip and slope included,
 - shear yield stress k = sigma(1) / sqrt(3) of the skin, von Mises, which is sheared by strains of about one.
 
 `STUCK` and `RUN_IN` have no closed form for a growing contact of a hardening body. They were chosen on a grid
@@ -41,6 +44,8 @@ class FlowLaw(NamedTuple):
     friction : Coulomb's f
     ploughs : whether the barrier takes the groove; otherwise the tip is flattened
     yields : whether this law holds; otherwise nothing flows
+    other_yield_stress, other_slope, other_exponent : of the flow curve of the other body, which bears no more
+        than its own hardness; infinite of one that does not yield
     """
 
     R1: float
@@ -57,6 +62,9 @@ class FlowLaw(NamedTuple):
     friction: float
     ploughs: bool
     yields: bool
+    other_yield_stress: float = inf
+    other_slope: float = 0.0
+    other_exponent: float = 0.0
 
 
 def flow_law(pair: ContactPair, rod: HardeningLaw | None, barrier: HardeningLaw | None) -> FlowLaw:
@@ -68,10 +76,10 @@ def flow_law(pair: ContactPair, rod: HardeningLaw | None, barrier: HardeningLaw 
     size, soft, E_star = pair.estimate, pair.softer, pair.modulus
     R1, R2 = size.R1, size.R2
     flows = soft is not None and size.pressure >= LIMIT_PRESSURE * soft.yield_stress
-    of_soft = [(barrier, pair.barrier), (rod, pair.rod)]
-    of_curves = (law.power for law, metal in of_soft if law and metal == soft)
-    curve = next(of_curves, Hardening(inf, 0.0, 0.0))
-    faster = curve.rate.factor(strain_rate(size)) if curve.rate else 1.0
+    both = [(law.power, metal == soft) for law, metal in ((barrier, pair.barrier), (rod, pair.rod)) if law]
+    both.sort(key=lambda one: not one[1])
+    curve, other, *_ = (*(power for power, _ in both), *2 * [Hardening(inf, 0.0, 0.0)])
+    faster, other_faster = (of.rate.factor(strain_rate(size)) if of.rate else 1.0 for of in (curve, other))
     over_length = (R2 / R1) ** 0.25  # an ellipse is shorter along t than the circle of its area
     return FlowLaw(
         R1=R1,
@@ -88,4 +96,7 @@ def flow_law(pair: ContactPair, rod: HardeningLaw | None, barrier: HardeningLaw 
         friction=pair.f,
         ploughs=pair.barrier_conforms,
         yields=flows,
+        other_yield_stress=other_faster * other.yield_stress,
+        other_slope=other.slope,
+        other_exponent=other.exponent,
     )

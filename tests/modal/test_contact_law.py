@@ -6,12 +6,12 @@ from math import inf, pi, sqrt
 import pytest
 
 from fem_impact.case.case import Case
-from fem_impact.modal.groove import indent
+from fem_impact.modal.groove import hardness, indent
 from fem_impact.modal.impact import drop_round
 from fem_impact.modal.laws import reach
 from fem_impact.modal.motion import CLOCK, SITE, SUM, Bounds, Start
 from fem_impact.physics.contact_law import ContactLaw, contact_law, restitution
-from fem_impact.physics.flow_law import FlowLaw
+from fem_impact.physics.flow_law import FlowLaw, flow_law
 from fem_impact.scene.shipped import load
 
 NU, R = 0.29, 9.5e-3
@@ -149,3 +149,25 @@ def test_effects_choose_the_law():
     mindlin = 2 * (1 - NU) / (2 - NU)  # tangential over normal stiffness
     assert law_of(rigid).shear == pytest.approx(mindlin * 2 * law_of(rigid).E_star)
     assert law_of(rigid).friction == 0.57
+
+
+def test_a_tip_that_is_flattened_bears_less_the_steeper_its_flanks():
+    """By Hencky 2 k (1 + pi/2) of a plane surface, and 2 k alone of a column."""
+    tip = flow()._replace(ploughs=False, E_star=1e18)  # fully plastic from the first
+    for widest, H in ((1e-9, 2.5708), (0.5 * R, 2.5708 - 0.4636), (1e9, 1.0)):
+        assert hardness(widest, tip) == pytest.approx(3 * 300e6 * H / 2.5708, rel=1e-3)
+        assert hardness(widest, tip._replace(ploughs=True)) == pytest.approx(3 * 300e6, rel=1e-12)
+
+
+def test_no_body_bears_more_than_the_hardness_of_the_other_one():
+    hard = flow(stress=900e6)
+    assert hardness(2e-3, hard._replace(other_yield_stress=200e6)) == pytest.approx(3 * 200e6, rel=1e-12)
+    assert hardness(2e-3, hard._replace(other_yield_stress=1e9)) == hardness(2e-3, hard)
+
+
+def test_the_harder_of_two_bodies_is_the_other_one():
+    case = Case.of(load("t5b"), "modal")
+    laws = case.slots.rod_law, case.slots.barrier_law
+    of = flow_law(case.contact, *laws)
+    assert of.ploughs and of.other_yield_stress > of.yield_stress > 320e6
+    assert flow_law(case.contact, None, laws[1]).other_yield_stress == inf

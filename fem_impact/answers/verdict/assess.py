@@ -147,7 +147,12 @@ def assess(
         No model gives a restitution at the scene's inclination.
     """
     check_means(fidelity, budget_s)
-    _check(tolerance, of)
+    if of not in CHANGED:
+        remedy = f"Use one of {', '.join(CHANGED)}."
+        raise SceneError("is not a number whose change is judged.", key="of", value=of, remedy=remedy)
+    if not 0.0 < tolerance < 1.0:
+        remedy = "It is the change that may be neglected: give one such as 0.05."
+        raise SceneError("must lie between 0 and 1.", key="tolerance", value=tolerance, remedy=remedy)
     scene = scene.first_impact
     bodies = Case(scene).bodies
     lacking = not_reduced(bodies)
@@ -221,15 +226,6 @@ def check_means(fidelity: str, budget_s: float) -> None:
         raise SceneError("is not a fidelity of a verdict.", key="fidelity", value=fidelity, remedy=remedy)
     if not 0.0 < budget_s < 1e6:
         raise SceneError("must lie above 0 and below 1e6 s.", key="budget", value=f"{budget_s:g} s")
-
-
-def _check(tolerance: float, of: str) -> None:
-    if of not in CHANGED:
-        remedy = f"Use one of {', '.join(CHANGED)}."
-        raise SceneError("is not a number whose change is judged.", key="of", value=of, remedy=remedy)
-    if not 0.0 < tolerance < 1.0:
-        remedy = "It is the change that may be neglected: give one such as 0.05."
-        raise SceneError("must lie between 0 and 1.", key="tolerance", value=tolerance, remedy=remedy)
 
 
 def _over_angles(

@@ -65,9 +65,7 @@ class VibrationEffect:
     E_vib, E_vib_band : energy of vibration over E_0, and its half-width
     free, stiff : the outcomes, of the finest mesh where there are several
     source : where value and band come from, as a sentence
-    models : what ``value`` and ``band`` rest on
-    model : what ``free``, ``stiff`` and the shares of the energy rest on
-    error : what the half-widths of the shares are
+    model : what all of it rests on
     errors : half-widths of shares of E_0, by their names in an outcome's energy, as far as they are known
     """
 
@@ -80,9 +78,7 @@ class VibrationEffect:
     free: Outcome
     stiff: Outcome
     source: str
-    models: str
     model: str
-    error: str
     errors: Mapping[str, float]
 
     def at_least(self, off: float) -> VibrationEffect:
@@ -138,8 +134,6 @@ def modal_effect(scene: Scene, pair: Pair, of: str = "e") -> VibrationEffect:
         *pair,
         error.sentence(of) + THIN_PLATE.format(thin) * bool(thin),
         REDUCED,
-        REDUCED,
-        f"known error of {REDUCED}",
         {**shares, "plastic": sum(shares.values())},
     )
 
@@ -180,8 +174,6 @@ def solid_effect(levels: Sequence[MeshRuns], of: str = "e") -> VibrationEffect |
         "of convergence from 3/4 up, as each mesh runs once, and at least half of the change before."
         + COUNTS.format(100 * floor),
         MESHES,
-        MESHES,
-        f"band of the {MESHES}",
         errors,
     )
 

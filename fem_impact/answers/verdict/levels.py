@@ -83,16 +83,14 @@ def by_levels(
     if decides(levels.done):
         return found, [], ""
     note, more = _why_stopped(levels)
-    return found, [note, *([] if found else [_nothing(levels.done)])], more
-
-
-def _nothing(levels: Sequence[LevelRun]) -> str:
-    """Say why levels tell nothing."""
-    if levels[-1].stopped:
-        return f"Finite elements have no answer here: {levels[-1].stopped}"
-    if len(levels) < LEAST_LEVELS:
-        return "One level of finite elements alone does not tell its error."
-    return "The last level of finite elements does not resolve the contact."
+    if found is not None:
+        return found, [note], more
+    nothing = "The last level of finite elements does not resolve the contact."
+    if levels.done[-1].stopped:
+        nothing = f"Finite elements have no answer here: {levels.done[-1].stopped}"
+    elif len(levels.done) < LEAST_LEVELS:
+        nothing = "One level of finite elements alone does not tell its error."
+    return None, [note, nothing], more
 
 
 def _why_stopped(levels: LevelChain) -> tuple[str, str]:

@@ -129,7 +129,9 @@ def judge(
     """
     check_means(fidelity, budget_s)
     scene = scene.first_impact
-    intervals = [interval_of(key, ends) for key, ends in (_stated(scene) | dict(uncertain or {})).items()]
+    f = scene.surface.friction_low, scene.surface.friction_high
+    stated = {} if f[0] == f[1] else {FRICTION: f}
+    intervals = [interval_of(key, ends) for key, ends in {**stated, **(uncertain or {})}.items()]
     scenes = _places(scene, intervals)
     steps, notes, more = list[str](), list[str](), finite_elements(budget_s)
     lacking = not_reduced(Case(scene).bodies)
@@ -142,32 +144,26 @@ def judge(
     why = next((one.reason for one in found.values() if isinstance(one, Unknown)), "")
     worst = max(known, key=lambda place: known[place].value, default=(0.5,) * len(intervals))
     mildest = min(known, key=lambda place: known[place].value, default=worst)
-    bound, by, told = known.get(worst), "the reduced model", partial(_told, criterion)
+    bound, by = known.get(worst), "the reduced model"
     answer = _together([one.answer(limit) for one in known.values()], bool(why) or not known)
     if bound is not None:
         where = f" at the worst of {len(known)} places" if intervals else ""
-        steps.append(f"{by}: {told(bound)}{where}: {answer}")
+        steps.append(f"{by}: {_told(criterion, bound)}{where}: {answer}")
         tell(steps[-1])
     open_still = answer == "undecided" or not all(one.alike for one in known.values())
     if fidelity == "solid" or (fidelity == "auto" and open_still):
-        end, solids = perf_counter() + budget_s, dict[Place, Bound]()
-        for place in dict.fromkeys((worst, mildest)):
-            if any(one.answer(limit) != "yes" for one in solids.values()):
-                continue
-            means = max(end - perf_counter(), 1.0), workers
-            try:
-                pair = criterion.meshed(scenes[place])
-                solid, said, more = by_levels(pair, criterion.solid, told, limit, means, tell, steps)
-            except (SceneError, RunError) as refused:
-                solid, said, more = None, [f"Finite elements have no answer here: {refused}"], ""
-            notes += said
-            solids |= {} if solid is None else {place: solid}
+        two = {place: scenes[place] for place in (worst, mildest)}
+        solids, said, more = _by_solids(two, criterion, limit, (budget_s, workers), tell, steps)
+        notes += said
         if worst in solids:
             bound, by = solids[worst], "finite elements"
             answer = _together([one.answer(limit) for one in solids.values()], mildest not in solids)
             if answer == "yes" and intervals:
-                answer = _everywhere(solids, known, limit, bool(why))
-                notes += [CONFIRMED] if answer == "yes" else []
+                low = max(
+                    (one.high - known[at].value for at, one in solids.items() if at in known), default=inf
+                )
+                kept = worst in known and known[worst].value + low <= limit and not why
+                answer, notes = ("yes", [*notes, CONFIRMED]) if kept else ("undecided", notes)
     if bound is None and not steps:
         raise RunError(" ".join([*notes, why]))
     return LimitVerdict(
@@ -189,12 +185,6 @@ def judge(
         tuple(notes),
         more if answer == "undecided" else "",
     )
-
-
-def _stated(scene: Scene) -> dict[str, Ends]:
-    """Return the interval of friction of a scene, if it states one."""
-    low, high = scene.surface.friction_low, scene.surface.friction_high
-    return {} if low == high else {FRICTION: (low, high)}
 
 
 def _places(scene: Scene, intervals: Sequence[tuple[str, float, float, str]]) -> dict[Place, Scene]:
@@ -226,26 +216,39 @@ def _scanned(scenes: Mapping[Place, Scene], criterion: Criterion) -> dict[Place,
     return found
 
 
+def _by_solids(
+    scenes: Mapping[Place, Scene],
+    criterion: Criterion,
+    limit: float,
+    means: tuple[float, int],
+    tell: Tell,
+    steps: list[str],
+) -> tuple[dict[Place, Bound], list[str], str]:
+    """Return what finite elements say at places until one does not stay below the limit; notes; options.
+
+    ``means`` are the budget of all of them, s, and runs at a time.
+    """
+    (budget_s, workers), begun = means, perf_counter()
+    solids, notes, more, told = dict[Place, Bound](), list[str](), "", partial(_told, criterion)
+    for place, scene in scenes.items():
+        left = max(begun + budget_s - perf_counter(), 1.0), workers
+        try:
+            pair = criterion.meshed(scene)
+            found, said, more = by_levels(pair, criterion.solid, told, limit, left, tell, steps)
+        except (SceneError, RunError) as refused:
+            found, said, more = None, [f"Finite elements have no answer here: {refused}"], ""
+        notes += said
+        solids |= {} if found is None else {place: found}
+        if found is None or found.answer(limit) != "yes":
+            break
+    return solids, notes, more
+
+
 def _together(answers: Sequence[Answer], missing: bool) -> Answer:
     """Return the answer for all places: no if it is at one, yes if it is at each and none is missing."""
     if "no" in answers:
         return "no"
     return "yes" if {*answers} == {"yes"} and not missing else "undecided"
-
-
-def _everywhere(
-    solids: Mapping[tuple[float, ...], Bound],
-    known: Mapping[tuple[float, ...], Bound],
-    limit: float,
-    missing: bool,
-) -> Answer:
-    """Return the answer for all places where finite elements are content with the worst and the mildest.
-
-    As much as the reduced model is too low at one of them it counts as too low at all others.
-    """
-    offs = [solid.high - known[place].value for place, solid in solids.items() if place in known]
-    highest = max((one.value for one in known.values()), default=inf) + max(offs, default=inf)
-    return "yes" if highest <= limit and not missing else "undecided"
 
 
 def _in_unit(criterion: Criterion, number: float) -> str:

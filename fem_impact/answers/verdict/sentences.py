@@ -56,7 +56,7 @@ def box(v: Verdict) -> tuple[Line, Line, Line]:
 def _may(v: Verdict) -> str:
     return (
         f"{v.answer.upper()}: at this inclination, {degrees(v.scene.impact.angle):.4g} degrees, vibration "
-        f"changes {CALLED[v.here.of]} by {v.here.told}{doubt(v.here)}, by {v.here.models} (allowed: "
+        f"changes {CALLED[v.here.of]} by {v.here.told}{doubt(v.here)}, by {v.here.model} (allowed: "
         f"{v.tolerance:g}). "
         f"{_anywhere(v)}"
     )
@@ -93,7 +93,7 @@ def _vibration(v: Verdict) -> str:
         return f"{share}, which is below the numerical floor of the model"
     least, most = here.E_vib - here.E_vib_band, here.E_vib + here.E_vib_band
     range_ = f"0 to {100 * most:.2g} %" if least < 0 else f"± {half} %"
-    return f"{share} ({range_}: {here.error})"
+    return f"{share} ({range_}: error of {here.model})"
 
 
 def _rest(v: Verdict) -> str:
@@ -106,7 +106,7 @@ def _rest(v: Verdict) -> str:
         for share, part in named
         if part > LEAST_SHARE
     ]
-    kind = f"± {here.error}" if here.errors else f"by {here.model}"
+    kind = f"± error of {here.model}" if here.errors else f"by {here.model}"
     thick = f"the plate is {1e3 * (v.scene.barrier.thickness or 0.0):g} mm thick; " if plate else ""
     return f"{', '.join(listed)} ({kind}); {thick}{_heating(here)}"
 
@@ -310,10 +310,9 @@ def _change_entry(change: VibrationEffect) -> dict[str, Any]:
         "angle_rad": change.angle,
         "change": change.value,
         "band": change.band,
-        "rests_on": change.models,
+        "rests_on": change.model,
         "E_vib_over_E_0": change.E_vib,
         "E_vib_band": change.E_vib_band,
-        "energy_rests_on": change.model,
         "errors_over_E_0": dict(change.errors),
         "source": change.source,
     }

@@ -26,15 +26,24 @@ def sequence_verdict(scene: Scene, tolerance: float) -> list[str]:
     for strikes in (rigid, modal):
         if isinstance(strikes.each, Unknown):
             return [f"The sequence is not known: {strikes.each.reason}."]
-    number = known(modal.hardest_energy)
-    hardest = _hardest(rigid, modal, number, tolerance)
-    whole = hardest and _same_books(rigid, modal, tolerance)
+    number, E_0 = known(modal.hardest_energy), known(modal.each)[0].before
+    ours, theirs = (known(one.each)[:number] for one in (rigid, modal))
+    hardest = [one.part for one in ours] == [one.part for one in theirs]
+    if hardest:
+        hardest = abs(ours[-1].approach - theirs[-1].approach) <= tolerance * theirs[-1].approach
+        hardest &= abs(ours[-1].lost - theirs[-1].lost) <= tolerance * E_0
+    lost = [(known(one.friction), _all_lost(one)) for one in (rigid, modal)]
+    whole = hardest and all(abs(a - b) <= tolerance * E_0 for a, b in zip(*lost, strict=True))
+    rigidly, by_modes = (f"{lost_all:.3g} J, {rubbed:.3g} J of it by friction" for rubbed, lost_all in lost)
+    ratios = modal.other_end, rigid.other_end
+    ends = ("not by itself" if isinstance(one, Unknown) else f"{one:.3g} times" for one in ratios)
     return [
         f"{_answer(hardest)}: rigid theory for the hardest strike, number {number} by the reduced model: "
-        f"{_struck(known(modal.each)[number - 1])}; by rigid theory {_at(known(rigid.each), number)}.",
-        f"{_answer(whole)}: rigid theory for the whole sequence, which loses {_lost(modal)} by the reduced "
-        f"model and {_lost(rigid)} by rigid theory (allowed: {tolerance:g} of a speed and of E_0).",
-        _other_end(rigid, modal),
+        f"{_struck(theirs, number)}; by rigid theory {_struck(ours, number)}.",
+        f"{_answer(whole)}: rigid theory for the whole sequence, which loses {by_modes} by the reduced "
+        f"model and {rigidly} by rigid theory (allowed: {tolerance:g} of a speed and of E_0).",
+        "The other end strikes {} as fast as the first strike came by the reduced model, by rigid theory "
+        "{}.".format(*ends),
     ]
 
 
@@ -42,43 +51,12 @@ def _answer(holds: bool) -> str:
     return "YES" if holds else "NO"
 
 
-def _hardest(rigid: Strikes, modal: Strikes, number: int, tolerance: float) -> bool:
-    """Return whether both agree in a strike of a number, and in what strikes until then."""
-    ours, theirs = known(rigid.each)[:number], known(modal.each)[:number]
-    if [one.part for one in ours] != [one.part for one in theirs]:
-        return False
-    speed = abs(ours[-1].approach - theirs[-1].approach) <= tolerance * theirs[-1].approach
-    return speed and abs(ours[-1].lost - theirs[-1].lost) <= tolerance * theirs[0].before
-
-
-def _same_books(rigid: Strikes, modal: Strikes, tolerance: float) -> bool:
-    """Return whether both lose as much by friction and in all."""
-    E_0 = known(modal.each)[0].before
-    pairs = ((known(one.friction), _all_lost(one)) for one in (rigid, modal))
-    return all(abs(a - b) <= tolerance * E_0 for a, b in zip(*pairs, strict=True))
-
-
 def _all_lost(strikes: Strikes) -> float:
     return sum(known(part) for part in (strikes.friction, strikes.plastic, strikes.damping, strikes.settled))
 
 
-def _struck(one: StrikeRecord) -> str:
+def _struck(each: tuple[StrikeRecord, ...], number: int) -> str:
+    if len(each) < number:
+        return "there is no such strike"
+    one = each[number - 1]
     return f"the {one.part} at {one.approach:.3g} m/s, which takes {one.lost:.3g} J"
-
-
-def _at(each: tuple[StrikeRecord, ...], number: int) -> str:
-    return _struck(each[number - 1]) if len(each) >= number else "there is no such strike"
-
-
-def _lost(strikes: Strikes) -> str:
-    return f"{_all_lost(strikes):.3g} J, {known(strikes.friction):.3g} J of it by friction"
-
-
-def _other_end(rigid: Strikes, modal: Strikes) -> str:
-    """Return how much faster the other end strikes than the first end did, by both."""
-    ratios = (rigid.other_end, modal.other_end)
-    ours, theirs = ("not by itself" if isinstance(one, Unknown) else f"{one:.3g} times" for one in ratios)
-    return (
-        f"The other end strikes {theirs} as fast as the first strike came by the reduced model, by rigid "
-        f"theory {ours}."
-    )
