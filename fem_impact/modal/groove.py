@@ -105,7 +105,7 @@ def hardness(widest: float, law: FlowLaw) -> float:
     own = borne(widest, law.yield_stress, law.slope, law.exponent, law)
     other = borne(widest, law.other_yield_stress, law.other_slope, law.other_exponent, law)
     if not law.ploughs:
-        own *= 1.0 - atan(law.flank * widest / sqrt(law.R * law.R1)) / (1.0 + 0.5 * pi)
+        own *= 1.0 - atan(widest / sqrt(law.R * law.R1)) / (1.0 + 0.5 * pi)
     return min(own, other)
 
 

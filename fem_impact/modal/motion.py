@@ -193,7 +193,7 @@ class Touched(NamedTuple):
     Attributes
     ----------
     site : (s, 22) see `SiteIndex`
-    law, flow : (s, 10), (s, 18) numbers of a `ContactLaw` and a `FlowLaw`
+    law, flow : (s, 10), (s, 17) numbers of a `ContactLaw` and a `FlowLaw`
     place, width, shift : (s, SPRINGS) tangential springs: distances from the centre, widths and shifts, m
     depth, normal, sheared : (s, CELLS) cells, and ``state`` (s, 9), ``works`` (s, 3), J, ``size`` (s,), m, of
         a `fem_impact.modal.groove.Groove`

@@ -32,7 +32,7 @@ def flow_of(held: Touched, s: int, rubs: float = 1.0) -> FlowLaw:
     """Return the law of a site that yields, its friction times ``rubs``."""
     v = held.flow[s]
     shape, own = (v[0], v[1], v[2], v[3], v[4], v[5], v[6]), (v[7], v[8], v[9], v[10])
-    return FlowLaw(*shape, *own, rubs * v[11], v[12] > 0.0, v[13] > 0.0, v[14], v[15], v[16], v[17])
+    return FlowLaw(*shape, *own, rubs * v[11], v[12] > 0.0, v[13] > 0.0, v[14], v[15], v[16])
 
 
 @inlined

@@ -44,8 +44,6 @@ class FlowLaw(NamedTuple):
     friction : Coulomb's f
     ploughs : whether the barrier takes the groove; otherwise the tip is flattened
     yields : whether this law holds; otherwise nothing flows
-    flank : slope of the tip beside the contact over that of the parabola of R1, which is as wide and deep:
-        1 of a round tip, 1/2 of a corner
     other_yield_stress, other_slope, other_exponent : of the flow curve of the other body, which bears no more
         than its own hardness; infinite of one that does not yield
     """
@@ -64,23 +62,9 @@ class FlowLaw(NamedTuple):
     friction: float
     ploughs: bool
     yields: bool
-    flank: float = 1.0
     other_yield_stress: float = inf
     other_slope: float = 0.0
     other_exponent: float = 0.0
-
-
-def flank(wider: float) -> float:
-    """Return the slope of an arc with straight flanks over that of the parabola as wide and deep, at its rim.
-
-    ``wider`` is the radius of that parabola over the arc's.
-
-    Examples
-    --------
-    >>> flank(1.0), round(flank(1e12), 6)
-    (1.0, 0.5)
-    """
-    return 1 / (1 + sqrt(1 - 1 / wider))
 
 
 def flow_law(pair: ContactPair, rod: HardeningLaw | None, barrier: HardeningLaw | None) -> FlowLaw:
@@ -112,7 +96,6 @@ def flow_law(pair: ContactPair, rod: HardeningLaw | None, barrier: HardeningLaw 
         friction=pair.f,
         ploughs=pair.barrier_conforms,
         yields=flows,
-        flank=flank(size.wider),
         other_yield_stress=other_faster * other.yield_stress,
         other_slope=other.slope,
         other_exponent=other.exponent,

@@ -11,7 +11,7 @@ from fem_impact.modal.impact import drop_round
 from fem_impact.modal.laws import reach
 from fem_impact.modal.motion import CLOCK, SITE, SUM, Bounds, Start
 from fem_impact.physics.contact_law import ContactLaw, contact_law, restitution
-from fem_impact.physics.flow_law import FlowLaw, flank, flow_law
+from fem_impact.physics.flow_law import FlowLaw, flow_law
 from fem_impact.scene.shipped import load
 
 NU, R = 0.29, 9.5e-3
@@ -157,15 +157,6 @@ def test_a_tip_that_is_flattened_bears_less_the_steeper_its_flanks():
     for widest, H in ((1e-9, 2.5708), (0.5 * R, 2.5708 - 0.4636), (1e9, 1.0)):
         assert hardness(widest, tip) == pytest.approx(3 * 300e6 * H / 2.5708, rel=1e-3)
         assert hardness(widest, tip._replace(ploughs=True)) == pytest.approx(3 * 300e6, rel=1e-12)
-
-
-@pytest.mark.parametrize("arc", [1.0, 0.5, 0.1])
-def test_the_slope_of_straight_flanks_follows_from_width_and_depth(arc):
-    """Of a contact 2 mm wide whose middle, a share ``arc`` of it, is round with a radius of 5 mm."""
-    a, round_ = 1e-3, 5e-3
-    slope = arc * a / round_
-    depth = (arc * a) ** 2 / (2 * round_) + slope * (1 - arc) * a
-    assert flank(a**2 / (2 * depth) / round_) * 2 * depth / a == pytest.approx(slope, rel=1e-9)
 
 
 def test_no_body_bears_more_than_the_hardness_of_the_other_one():
