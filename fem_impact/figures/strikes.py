@@ -60,6 +60,24 @@ def path_picture(each: Sequence[StrikeRecord], shape: Outline, gravity: tuple[fl
     return Picture("path", caption, (panel,), 1)
 
 
+def tail_picture(curve: tuple[Sequence[float], Sequence[float]], own: tuple[float, float]) -> Picture:
+    """Return how many times as fast as the first the other end strikes over the inclination, rad.
+
+    ``curve`` is that of a rigid body, ``own`` the place of a run.
+    """
+    lines = (
+        Series("rigid theory, other values as stated", np.degrees(curve[0]), curve[1], "line", "ink"),
+        Series("this run", [np.degrees(own[0])], [own[1]], "triangles", "vermilion"),
+    )
+    panel = Panel(
+        "", "angle between axis and normal, degrees", "speed of the other end over the first", lines
+    )
+    caption = (
+        "The hardest strike of the other end beside the first strike; above 1 the other end comes faster."
+    )
+    return Picture("other-end", caption, (panel,), 1)
+
+
 def accounts_picture(each: Sequence[StrikeRecord]) -> Picture:
     """Return where the energy is after each strike, J, stacked."""
     number = np.arange(1, len(each) + 1)

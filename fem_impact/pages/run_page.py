@@ -18,7 +18,7 @@ from fem_impact.errors import ResultError, RunError, SceneError, UsageError
 from fem_impact.figures.panels import Picture
 from fem_impact.figures.runs import partition_picture
 from fem_impact.figures.still import draw
-from fem_impact.figures.strikes import accounts_picture, path_picture
+from fem_impact.figures.strikes import accounts_picture, path_picture, tail_picture
 from fem_impact.figures.style import percent
 from fem_impact.files.atomic import make_directory, read_text, write_text
 from fem_impact.files.digests import signed
@@ -28,6 +28,7 @@ from fem_impact.outcome.strike_text import spread_table, strikes_table, told
 from fem_impact.pages import html, sections
 from fem_impact.pages.html import Markup
 from fem_impact.physics.flash import ASSUMPTIONS
+from fem_impact.run.certain import other_end_curve
 from fem_impact.run.simulate import simulate
 from fem_impact.run.strikes import gravity_of
 from fem_impact.scene.inputs import inputs
@@ -176,9 +177,18 @@ def _strikes(outcome: Outcome, scene: Scene | None, folder: Path) -> Markup:
         html.paragraph(" ".join(told(outcome.strikes))),
         html.figure(path_picture(each, shape, pull), figures),
         html.figure(accounts_picture(each), figures),
+        *_other_end(outcome, scene, figures),
         html.details("Each strike of the path computed", html.table(strikes_table(outcome.strikes))),
         *([html.details("What strikes in 64 sequences", html.table(spread_table(spread)))] if spread else []),
     )
+
+
+def _other_end(outcome: Outcome, scene: Scene, figures: Path) -> list[Markup]:
+    """Return the chart of the other end's speed over the inclination, nothing where it does not strike."""
+    ratio = outcome.strikes.other_end
+    if isinstance(ratio, Unknown):
+        return []
+    return [html.figure(tail_picture(other_end_curve(scene), (scene.impact.angle, ratio)), figures)]
 
 
 def _stated(folder: Path) -> Scene | None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from math import pi
+from math import copysign, pi, radians
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -30,6 +30,8 @@ RUNS = 64
 """Sequences over what is not known."""
 SEEN = 6
 """Strikes of each that are looked at: later ones are as good as drawn by lot."""
+CURVE = radians(10.0), radians(86.0), 20
+"""First and last inclination, rad, of a curve over it, and how many."""
 INNER = 0.05, 0.95
 """Quantiles that are told."""
 EXACT = Unknown(
@@ -255,6 +257,22 @@ def _run(scene: Scene, each: Sequence[Known], e: float = 0.0, mu: float = 0.0) -
     body.moved, body.upto = moved, min(SEEN, scene.impact.most_strikes or SEEN)
     body.go_on(body.coming)
     return body.each
+
+
+def other_end_curve(scene: Scene) -> tuple[list[float], list[float]]:
+    """Return inclinations, rad, and how many times as fast as the first strike a rigid body's other end comes.
+
+    Inclinations at which it does not strike by itself are left out.
+    """
+    curve = []
+    for angle in np.linspace(*CURVE).tolist():
+        angle = copysign(angle, scene.impact.angle)
+        slope = scene.impact.vertical
+        impact = replace(scene.impact, angle=angle, slope=slope, height=None, speed=None)
+        run = _run(replace(scene, impact=impact), [])
+        ratio = or_none(other_end(run, scene.projectile.rigid_body.length))
+        curve += [(angle, ratio)] if ratio is not None else []
+    return [angle for angle, _ in curve], [ratio for _, ratio in curve]
 
 
 def _common(runs: Sequence[Sequence[StrikeRecord]]) -> int:

@@ -77,4 +77,5 @@ def test_the_page_of_a_run_shows_the_strikes(tmp_path):
     page = run_page(tmp_path)
     assert "From the first strike to rest" in page
     assert (tmp_path / "figures" / "path.svg").is_file()
+    assert (tmp_path / "figures" / "other-end.svg").is_file()
     assert (tmp_path / "strikes.csv").read_text().startswith("time_s,fidelity,part")

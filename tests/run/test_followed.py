@@ -302,6 +302,17 @@ def test_the_first_strikes_are_counted_over_the_interval_of_friction(floor):
     assert "not the error of rigid theory" in s.holds
 
 
+def test_the_curve_over_the_inclination_passes_through_the_scene():
+    """Without friction and losses the other end of a slender rod comes 3/2 (1 + e) - e = 2 times as fast."""
+    scene = rattling(restitution=1.0, surface__friction=0.0, impact__v_t="0 m/s", impact__until="2 strikes")
+    angles, ratios = certain.other_end_curve(replace(scene, "projectile.length", "300 mm"))
+    here = replace_all(
+        scene, {"projectile.length": "300 mm", "impact.angle": f"{math.degrees(angles[-3])} deg"}
+    )
+    assert simulate(here, "rigid").strikes.other_end == pytest.approx(ratios[-3], rel=1e-9)
+    assert ratios[-3] == pytest.approx(2.0, abs=0.15)
+
+
 def test_stated_errors_of_angle_and_speed_widen_what_is_told():
     """An elastic ball that falls straight down: its time and speed are known from the speed alone."""
     errors = {"strikes__speed_error": 0.1, "surface__friction": 0.5}
