@@ -260,7 +260,7 @@ def _run(scene: Scene, each: Sequence[Known], e: float = 0.0, mu: float = 0.0) -
 
 
 def other_end_curve(scene: Scene) -> tuple[list[float], list[float]]:
-    """Return inclinations, rad, and how many times as fast as the first strike a rigid body's other end comes.
+    """Return inclinations, rad, and the other end's speed over that of the first strike, of a rigid body.
 
     Inclinations at which it does not strike by itself are left out.
     """
