@@ -54,6 +54,7 @@ class Validation:
     distance, p : Mahalanobis' distance squared of their errors, and the probability of a larger one if the
         model has no error
     varied : fidelity in which the inputs were varied
+    doubtful : numbers in which that one is off the compared one by more than `COVERAGE` u_val
     runs : of that
     """
 
@@ -65,6 +66,7 @@ class Validation:
     distance: float
     p: float
     varied: str
+    doubtful: tuple[str, ...]
     runs: int
 
     @property
@@ -78,9 +80,9 @@ class Validation:
 
     @property
     def better(self) -> tuple[str, float]:
-        """What to measure better, an input or ``tests``, and its mean part of u_val squared."""
-        parts = self.shares.mean(axis=1)[:-1]
-        return (*self.inputs, "tests")[int(np.argmax(parts))], float(parts.max())
+        """What to know better, an input, ``tests`` or ``model``, and its mean part of u_val squared."""
+        parts = self.shares.mean(axis=1)
+        return (*self.inputs, "tests", "model")[int(np.argmax(parts))], float(parts.max())
 
 
 def validate(
@@ -168,6 +170,11 @@ def validate(
         distance=distance,
         p=p,
         varied=quick,
+        doubtful=tuple(
+            one.quantity
+            for one, i in zip(comparisons, seen, strict=True)
+            if abs(known(varied[i]) - one.S) > COVERAGE * one.u_val
+        ),
         runs=(len(intervals) + 2) * samples + 1,
     )
 
@@ -195,12 +202,12 @@ def sobol(
             left = (time.monotonic() - begun) / done * (count - done)
             meter(CaseProgress("of the uncertain inputs", done, count, left))
         drawn.append(np.array(rows).T)
-        return drawn[-1].copy()  # the indices centre what they are given
+        return np.concatenate([drawn[-1]] * 2)  # SciPy fails on one number of one input
 
     rng, uniform = np.random.default_rng(SEED), [stats.uniform()] * inputs
     indices = stats.sobol_indices(func=of_units, n=samples, dists=uniform, rng=rng)
-    shape = len(drawn[0]), inputs
-    return np.nan_to_num(np.reshape(indices.total_order, shape)).T, np.concatenate(drawn[:2], axis=1)
+    total = np.reshape(indices.total_order, (-1, inputs))[: len(drawn[0])]
+    return np.nan_to_num(total).T, np.concatenate(drawn[:2], axis=1)
 
 
 _TESTS = 'Name a file of tests in the scene: measured = "my_tests.csv".'

@@ -88,8 +88,16 @@ def _text(found: Validation, fidelity: str) -> str:
         "a model without error would be as far away."
     )
     name, part = found.better
-    better = f"Measure better: {name}. It holds {100 * part:.0f} % of u_val squared, mean of the numbers."
-    sentences = [joint, *(f"{name} is not compared: {why}" for name, why in found.unknown.items())]
+    holds = f"holds {100 * part:.0f} % of u_val squared, mean of the numbers"
+    better = f"Measure better: {name}. It {holds}."
+    if name == "model":
+        better = f"No test decides: u_num of the {fidelity} model {holds}. Use --fidelity solid, or finer levels."
+    doubt = (
+        f"{', '.join(found.doubtful)}: the {found.varied} model, in which the inputs were varied, is off the "
+        f"{fidelity} one by more than 2 u_val, so that u_input may be wrong. Give another --inputs-by."
+    )
+    sentences = [joint, *[doubt] * bool(found.doubtful)]
+    sentences += [f"{name} is not compared: {why}" for name, why in found.unknown.items()]
     return "\n".join(
         [
             *wrapped(better),

@@ -45,6 +45,21 @@ def test_errors_and_parts_of_a_number_with_a_known_answer(tmp_path):
     assert found.runs == 32 * 4 + 1
 
 
+def test_one_number_of_one_input_has_all_of_its_uncertainty(tmp_path):
+    found = validate(scene_with(tmp_path, MU), {"surface.friction": F}, "rigid", samples=64)
+    assert found.total == pytest.approx(np.ones((1, 1)), abs=0.1)
+    assert not found.doubtful
+
+
+def test_a_model_that_is_known_least_and_inputs_of_another_model_are_told(tmp_path):
+    scene = scene_with(tmp_path, "quantity,mean,sd,n,systematic\nOmega_rad_per_s,1,0.1,4,0\n")
+    found = validate(scene, {"surface.friction": (0.249, 0.251)}, "modal", samples=2, inputs_by="rigid")
+    assert found.better[0] == "model" and found.better[1] == pytest.approx(1, abs=0.01)
+    (omega,) = found.comparisons
+    off = abs(simulate(scene, "rigid").motion.Omega - omega.S)
+    assert found.doubtful == (("Omega",) if off > 2 * omega.u_val else ())
+
+
 def test_one_uncertain_input_moves_several_numbers():
     found = validate(load("t5b"), fidelity="rigid", samples=2)
     assert found.total.shape == (1, 8) and found.shares.shape == (3, 8)
