@@ -62,7 +62,7 @@ def test_a_contact_wider_than_the_plate_is_one_for_finite_elements():
     planned = Case.of(scene)
     assert planned.slots.bending > 0
     assert about(texts(planned.limitations, "model"), f"the contact is {width} wide")
-    with pytest.raises(SceneError, match=rf"less than the width of the contact, {width}.*or use --fidelity"):
+    with pytest.raises(SceneError, match=rf"less than the width of the contact, {width}.*or use fidelity"):
         Case.of(scene, "modal")
     assert not_reduced(Case(scene).bodies) == "a plate thinner than its contact is wide"
     assert not_reduced(Case(stated("5 mm")).bodies) == ""

@@ -104,7 +104,7 @@ def test_each_fidelity_computes_what_is_added_or_refuses_it(tmp_path):
     for fidelity, name in refused:
         told = found[fidelity, name]
         assert told.startswith("SceneError") and f'effects = "{name}"' in told
-        assert f"not computed by the fidelity {fidelity}" in told and "Use --fidelity" in told
+        assert f"not computed by the fidelity {fidelity}" in told and "Use fidelity" in told
     for key in set(found) - refused:
         assert abs(found[key]["residual"]) < 1e-4
         assert key[1] == "waxed" or found[key]["effects"][2:] == ([key[1]] if key[1] else [])
