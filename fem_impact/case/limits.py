@@ -9,7 +9,7 @@ from dataclasses import replace
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.effects.slots import ModelSpec
 from fem_impact.case.plates import is_wider, thin_plate
-from fem_impact.case.shaft import shaft_flows
+from fem_impact.case.shaft import coned, shaft_flows
 from fem_impact.errors import SceneError
 from fem_impact.outcome.limitation import Limitation, limitations
 from fem_impact.physics.contact import FLAT
@@ -21,7 +21,6 @@ from fem_impact.scene.shipped import replace as change
 from fem_impact.scene.strikes import Following
 from fem_impact.scene.types import Scene
 from fem_impact.scene.units import format_quantity
-from meshes import shoulders
 from rigid import Faceted, Turned
 
 BESIDE_AXIS = 1e-3  # of the diameter, within which an upright body stands over its mass centre
@@ -80,7 +79,7 @@ def scene_limitations(bodies: Bodies, meshed_through: bool) -> tuple[Limitation,
         *(_masses(mesh) if mesh is not None else ()),
         BONDED_LAYERS if scene.barrier.layers else "",
         thin_plate(bodies, meshed_through),
-        _cones(bodies),
+        coned(bodies),
         f"idealised: without {', '.join(missing)}; no test corresponds to it" if missing else "",
         _unstated_slope(scene.impact),
     )
@@ -93,16 +92,6 @@ def _unstated_slope(impact: Impact) -> str:
         return ""
     beside = ", though the rod does not move along its axis" if abs(impact.beside) > BESIDE else ""
     return SLOPE.format(math.degrees(impact.angle), beside)
-
-
-def _cones(bodies: Bodies) -> str:
-    """Say where meshes have a cone in place of a shoulder."""
-    if not isinstance(bodies.body, Turned):
-        return ""
-    places = [f"{z * 1e3:.3g} mm" for z, _ in shoulders.eased(bodies.body.outline)[1]]
-    return f"in a mesh the shoulder {' and '.join(places)} from the tip is a cone of 63 degrees" * bool(
-        places
-    )
 
 
 def _masses(mesh: OwnMesh) -> list[str]:

@@ -1,4 +1,4 @@
-"""Whether the shaft of a projectile flows along its length, which only finite elements compute."""
+"""What models leave out of a projectile's shaft: that it flows along its length, and sharp shoulders."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ from math import cos, pi, sqrt
 from typing import TYPE_CHECKING
 
 from fem_impact.physics.stepped_beam import sections
+from meshes import shoulders
+from rigid import Turned
 
 if TYPE_CHECKING:
     from fem_impact.case.bodies import Bodies
@@ -31,3 +33,13 @@ def shaft_flows(bodies: Bodies) -> str:
         return ""
     told = f"{stress / 1e6:.3g} MPa over {rod.yield_stress / 1e6:.3g} MPa"
     return f"a shaft that would yield along its length (axial stress, estimated: {told})"
+
+
+def coned(bodies: Bodies) -> str:
+    """Say where meshes have a cone in place of a shoulder; empty of a body without one."""
+    if not isinstance(bodies.body, Turned):
+        return ""
+    places = [f"{z * 1e3:.3g} mm" for z, _ in shoulders.eased(bodies.body.outline)[1]]
+    return f"in a mesh the shoulder {' and '.join(places)} from the tip is a cone of 63 degrees" * bool(
+        places
+    )

@@ -91,7 +91,9 @@ def _text(found: Validation, fidelity: str) -> str:
     holds = f"holds {100 * part:.0f} % of u_val squared, mean of the numbers"
     better = f"Measure better: {name}. It {holds}."
     if name == "model":
-        better = f"No test decides: u_num of the {fidelity} model {holds}. Use --fidelity solid, or finer levels."
+        better = (
+            f"No test decides: u_num of the {fidelity} model {holds}. Use --fidelity solid, or finer levels."
+        )
     doubt = (
         f"{', '.join(found.doubtful)}: the {found.varied} model, in which the inputs were varied, is off the "
         f"{fidelity} one by more than 2 u_val, so that u_input may be wrong. Give another --inputs-by."

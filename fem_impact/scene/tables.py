@@ -24,7 +24,7 @@ OTHER_NAMES = {
 PLACES = {
     f.key: place
     for place, wanted in (
-        ("a material", material_fields.MATERIAL),
+        ("a material: projectile.material or barrier.material", material_fields.MATERIAL),
         ("[surface]", fields.SURFACE),
         ("[impact]", (*fields.IMPACT, fields.SLOPE, fields.HEIGHT, fields.SPEED)),
         ("[accuracy]", fields.ACCURACY),

@@ -104,8 +104,13 @@ class LevelChain:
         """
         out = self.options.out
         with nullcontext() if out is None else directory_lock(out):
-            if out is not None:
-                self._begin(out)
+            if out is not None and not (self.options.resume and is_resumable(out)):
+                begin(self.scene, out)
+            elif out is not None and read_text(out / "scene.toml") != to_toml(self.scene):
+                raise ResultError(
+                    f"{out / 'scene.toml'}: is another scene than the one that is to go on. Go on with that "
+                    "one, or do not resume: the older run is kept beside the new one."
+                )
             self.refine()
             outcome = self._stated()
             if out is not None:
@@ -136,16 +141,6 @@ class LevelChain:
                 self.failed = str(error)
                 return
             splits = self._next
-
-    def _begin(self, out: Path) -> None:
-        """Make the directory ready for a new run, or go on with what an interrupted one left there."""
-        if not (self.options.resume and is_resumable(out)):
-            begin(self.scene, out)
-        elif read_text(out / "scene.toml") != to_toml(self.scene):
-            raise ResultError(
-                f"{out / 'scene.toml'}: is another scene than the one that is to go on. Go on with that one, "
-                "or do not resume: the older run is kept beside the new one."
-            )
 
     @cached_property
     def meshes(self) -> LevelMeshes:
@@ -181,11 +176,9 @@ class LevelChain:
     @property
     def _decided(self) -> bool:
         """Whether the levels so far are enough for an answer, of which two at least are needed."""
-        if len(self.done) < 2:
-            return False
-        if self.decides is not None:
-            return self.decides(self.done)
-        return self._reached(self._errors)
+        return len(self.done) > 1 and (
+            self.decides(self.done) if self.decides else self._reached(self._errors)
+        )
 
     @property
     def _errors(self) -> dict[str, float]:
