@@ -50,8 +50,8 @@ class Place(NamedTuple):
     yields : speed of approach over that at which the contact begins to yield
     rings : first bending period over the estimated time of contact
     sticks : friction over the impulse ratio at which sliding stops
-    wall, edge : wall of a tube, or radius of a solid body, and radius of the edge that touches, over the
-        estimated depth of the contact
+    wall, edge : wall of a tube, or largest radius of a solid body within half a diameter of where it touches,
+        and radius of the edge that touches, over the estimated depth of the contact
     turns : mass of the body over that which its contact feels
     """
 
@@ -82,13 +82,17 @@ def place_at(pair: ContactPair, bending_period: float, stops: float) -> Place:
     """Return where an impact stands: how both touch, period, s, and the ratio at which sliding stops."""
     law, depth = contact_law(pair), pair.estimate.depth
     begins = sqrt(0.8 * law.yield_force * law.yield_depth / pair.effective_mass) if law.limit < inf else inf
-    x, z = pair.touch_point
-    bore = float(pair.body.inner_radius(np.array(z))) if hasattr(pair.body, "inner_radius") else 0.0
+    body, (x, z) = pair.body, pair.touch_point
+    bore = float(body.inner_radius(np.array(z))) if hasattr(body, "inner_radius") else 0.0
+    # a solid nose that touches with its pole is no thin wall: its body begins within half a diameter
+    near = (
+        z if bore else np.clip(np.linspace(z - 0.5 * body.diameter, z + 0.5 * body.diameter), 0, body.length)
+    )
     numbers = Place(
         yields=pair.approach / begins,
         rings=bending_period / pair.estimate.duration,
         sticks=pair.f / abs(stops) if stops else inf,
-        wall=(max(abs(float(pair.body.radius(np.array(z)))), abs(x)) - bore) / depth,
+        wall=(max(float(body.radius(np.asarray(near)).max()), abs(x)) - bore) / depth,
         edge=pair.principal_radii[0] / depth,
         turns=pair.reduced[0] / pair.effective_mass,
     )
