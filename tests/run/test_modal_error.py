@@ -21,6 +21,7 @@ from fem_impact.run.modal_error import (
     scale_of,
     stored,
 )
+from fem_impact.scene.read import read_dict
 
 
 def drawn(n, seed):
@@ -98,3 +99,18 @@ def test_an_outcome_tells_half_widths_in_its_units_and_what_it_is_unlike(monkeyp
     assert half_widths(near, later)["mu"] > halves["mu"]
     told = " ".join(texts(outcome.validity.limitations, "model"))
     assert f"{len(stored().places)} scenes" in told and "None of them" not in told
+
+
+def test_a_ball_that_touches_with_its_pole_has_no_thin_wall():
+    ball = read_dict(
+        {
+            "id": "ball",
+            "projectile": {"shape": "ball", "diameter": "20 mm", "material": "rod-steel"},
+            "barrier": {"material": "plate-steel"},
+            "surface": {"state": "machined"},
+            "impact": {"angle": "0 deg", "v_n": "-3 m/s", "v_t": "0 m/s"},
+        }
+    )
+    case = Case.of(ball, "modal")
+    place = modal_error.place_at(case.contact, case.bodies.bending_period, 0.0)
+    assert place.wall == pytest.approx(min(log10(0.01 / case.contact.estimate.depth), 2.0))
