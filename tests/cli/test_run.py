@@ -242,6 +242,7 @@ def test_every_limitation_is_printed_after_its_kind(cli, stand):
     assert "\n\nrange: Too fast.\nmodel: No waves.\n" in shares
 
 
+@pytest.mark.slow
 def test_vibration_above_the_modes_is_listed_so_that_the_shares_add_up(cli):
     """A blunt end on a rigid plane excites shapes that the modes do not hold."""
     changes = ("impact.angle=0 deg", "effects=auto,barrier-rigid", "accuracy.levels=1")

@@ -276,7 +276,7 @@ def closed_tubes(draw):
     return line, bore
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=20, deadline=None)
 @given(closed_tubes(), st.sampled_from([6, 8, 10, 12]), st.floats(0.0, 1.0), st.integers(1, 3))
 def test_a_random_closed_tube_is_refused_unrefined_or_never_folds(tube, across, place, levels):
     """What is meshed without a fine zone is meshed with one, too: `check` tries the first alone."""

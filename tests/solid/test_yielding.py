@@ -83,7 +83,7 @@ def turn(axis, angle):
 
 
 @pytest.mark.parametrize("kind", ["bbar", "full"])
-@pytest.mark.parametrize("counts", [(1, 1, 1), (5, 1, 1), (3, 3, 2)])
+@pytest.mark.parametrize("counts", [(1, 1, 1), (3, 3, 2)])
 def test_small_increments_see_the_stiffness_of_their_element(counts, kind):
     points, cells = shapes.distorted(counts, 0.2, seed=1)
     rig = Rig(points, cells, full=kind == "full")

@@ -34,6 +34,7 @@ def test_a_coarse_tip_on_a_rigid_plane():
     assert values["impulse ratio mu"].tolerance < 2e-3
 
 
+@pytest.mark.slow
 def test_a_coarse_tip_on_a_block_leans_and_bends():
     """A reference without them, its contacts half-spaces, has mu = 0.55 and a bending energy of 0.0058."""
     found = verify("oblique-rod", COARSE | {"f": 0.55})

@@ -13,6 +13,7 @@ def checks(found):
     return {c.name: c for c in found.checks}
 
 
+@pytest.mark.slow
 def test_a_coarse_bar_is_near():
     """Slices of half the radius: the error of such a mesh is told as large as it is."""
     done = verify("taylor", COARSE)

@@ -30,6 +30,7 @@ def test_a_coarse_sphere_on_a_plane_is_a_finite_ball(speed):
     assert abs(found["rebound + radiated energy / E_0"]) < 1e-3
 
 
+@pytest.mark.slow
 def test_a_coarse_sphere_on_a_block_radiates_as_into_a_half_space():
     values = {"cells": 4, "across": 8, "speed": 2.0, "nu": 0.2}
     done = verify("hertz", values)

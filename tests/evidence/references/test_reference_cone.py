@@ -22,6 +22,7 @@ def test_a_cone_that_does_not_yield_is_sneddons(monkeypatch):
     assert radius == pytest.approx(2 * tan(flat) / pi, rel=0.03)
 
 
+@pytest.mark.slow
 def test_pressure_and_radius_change_with_the_cells_by_their_first_order_error_alone():
     found = {n: cone.indent(STEEL, ANGLE, 0.2, n).coefficients() for n in (4, 6, 8)}
     limits = 2 * found[8] - found[4], found[8] + 3 * (found[8] - found[6])
