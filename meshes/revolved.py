@@ -148,7 +148,8 @@ def revolved(line: FloatArray, bore: FloatArray | None, across: int) -> Revolved
             "the edge in, without a rim of no thickness"
         )
     face, tail = line[:, 1] <= 0.0, line[:, 1] >= line[-1, 1]
-    line, _ = eased(np.concatenate([line[:1], line[face][1:][-1:], line[~face & ~tail], line[tail][:1]]))
+    line = np.concatenate([line[:1], line[face][1:][-1:], line[~face & ~tail], line[tail][:1]])
+    line, _ = eased(line, across)
     inner = np.zeros((0, 2)) if bore is None else np.array(bore, np.float64)
     plain = Revolved(line, inner, section(across), across)
     if plain.is_stack:

@@ -11,22 +11,25 @@ STEEPEST = np.tan(np.deg2rad(75.0))  # of the radius over z between two sections
 SPREAD = 0.5  # length of a cone over the step of the radius
 
 
-def eased(line: FloatArray) -> tuple[FloatArray, list[tuple[float, float]]]:
-    """Return the outline (k, 2) (rho, z), m, with a cone for each shoulder, and z and length, m, of each.
+def eased(line: FloatArray, across: int) -> tuple[FloatArray, list[float]]:
+    """Return the outline (k, 2) (rho, z), m, with a cone for each shoulder, and the heights, m, of these.
 
     A shoulder is a step of the radius between two corners, steeper than sections of hexahedra can follow. Its
     cone is half as long as the step is high and has the same volume between straight neighbours; one that
-    finds no room between them stays as it is. Faces at both ends are no shoulders.
+    finds no room between them stays as it is. So does a step of less than two cells, ``across`` over the
+    diameter: its cone would be a row of slivers, and one row of cells can follow it. Faces at both ends are
+    no shoulders.
     """
     rise, along = np.diff(line, axis=0).T
     turn = np.abs(np.diff(np.arctan2(rise, along)))
-    new, cones = line.copy(), list[tuple[float, float]]()
+    new, cones = line.copy(), list[float]()
     for k in range(1, len(line) - 2):
         (before, low), (after, high) = line[k], line[k + 1]
         steep = abs(rise[k]) > STEEPEST * along[k] and min(turn[k - 1], turn[k]) > CORNER
-        if not steep or min(before, after) <= 0.0:
+        length, cell = SPREAD * abs(rise[k]), 2.0 * min(before, after) / across
+        if not steep or min(before, after) <= 0.0 or length < cell:
             continue
-        half = 0.5 * SPREAD * abs(rise[k])
+        half = 0.5 * length
         middle = 0.5 * (low + high) - half * (after - before) / (3.0 * (after + before))  # the same volume
         ends = np.array([middle - half, middle + half])
         if new[k - 1, 1] < ends[0] and ends[1] < line[k + 2, 1]:
@@ -34,5 +37,5 @@ def eased(line: FloatArray) -> tuple[FloatArray, list[tuple[float, float]]]:
                 np.interp(z, *line[at : at + 2, ::-1].T) for z, at in zip(ends, (k - 1, k + 1), strict=True)
             ]
             new[k : k + 2] = np.stack([radii, ends], axis=1)
-            cones.append((float(0.5 * (low + high)), float(2.0 * half)))
+            cones.append(float(0.5 * (low + high)))
     return new, cones

@@ -39,7 +39,6 @@ def coned(bodies: Bodies) -> str:
     """Say where meshes have a cone in place of a shoulder; empty of a body without one."""
     if not isinstance(bodies.body, Turned):
         return ""
-    places = [f"{z * 1e3:.3g} mm" for z, _ in shoulders.eased(bodies.body.outline)[1]]
-    return f"in a mesh the shoulder {' and '.join(places)} from the tip is a cone of 63 degrees" * bool(
-        places
-    )
+    _, heights = shoulders.eased(bodies.body.outline, bodies.scene.across)
+    places = " and ".join(f"{z * 1e3:.3g} mm" for z in heights)
+    return f"in a mesh the shoulder {places} from the tip is a cone of 63 degrees" if places else ""

@@ -22,20 +22,31 @@ def volume(line):
 
 @pytest.mark.parametrize(("line", "within"), [(PIN, 1e-12), (UNDER, 2e-2)])
 def test_the_cone_has_the_volume_of_the_shoulder_between_straight_neighbours(line, within):
-    new, ((_, length),) = eased(line)
+    new, (place,) = eased(line, 8)
+    assert place == line[2, 1]
     assert volume(new) == pytest.approx(volume(line), rel=within)
-    assert length == pytest.approx(0.5 * abs(line[3, 0] - line[2, 0]))
-    assert not eased(new)[1], "the cone is no shoulder itself"
+    assert new[3, 1] - new[2, 1] == pytest.approx(0.5 * abs(line[3, 0] - line[2, 0]))
+    assert not eased(new, 8)[1], "the cone is no shoulder itself"
 
 
 @pytest.mark.parametrize("line", [PIN, UNDER, PIN[::-1] * [1, -1] + [0, 0.18]])
 def test_a_body_with_a_shoulder_is_meshed(line):
     line = line if line[0, 0] == 0 else np.concatenate([[[0.0, 0.0]], line[:-1]])
     body = meshes.turned(line, 8).mesh
-    assert 2 * meshes.volume(body) == pytest.approx(volume(eased(line)[0]), rel=0.02)
+    assert 2 * meshes.volume(body) == pytest.approx(volume(eased(line, 8)[0]), rel=0.02)
 
 
 def test_faces_and_gentle_steps_stay():
     plain = np.array([[0, 0], [4e-3, 0], [4e-3, 0.05], [5e-3, 0.06], [5e-3, 0.1], [0, 0.1]])
-    new, cones = eased(plain)
+    new, cones = eased(plain, 8)
     assert np.array_equal(new, plain) and not cones
+
+
+@pytest.mark.parametrize("step", [0.2e-3, 1e-3])
+def test_a_small_step_makes_no_row_of_slivers(step):
+    line = np.array([[0, 0], [6e-3, 0], [6e-3, 0.05], [6e-3 + step, 0.05], [6e-3 + step, 0.12]])
+    mesh = meshes.turned(line, 8).mesh
+    corners = mesh.points[mesh.cells]
+    near = np.abs(corners[:, :, 2].mean(axis=1) - 0.05) < 6e-3
+    rows = corners[near, 4:, 2].mean(axis=1) - corners[near, :4, 2].mean(axis=1)
+    assert rows.min() > 0.9 * 2 * 6e-3 / 8
