@@ -22,21 +22,26 @@ from fem_impact.scene.units import DIMENSIONS, parse_quantity
 from fem_impact.scene.write import to_dict
 
 
-def load(id_or_path: str | Path) -> Scene:
-    """Return a shipped scene by its id, or read a scene file.
+def load(id_or_path: str | Path | Mapping[str, Any]) -> Scene:
+    """Return a shipped scene by its id, or read a scene from a file or from a table with a file's keys.
+
+    Numbers and arrays of numpy may stand in the table, and paths of mesh files as `Path`; a path that is not
+    absolute counts from the working folder.
 
     Raises
     ------
     UsageError
         For an unknown id or a missing file.
     SceneError
-        For any mistake in the file.
+        For any mistake in the file or table.
 
     Examples
     --------
     >>> load("t5b").projectile.length
     0.08
     """
+    if isinstance(id_or_path, Mapping):
+        return read_dict(plain_value(id_or_path), "scene")
     name = os.fspath(id_or_path)
     if name in shipped():
         return _shipped(name)

@@ -176,3 +176,16 @@ def test_an_unknown_scene_is_answered_with_the_nearest_name():
         load("t5bb")
     with pytest.raises(UsageError, match=r"no such file.*Did you mean quick"):
         read_toml("nowhere/qick.toml")
+
+
+def test_a_scene_is_read_from_a_table_with_numbers_of_numpy(tmp_path):
+    table = to_dict(load("quick"))
+    table["impact"] = {
+        "angle_rad": np.radians(45.0),
+        "v_n_m_per_s": np.float64(-1.5),
+        "v_t_m_per_s": np.array(0.25),
+    }
+    scene = load({key: value for key, value in table.items() if key not in ("measured", "title")})
+    assert (scene.impact.v_n, scene.impact.v_t) == (-1.5, 0.25)
+    with pytest.raises(SceneError, match="lenght"):
+        load({**table, "projectile": {**table["projectile"], "lenght": "1 m"}})
