@@ -114,8 +114,8 @@ def _mesh(bodies: Bodies, zones: AnyZones, vibrating: bool) -> RodMesh:
             near = rod.mesh.cells[zones.rod_flow(rod.mesh, place)]
             end = float(rod.mesh.points[near, 2].max())  # past all that may yield
             rod = RodMesh.cut(rod.mesh, max(end, bodies.rod.diameter / 3))
-        if not len(rod.rest_cells):
-            raise no_rest()
+        if len(rod.rest_cells) in (0, len(rod.mesh.cells)):
+            raise no_rest()  # a disc may be slices alone, and then no cell is left that could touch
         rod = meshes.without_slices(rod, rest_points(bodies, rod.body_start))
     return rod
 
