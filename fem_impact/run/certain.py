@@ -181,7 +181,7 @@ def _by_stored(case: Case, body: Followed, begin: State, one: StrikeRecord) -> D
     )
     place, table = np.array(place_at(pair, case.bodies.bending_period, stops)), stored()
     e, mu, friction = (
-        table.half_width(place, TOLD.index(name), bool(table.outside(place)))
+        table.half_width(place, TOLD.index(name), table.far(place))
         for name in ("e_edge", "mu", "W_friction_over_E_0")
     )
     return Doubt(e, mu, friction * one.before)

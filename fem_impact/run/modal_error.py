@@ -118,18 +118,24 @@ class Stored:
     places: Array
     errors: Array
 
-    def half_width(self, place: Array, of: int, unlike: bool = False) -> float:
+    def half_width(self, place: Array, of: int, far: float = 0.0) -> float:
         """Return the half-width, as ``errors`` are, of the number of a column at a place (6,).
 
-        Of a scene ``unlike`` the stored ones it is at least the widest that one of them would be told.
+        Of a scene that lies so ``far``, 0 to 1, beyond the stored ones it has gone this share of its way to
+        the widest that one of them would be told, unless it is wider.
         """
         known = np.isfinite(self.errors[:, of])
         places, errors = self.places[known], self.errors[known, of]
         expected = _expected(places, errors, self.places.std(axis=0))
-        if unlike:
-            return float((errors / expected).max() * expected.max())
         halves = np.sort(errors / expected * _expected(places, errors, self.places.std(axis=0), place))
-        return float(halves[min(ceil(HELD * (len(errors) + 1)), len(errors)) - 1])
+        own = float(halves[min(ceil(HELD * (len(errors) + 1)), len(errors)) - 1])
+        return own + far * max(float((errors / expected).max() * expected.max()) - own, 0.0)
+
+    def far(self, place: Array) -> float:
+        """Return how far a place (6,) lies beyond all stored ones, from 0 to 1 at `NEAR` spreads."""
+        ends = self.places.min(axis=0), self.places.max(axis=0)
+        beyond = np.abs(place - np.clip(place, *ends)) / (NEAR * self.places.std(axis=0))
+        return float(min(beyond.max(), 1.0))
 
     def outside(self, place: Array) -> tuple[str, ...]:
         """Return which numbers of a place (6,) lie beyond all stored ones, as `CALLED`."""
@@ -161,7 +167,7 @@ def scale_of(key: str, outcome: Outcome) -> float:
 
 def half_widths(place: Place, outcome: Outcome) -> dict[str, float]:
     """Return half-widths, by key, of those numbers of `TOLD` that an outcome of the reduced model knows."""
-    at, table, far = np.array(place), stored(), bool(unlike(place, outcome))
+    at, table, far = np.array(place), stored(), farness(place, outcome)
     halves = {
         key: table.half_width(at, of, far) * scale_of(key, outcome)
         for of, key in enumerate(TOLD)
@@ -172,29 +178,38 @@ def half_widths(place: Place, outcome: Outcome) -> dict[str, float]:
     return halves
 
 
-def factor_of(place: Place, name: str, far: bool) -> float:
+def factor_of(place: Place, name: str, far: float) -> float:
     """Return the factor that holds nine in ten ratios of both models in one of `FACTORS` at a place.
 
-    Of a scene ``far`` from the stored ones it is the widest.
+    It is wider of a scene that lies ``far``, 0 to 1, beyond the stored ones.
     """
     return exp(stored().half_width(np.array(place), len(TOLD) + FACTORS.index(name), far))
 
 
 def unlike(place: Place, outcome: Outcome) -> tuple[str, ...]:
     """Return in what a scene is unlike all stored ones, of which one place touched."""
-    sites = or_none(outcome.contact.sites) or ()
-    several = ("the number of places that touch",) if len(sites) > 1 else ()
+    several = ("the number of places that touch",) if _touches_twice(outcome) else ()
     return (*stored().outside(np.array(place)), *several)
 
 
+def farness(place: Place, outcome: Outcome) -> float:
+    """Return how far a scene lies beyond the stored ones, 0 to 1; 1 where several places touch."""
+    return 1.0 if _touches_twice(outcome) else stored().far(np.array(place))
+
+
+def _touches_twice(outcome: Outcome) -> bool:
+    return len(or_none(outcome.contact.sites) or ()) > 1
+
+
 def sentence(place: Place, outcome: Outcome) -> str:
-    """Say what the half-widths are, and where they are those of unlike scenes."""
+    """Say what the half-widths are, and where they are wider as the scene is unlike the stored ones."""
     told = (
         f"Half-widths hold nine in ten results of finite elements, by {len(stored().places)} scenes that "
         "both models computed; they say nothing of the change of a number by vibration."
     )
-    far = unlike(place, outcome)
-    return f"{told} None of them is like this one in {', '.join(far)}: the widest count." if far else told
+    in_what, far = unlike(place, outcome), 100 * farness(place, outcome)
+    wider = "the widest count" if far == 100 else f"wider by {far:.2g} % of the way to the widest"
+    return f"{told} None of them is like this one in {', '.join(in_what)}: {wider}." if in_what else told
 
 
 @cache

@@ -51,14 +51,42 @@ def test_scenes_of_one_place_give_the_order_statistic_of_their_errors():
     assert half == pytest.approx(18.0, rel=1e-9)
 
 
-def test_numbers_that_are_not_known_do_not_count_and_unlike_scenes_get_the_widest():
+def test_numbers_that_are_not_known_do_not_count():
     places, errors = drawn(60, 3)
     some = Stored(places, np.where(np.arange(60)[:, None] < 30, errors, np.nan))
     assert some.half_width(places[0], 0) == Stored(places, np.hstack([some.errors])).half_width(places[0], 0)
-    table, far = Stored(places, errors), places[0].copy()
-    far[2] = 5.0
-    assert table.outside(far) == (CALLED[2],) and table.outside(places[0]) == ()
-    assert table.half_width(far, 0, unlike=True) >= max(table.half_width(place, 0) for place in places)
+
+
+def test_a_half_width_grows_to_the_widest_as_a_scene_lies_beyond_the_stored_ones():
+    table = Stored(*drawn(60, 3))
+    near, half, far = (table.places[0].copy() for _ in range(3))
+    end, spread = table.places[:, 2].max(), table.places[:, 2].std()
+    near[2], half[2], far[2] = end, end + 0.75 * spread, 5.0
+    assert table.outside(half) == table.outside(far) == (CALLED[2],) and table.outside(near) == ()
+    assert (table.far(near), table.far(far)) == (0.0, 1.0)
+    assert table.far(half) == pytest.approx(0.5)
+    own, widest = table.half_width(half, 0), table.half_width(half, 0, 1.0)
+    assert widest >= max(table.half_width(place, 0) for place in table.places) > own
+    assert table.half_width(half, 0, table.far(half)) == pytest.approx(0.5 * (own + widest))
+
+
+def test_scenes_at_either_end_of_each_number_are_held_by_the_others():
+    """A fifth of the stored scenes at an end is cut off, so that it lies beyond the rest, and judged by it."""
+    every, held = stored(), list[bool]()
+    for number in range(len(CALLED)):
+        for side in (1.0, -1.0):
+            at = side * every.places[:, number]
+            inner = at <= np.quantile(at, 0.8)
+            rest = Stored(every.places[inner], every.errors[inner])
+            for place, errors in zip(every.places[~inner], every.errors[~inner], strict=True):
+                far = rest.far(place)
+                assert far > 0.0
+                held += [
+                    errors[of] <= rest.half_width(place, of, far)
+                    for of in (0, 1, 4)
+                    if np.isfinite(errors[of])
+                ]
+    assert len(held) > 200 and np.mean(held) > HELD
 
 
 def test_a_scene_stands_where_its_numbers_say():

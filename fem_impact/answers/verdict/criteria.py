@@ -31,7 +31,7 @@ from fem_impact.outcome.record import Outcome
 from fem_impact.physics.contact_law import contact_law
 from fem_impact.physics.flash import flash
 from fem_impact.run.modal import closed, reduce
-from fem_impact.run.modal_error import factor_of, place_of, unlike
+from fem_impact.run.modal_error import factor_of, farness, place_of
 from fem_impact.scene.fields import LEVELS
 from fem_impact.scene.types import Scene
 
@@ -130,9 +130,9 @@ class Limited(Criterion):
             return Unknown(result.reason)
         outcome = reduce(case, result)
         place, value, base = place_of(case, outcome), self.of_reduced(case, result), self.base(scene)
-        far = bool(unlike(place, outcome))
+        far = farness(place, outcome)
         factor = factor_of(place, self.column, far)
-        return Bound(base + value, base + value / factor, base + value * factor, not far)
+        return Bound(base + value, base + value / factor, base + value * factor, far == 0.0)
 
     def meshed(self, scene: Scene) -> tuple[Scene, Scene | None]:
         """Return the scene without a film."""
