@@ -71,7 +71,7 @@ def test_a_half_width_grows_to_the_widest_as_a_scene_lies_beyond_the_stored_ones
 
 
 def test_scenes_at_either_end_of_each_number_are_held_by_the_others():
-    """A fifth of the stored scenes at an end is cut off, so that it lies beyond the rest, and judged by it."""
+    """A fifth of the stored scenes at an end is cut off, so that it lies beyond the rest, and judged."""
     every, held = stored(), list[bool]()
     for number in range(len(CALLED)):
         for side in (1.0, -1.0):
