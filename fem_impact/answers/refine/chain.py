@@ -375,21 +375,20 @@ class LevelChain:
         reached = [f"{name} is known to {plain(100 * error, 2)} %" for name, error in errors.items()]
         told = " and ".join(reached) or UNRESOLVED.reason
         wanted = 100 * (self.scene.accuracy.target or 0.0)
-        return f"The wanted {wanted:.3g} % is not reached: {told}. {self._advice}"
+        return f"The wanted {wanted:.3g} % is not reached: {told}. {self.advice[0]}"
 
     @property
-    def _advice(self) -> str:
-        """What another level would take, or why none is made."""
+    def advice(self) -> tuple[str, int | None]:
+        """What another level would take, or why none is made; the budget for it, s, None where none is."""
+        name = f"Level {len(self.done) + 1}, finer,"
         if self.failed:
-            return f"A finer level gave no result: {self.failed}"
+            return f"{name} gave no result: {self.failed}", None
         then = self.following
         if then is None:
-            return "No finer level is tried."
+            return "No finer level is tried.", None
         more_s = self.forecast_s(then)
-        return (
-            f"One level finer takes about {about_s(more_s)} more: for that give a budget of "
-            f"{about_s(self.spent_s + LONGER * more_s)}."
-        )
+        enough = ceil(self.spent_s + LONGER * more_s)
+        return f"{name} takes about {about_s(more_s)} more: for it give a budget of {enough} s.", enough
 
     def _without_unresolved(self, counted: LevelRun) -> Outcome:
         """Return a level's outcome without the numbers that a scene withholds where they are not resolved."""

@@ -20,7 +20,7 @@ from fem_impact.answers.verdict.effect import (
     unfinished,
     untargeted,
 )
-from fem_impact.answers.verdict.levels import Tell, by_levels
+from fem_impact.answers.verdict.levels import Means, Tell, by_levels, finite_elements
 from fem_impact.answers.verdict.reliability import CHANGED, known_error
 from fem_impact.answers.verdict.screening import Screening, screening
 from fem_impact.answers.verdict.twins import inclined, twins
@@ -60,7 +60,7 @@ class Verdict:
         None where f has no interval or no effect
     steps : what was computed one after the other, and what each step said
     notes : what the reader should know about how the verdict was found
-    more : options of ``fem-impact assess`` that may decide what is undecided, empty where none are known
+    more : arguments of `assess` with which it may decide what is undecided, empty where none are known
     """
 
     scene: Scene
@@ -73,7 +73,7 @@ class Verdict:
     over_friction: tuple[float, float] | None
     steps: tuple[str, ...]
     notes: tuple[str, ...]
-    more: str
+    more: Means
 
     def __repr__(self) -> str:
         return (
@@ -178,10 +178,10 @@ def assess(
         except (SceneError, RunError) as refused:
             if fidelity == "solid" or quick is None:
                 raise
-            solid, told, more = None, [f"Finite elements have no answer here: {refused}"], ""
+            solid, told, more = None, [f"Finite elements have no answer here: {refused}"], {}
         here, used = (solid, "solid") if solid else (quick, "modal")
         notes += told
-        more = f"--fidelity solid {more}" if more and fidelity == "solid" else more
+        more = {"fidelity": fidelity, **more} if more and fidelity == "solid" else more
     if here is None:
         raise RunError(" ".join([*notes, f"Without them, {steps[0]}."]))
     off = 0.0 if quick is None else abs(quick.value - here.value)
@@ -197,17 +197,12 @@ def assess(
         None if quick is None else _over_friction(scene, of),
         tuple(steps),
         tuple(notes),
-        more if here.answer(tolerance) == "undecided" else "",
+        more if here.answer(tolerance) == "undecided" else {},
     )
 
 
 def _told(effect: VibrationEffect) -> str:
     return f"{effect.of} changes by {effect.told}"
-
-
-def finite_elements(budget_s: float) -> str:
-    """Return the options that let finite elements answer, with the wall time, s, that these may take."""
-    return f'--fidelity solid --budget "{budget_s:g} s"'
 
 
 def _quick(scene: Scene, of: str, tell: Tell) -> tuple[VibrationEffect | None, list[str]]:

@@ -42,7 +42,7 @@ def dropped(scene: Scene) -> RodDropInput:
     """
     reason = _not_measured(scene)
     if reason:
-        remedy = "Leave out --heat, or state such a scene."
+        remedy = "Give a scene that is, such as t5b with another length, height or angle."
         raise SceneError(f"is not what the measured tests are about: {reason}.", key=scene.id, remedy=remedy)
     rod, impact = scene.projectile, scene.impact
     body = Projectile(rod.length, rod.diameter, rod.tip, rod.tip_radius, DENSITY)

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Protocol, TypeVar
+import shlex
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
-from fem_impact.answers.refine.budget import LONGER, about_s
+from fem_impact.answers.refine.budget import about_s
 from fem_impact.answers.refine.chain import LevelChain
 from fem_impact.answers.refine.level import LevelRun
 from fem_impact.answers.verdict.effect import Answer
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
 LEAST_LEVELS = 2
 """Levels that an answer needs: one alone cannot estimate its own error."""
 Tell = Callable[[str], object]
+Means = Mapping[str, Any]
+"""Arguments of `fem_impact.assess`: its ``fidelity`` and ``budget_s``."""
 
 
 class Found(Protocol):
@@ -41,8 +44,8 @@ def by_levels(
     means: tuple[float, int],
     tell: Tell,
     steps: list[str],
-) -> tuple[Number | None, list[str], str]:
-    """Return what finite elements say, None where they tell nothing; notes; options for another level.
+) -> tuple[Number | None, list[str], Means]:
+    """Return what finite elements say, None where they tell nothing; notes; the means for another level.
 
     Parameters
     ----------
@@ -81,8 +84,9 @@ def by_levels(
         steps.append(f"finite elements, level {number}, {took}: {said}")
         tell(steps[-1])
     if decides(levels.done):
-        return found, [], ""
-    note, more = _why_stopped(levels)
+        return found, [], {}
+    note, enough = levels.advice
+    more = {} if enough is None else {"budget_s": enough}
     if found is not None:
         return found, [note], more
     nothing = "The last level of finite elements does not resolve the contact."
@@ -93,18 +97,14 @@ def by_levels(
     return None, [note, nothing], more
 
 
-def _why_stopped(levels: LevelChain) -> tuple[str, str]:
-    """Return a note on why no other level runs, and the options with which one would."""
-    if levels.failed:
-        return f"Finite elements give no result on level {len(levels.done) + 1}: {levels.failed}", ""
-    then = levels.following
-    if then is None:
-        return "No finer level is tried.", ""
-    more_s, spent_s = levels.forecast_s(then), levels.spent_s
-    left_s, enough = max(levels.budget_s - spent_s, 0.0), about_s(spent_s + LONGER * more_s)
-    note = (
-        f"Level {len(levels.done) + 1}, finer, would take about {about_s(more_s)} more, and "
-        f"{plain(left_s, 2)} s are left of the budget of {levels.budget_s:g} s. For it give "
-        f"a budget of {enough}."
-    )
-    return note, f'--budget "{enough}"'
+def finite_elements(budget_s: float) -> Means:
+    """Return the means that let finite elements answer within a wall time, s."""
+    return {"fidelity": "solid", "budget_s": budget_s}
+
+
+def next_step(command: str, more: Means) -> str | None:
+    """Return the command that asks again with ``more`` means, None where none are known."""
+    options = {name: more[name] for name in ("fidelity",) if name in more}
+    options |= {"budget": f"{more['budget_s']:g} s"} if more else {}
+    words = shlex.join(word for name, value in options.items() for word in (f"--{name}", value))
+    return f"{command} {words}" if more else None

@@ -17,10 +17,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fem_impact.answers.validate import FRICTION, Ends, at_place, interval_of
-from fem_impact.answers.verdict.assess import BUDGET, LACKING, check_means, finite_elements
+from fem_impact.answers.verdict.assess import BUDGET, LACKING, check_means
 from fem_impact.answers.verdict.criteria import Bound, Criterion
 from fem_impact.answers.verdict.effect import Answer
-from fem_impact.answers.verdict.levels import Tell, by_levels
+from fem_impact.answers.verdict.levels import Means, Tell, by_levels, finite_elements, next_step
 from fem_impact.answers.verdict.sentences import case_sentence, never_covered
 from fem_impact.case.case import Case
 from fem_impact.case.limits import not_reduced
@@ -62,7 +62,7 @@ class LimitVerdict:
     least : the smallest number of the reduced model over the intervals, None where it has none
     places, not_known : where the reduced model looked, and why it has no answer at some
     steps, notes : what was computed one after the other, and what the reader should know
-    more : options that may decide what is undecided
+    more : arguments of `judge` with which it may decide what is undecided
     """
 
     scene: Scene
@@ -78,7 +78,7 @@ class LimitVerdict:
     not_known: str
     steps: tuple[str, ...]
     notes: tuple[str, ...]
-    more: str
+    more: Means
 
     @property
     def missing(self) -> str:
@@ -183,7 +183,7 @@ def judge(
         why,
         tuple(steps),
         tuple(notes),
-        more if answer == "undecided" else "",
+        more if answer == "undecided" else {},
     )
 
 
@@ -223,20 +223,21 @@ def _by_solids(
     means: tuple[float, int],
     tell: Tell,
     steps: list[str],
-) -> tuple[dict[Place, Bound], list[str], str]:
-    """Return what finite elements say at places until one does not stay below the limit; notes; options.
+) -> tuple[dict[Place, Bound], list[str], Means]:
+    """Return what finite elements say at places until one does not stay below the limit; notes; more means.
 
     ``means`` are the budget of all of them, s, and runs at a time.
     """
     (budget_s, workers), begun = means, perf_counter()
-    solids, notes, more, told = dict[Place, Bound](), list[str](), "", partial(_told, criterion)
+    solids, notes, told = dict[Place, Bound](), list[str](), partial(_told, criterion)
+    more: Means = {}
     for place, scene in scenes.items():
         left = max(begun + budget_s - perf_counter(), 1.0), workers
         try:
             pair = criterion.meshed(scene)
             found, said, more = by_levels(pair, criterion.solid, told, limit, left, tell, steps)
         except (SceneError, RunError) as refused:
-            found, said, more = None, [f"Finite elements have no answer here: {refused}"], ""
+            found, said, more = None, [f"Finite elements have no answer here: {refused}"], {}
         notes += said
         solids |= {} if found is None else {place: found}
         if found is None or found.answer(limit) != "yes":
@@ -294,7 +295,7 @@ def document(v: LimitVerdict, command: str) -> dict[str, Any]:
         "rests_on": v.by,
         "box": box,
         "missing": v.missing or None,
-        "next_step": f"{command} {v.more}" if v.more else None,
+        "next_step": next_step(command, v.more),
         "basis": [
             ["case", case_sentence(v.scene)],
             *([f"step {number}", f"{step}."] for number, step in enumerate(v.steps, 1)),

@@ -8,6 +8,7 @@ from typing import Any
 
 from fem_impact.answers.verdict.assess import Verdict
 from fem_impact.answers.verdict.effect import CALLED, Answer, VibrationEffect
+from fem_impact.answers.verdict.levels import next_step
 from fem_impact.answers.verdict.screening import Screening
 from fem_impact.outcome.keys import Unknown, known, or_none
 from fem_impact.outcome.limitation import texts
@@ -297,7 +298,7 @@ def document(v: Verdict, command: str = "fem-impact assess") -> dict[str, Any]:
         "steps": list(v.steps),
         "box": [list(line) for line in box(v)],
         "missing": v.missing or None,
-        "next_step": f"{command} {v.more}" if v.more else None,
+        "next_step": next_step(command, v.more),
         "basis": [list(line) for line in basis(v)],
         "not_covered": list(not_covered(v)),
         "with_vibration": v.here.free.to_dict(),

@@ -132,7 +132,7 @@ def test_a_level_that_cannot_keep_the_budget_is_given_up(monkeypatch):
     levels = LevelChain(Case(replace(ASKED, "accuracy", FINEST)), budget_s=100.0)
     outcome = levels.run()
     assert len(levels.done) == 1
-    assert "A finer level gave no result: It was given up after" in told(outcome)[0]
+    assert "Level 2, finer, gave no result: It was given up after" in told(outcome)[0]
 
 
 def test_a_finer_level_that_fails_leaves_what_the_coarser_ones_say(ran, monkeypatch):

@@ -62,7 +62,7 @@ def solids(monkeypatch, values):
     def of(pair, estimate, told, limit, means, tell, steps):
         ran.append(round(np.degrees(pair[0].impact.angle)))
         value = values[ran[-1]]
-        return value and Bound(value, value - 1.0, value + 1.0), [], "--budget more"
+        return value and Bound(value, value - 1.0, value + 1.0), [], {"budget_s": 90}
 
     monkeypatch.setattr(module, "by_levels", of)
     return ran
@@ -190,13 +190,13 @@ def test_rigid_theory_is_judged_over_an_interval_too(capsys):
 def test_a_next_step_repeats_the_question(monkeypatch, scene):
     solids(monkeypatch, {60: 65.5})
     found = judge(scene, Sloped(), 65.0, ANGLE)
-    assert document(found, "fem-impact assess t5b")["next_step"] == "fem-impact assess t5b --budget more"
+    assert document(found, "fem-impact assess t5b")["next_step"] == "fem-impact assess t5b --budget '90 s'"
 
 
 def test_an_undecided_limit_says_what_is_missing_and_what_comes_next(scene):
     found = judge(scene, Sloped(), 69.0, ANGLE, "modal")
     assert "or a limit of at least 0.07 kN" in found.missing
-    assert document(found, "fem-impact assess t5b")["next_step"].endswith('--fidelity solid --budget "60 s"')
+    assert document(found, "fem-impact assess t5b")["next_step"].endswith("--fidelity solid --budget '60 s'")
     places = judge(scene, Sloped(missing=(40.0,)), 75.0, ANGLE, "modal")
     assert places.missing == "an answer at some places of the intervals: it slides on"
     assert judge(scene, Sloped(), 75.0, ANGLE, "modal").missing == ""

@@ -347,7 +347,9 @@ def test_a_level_that_folds_leaves_those_before_it(monkeypatch):
     monkeypatch.setattr(level_module, "simulate_recorded", folded)
     found = assess(load("t5b"), tolerance=0.02, budget_s=1e5)
     assert (found.fidelity, found.answer) == ("solid", "undecided")
-    assert any("on level 3" in note and "cell 7 is folded" in note for note in found.notes)
+    assert any(
+        "Level 3, finer, gave no result" in note and "cell 7 is folded" in note for note in found.notes
+    )
 
 
 def test_a_spin_that_lifts_the_contact_point_at_some_inclinations_leaves_them_out():
@@ -375,8 +377,8 @@ def test_a_budget_that_allows_one_level_leaves_the_reduced_model_and_says_so(mon
     found = assess(load("t5b"), tolerance=0.02, budget_s=1e-9)
     assert (found.fidelity, found.answer, len(asked)) == ("modal", "undecided", 1)
     first, second = found.notes
-    assert "Level 2, finer, would take about" in first
-    assert re.search(r"give a budget of \d+ s", first)
+    assert "Level 2, finer, takes about" in first
+    assert found.more == {"budget_s": int(re.search(r"give a budget of (\d+) s", first)[1])}
     assert "alone does not tell its error" in second
 
 
@@ -556,7 +558,7 @@ def test_the_band_of_the_reduced_model_holds_what_a_half_space_under_a_thin_plat
 def test_one_level_decides_nothing(monkeypatch):
     """However far its change of e lies from the tolerance."""
     solid_alone(monkeypatch, [0.9])
-    with pytest.raises(RunError, match=r"Level 2, finer, would take about .* One level of finite elements"):
+    with pytest.raises(RunError, match=r"Level 2, finer, takes about .* One level of finite elements"):
         assess(load("layered"), budget_s=1e-9)
 
 
@@ -625,7 +627,7 @@ def test_an_undecided_reduced_model_names_the_command_that_may_decide(cli):
     line = ("assess", "t5b", "--fidelity", "modal", "--within", "e 0.02", "--set", "impact.angle=44 deg")
     _, out, _ = cli(*line)
     command = "fem-impact assess t5b --set 'impact.angle=44 deg' --within 'e 0.02' --fidelity solid"
-    assert f'Next step: {command} --budget "60 s"\n' in out and "Missing: an error below" in out
+    assert f"Next step: {command} --budget '60 s'\n" in out and "Missing: an error below" in out
     _, out, _ = cli("assess", "t5b", "--fidelity", "modal", "--within", "e 0.5")
     assert "Next step" not in out
 
