@@ -15,7 +15,7 @@ class Progress:
     """The state of a run: times in s, energy drift as a fraction of E_0, contact in words, a note.
 
     ``eta_s`` is None while it cannot be told, ``eta_range_s`` its least and most; ``note`` names the scene or
-    the work when there are several.
+    the work when there are several. ``setup_s`` is about what is needed before the first step.
     """
 
     time_s: float
@@ -26,6 +26,7 @@ class Progress:
     eta_s: float | None = None
     note: str = ""
     eta_range_s: tuple[float, float] | None = None
+    setup_s: float = 0.0
 
 
 def compiling(end_time_s: float, seconds: int) -> Progress:
@@ -33,14 +34,15 @@ def compiling(end_time_s: float, seconds: int) -> Progress:
     return Progress(0.0, end_time_s, 0, 0.0, f"compiling the kernels, once, about {seconds} s")
 
 
-def standing(end_time_s: float, note: str, eta_s: float | None) -> Progress:
+def standing(end_time_s: float, note: str, eta_s: float | None, setup_s: float) -> Progress:
     """Return the report of a run whose meshes stand before the rod's modes are found."""
-    return Progress(0.0, end_time_s, 0, 0.0, "the meshes are made", eta_s, note)
+    return Progress(0.0, end_time_s, 0, 0.0, "the meshes are made", eta_s, note, setup_s=setup_s)
 
 
-def setting_up(end_time_s: float, note: str, eta_s: float | None = None) -> Progress:
+def setting_up(end_time_s: float, note: str, eta_s: float | None = None, setup_s: float = 0.0) -> Progress:
     """Return the report of a run that makes its mesh and finds the modes of its rod before the first step."""
-    return Progress(0.0, end_time_s, 0, 0.0, "setting up: mesh and modes of the rod", eta_s, note)
+    doing = "setting up: mesh and modes of the rod"
+    return Progress(0.0, end_time_s, 0, 0.0, doing, eta_s, note, setup_s=setup_s)
 
 
 @dataclass(frozen=True, slots=True)

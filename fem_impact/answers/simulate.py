@@ -63,6 +63,7 @@ def simulate(
     workers: int = 1,
     budget_s: float | None = None,
     case: Case | None = None,
+    read_s: float = 0.0,
 ) -> Outcome:
     """Compute an impact.
 
@@ -71,7 +72,8 @@ def simulate(
     than about ``budget_s``, s of wall time (ten minutes unless stated). The outcome is that of the finest
     level with the limits and bands of all; files of the others stand below ``options.out``. With two
     ``workers`` a second process runs each level at the second place of the barrier's grid. ``case`` is what
-    `compiled` returned for this scene, where the caller has it.
+    `compiled` returned for this scene, where the caller has it; ``read_s``, s, is what reading it took of the
+    budget.
 
     Raises
     ------
@@ -92,7 +94,7 @@ def simulate(
         if on_levels(scene, fidelity):
             budget = BUDGET if budget_s is None else budget_s
             try:
-                return LevelChain(case or Case(scene), options, budget, workers).run()
+                return LevelChain(case or Case(scene), options, budget, workers, read_s=read_s).run()
             except OverBudgetError as late:
                 raise OverBudgetError(f"{late} {_without_mesh(scene, SPARE * budget)}") from None
         _require_mesh(scene, fidelity)

@@ -110,6 +110,11 @@ def modes_time(bodies: Bodies, rod: float) -> float:
     return 0.0 if mesh is None else MODES * _own_factor(mesh, rod) / ENTRY
 
 
+def setup_time(bodies: Bodies, vibrating: bool, rod: float, elements: float) -> float:
+    """Return the processor time, s, before the first step; of a user's mesh its modes take most of it."""
+    return (vibrating and modes_time(bodies, rod)) or SETUP * elements
+
+
 def about(value: float) -> str:
     """Return a number of at least one with two significant digits."""
     return f"{float(f'{value:.2g}'):,.0f}".replace(",", " ")

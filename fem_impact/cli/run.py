@@ -8,6 +8,7 @@ import sys
 from collections.abc import Mapping
 from contextlib import closing
 from pathlib import Path
+from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 from fem_impact.cli.options import Options, add_out, add_text, stated_budget
@@ -83,7 +84,9 @@ def run(options: Options) -> int:
     """Compute one scene, write its results and print them."""
     if options.until:
         options.changes = [*options.changes, f"impact.until={options.until}"]
+    begun = perf_counter()
     scene = changed_scene(options.scene, options.changes)
+    read_s = perf_counter() - begun  # a large mesh file takes seconds
     if options.resume and options.fidelity in ("rigid", "modal"):
         problem = f"is for finite elements only: a {options.fidelity} run takes seconds."
         raise UsageError(problem, key="--resume", remedy="Leave it out.")
@@ -105,7 +108,7 @@ def run(options: Options) -> int:
         with told_kept(out, options), closing(chosen_meter(options)) as meter:
             run_options = RunOptions(out, meter, options.resume, options.checkpoint)
             fidelity = options.fidelity or None
-            outcome = simulate(scene, fidelity, run_options, cores(), budget, case)
+            outcome = simulate(scene, fidelity, run_options, cores(), budget, case, read_s)
     except KeyboardInterrupt:
         way = (
             "--resume goes on from the last checkpoint."

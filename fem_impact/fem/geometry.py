@@ -54,6 +54,11 @@ class Geometry:
     touching: Bools | None = None
     middle: float = 0.0
 
+    @property
+    def count(self) -> int:
+        """Return the number of cells of both bodies."""
+        return len(self.rod.mesh.cells) + (0 if self.barrier is None else len(self.barrier.cells))
+
 
 def to_barrier_frame(alpha: float) -> Array:
     """Return the rotation (3, 3) from the rod frame (x, y, z) to (t, b, n)."""

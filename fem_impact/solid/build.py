@@ -5,23 +5,19 @@ Modules that only some effects need are imported where they are used.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cached_property
 from math import sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fem_impact.arrays import Array, Bools, Ints
+from fem_impact.arrays import Array, Bools
 from fem_impact.case.case import Case
 from fem_impact.case.effects.registry import EFFECTS
-from fem_impact.fem.body import (
-    Elastic,
-    MeshedBodies,
-    MeshedBody,
-    slices_of,
-)
+from fem_impact.fem.body import Elastic, MeshedBodies, MeshedBody, slices_of
 from fem_impact.fem.eigen import MassStiffness, rod_modes
-from fem_impact.fem.geometry import POINTS
+from fem_impact.fem.geometry import POINTS, Geometry
 from fem_impact.fem.layout import DofLayout
 from fem_impact.fem.sliding import speed_table
 from fem_impact.fem.sparse import Hanging, NodeProduct
@@ -29,7 +25,7 @@ from fem_impact.fem.stable import stable_step
 from fem_impact.physics.hardening import HardeningLaw
 from fem_impact.physics.viscous import LinearSolid, linear_solid
 from fem_impact.solid.contact.moving_plane import MovingPlane
-from fem_impact.solid.contact.patch import STEEP, make_patch
+from fem_impact.solid.contact.patch import facing_skin, make_patch
 from fem_impact.solid.contact.plane import PlaneContact
 from fem_impact.solid.contact.surface import SurfaceContact
 from fem_impact.solid.elastic import Dashpots, ElasticRod, Weight
@@ -51,6 +47,7 @@ if TYPE_CHECKING:
 
 START_GAP = 1e-10  # m, so small that contact begins in the first step, before gravity or spin acts
 PLAY, BAND = 0.05, 0.02  # over the tip size, see `SurfaceContact`
+Stage = Callable[[Geometry], None]
 
 
 def yielding_zone(
@@ -71,20 +68,6 @@ def yielding_zone(
     nodes = body.mesh.cells[cells]
     dof, points, full = body.places[nodes], body.points[nodes], body.yielding == "full"
     return YieldingZone.of(body.name, dof, points, m.E, m.nu, law, layout.dummy, full, strength, cells)
-
-
-def facing_skin(body: MeshedBody) -> Ints:
-    """Return the skin quads (m, 4) of the cells that may touch, all nodes free, facing the other body."""
-    quads = body.mesh.faces_with(SKIN)
-    corners = body.points[quads]
-    normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
-    steep = normal[:, 2] / np.linalg.norm(normal, axis=1)
-    facing = steep < -STEEP if body.name == "rod" else steep > STEEP
-    touching = body.mesh.finest if body.touching is None else body.touching
-    near = np.isin(quads, body.mesh.cells[touching]).all(axis=1)
-    # rod quads look down: turn them so that both patches turn the same way seen from above
-    chosen = quads[facing & near & ~body.mesh.is_hanging[quads].any(axis=1)]
-    return np.asarray(chosen[:, ::-1] if body.name == "rod" else chosen)
 
 
 def surface_contact(
@@ -111,11 +94,17 @@ def surface_contact(
 
 
 class Builder:
-    """The parts of a case's model; each is made at its first use and cached."""
+    """The parts of a case's model; each is made at its first use and cached.
 
-    def __init__(self, case: Case, gap: float, mesh: RodMesh | None = None) -> None:
-        self.case, self.scene, self.spec = case, case.scene, case.slots
+    ``stage`` is called once the meshes stand and before each body is assembled; what it raises ends the work.
+    """
+
+    def __init__(
+        self, case: Case, gap: float, mesh: RodMesh | None = None, stage: Stage = lambda _: None
+    ) -> None:
+        self.case, self.scene, self.spec, self.stage = case, case.scene, case.slots, stage
         self.meshed = MeshedBodies(case, mesh)
+        stage(self.meshed.geometry)
         self.meshed.move_rod(*self.initial_shift(gap))
 
     def initial_shift(self, gap: float) -> tuple[float, float]:
@@ -152,6 +141,7 @@ class Builder:
     def elastic_rod(self) -> tuple[ElasticRod | ElasticNose, MassStiffness]:
         """Return the rod's linear part, and its elastic stiffness over its mass points, N/m."""
         n, mesh = self.meshed.layout.rod_size, self.meshed.geometry.rod
+        self.stage(self.meshed.geometry)
         nose, whole = self.meshed.rod_stiffness
         product, d, y = NodeProduct.of(nose, self.meshed.free_nodes), np.zeros(n), np.zeros(n)
         if not self.spec.vibrating:
@@ -184,6 +174,7 @@ class Builder:
             return [], [], {}
         from fem_impact.solid.block import dashpots, plate_dashpots
 
+        self.stage(self.meshed.geometry)
         block = self.block_parts
         inverse, share = self.meshed.inverse_mass, self.scene.accuracy.step
         step = stable_step(block.stiffness, inverse[self.meshed.layout.barrier_slice], share)
@@ -385,15 +376,17 @@ class Builder:
         )
 
 
-def build(case: Case, gap: float = START_GAP, mesh: RodMesh | None = None) -> Model:
+def build(
+    case: Case, gap: float = START_GAP, mesh: RodMesh | None = None, stage: Stage = lambda _: None
+) -> Model:
     """Return the model of a scene; parts whose slot is empty are never made.
 
     ``gap`` is the least height of the rod's skin over the barrier's at time 0, m; below 0 bodies overlap. A
-    rod that has struck before keeps its ``mesh``.
+    rod that has struck before keeps its ``mesh``. ``stage``: see `Builder`.
 
     Raises
     ------
     SceneError
         If the tip is so coarse that there is no fine zone to touch or to yield in.
     """
-    return Builder(case, gap, mesh).model()
+    return Builder(case, gap, mesh, stage).model()

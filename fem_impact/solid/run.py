@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import resource
 import sys
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
@@ -14,13 +15,14 @@ import numpy as np
 from fem_impact.arrays import Array
 from fem_impact.case.case import Case
 from fem_impact.case.record import ContactRecord
-from fem_impact.case.size import modes_time, run_time
+from fem_impact.case.size import modes_time, run_time, setup_time
 from fem_impact.fem.flight import FreeVibration, RigidMotion
+from fem_impact.fem.geometry import Geometry
 from fem_impact.fem.kernels import compiled_before
 from fem_impact.files.run_directory import CHECKPOINT
 from fem_impact.options import RunOptions
 from fem_impact.outcome.limitation import Limitation, limitations
-from fem_impact.progress import Progress, compiling, setting_up, standing
+from fem_impact.progress import Notice, Progress, compiling, setting_up, standing
 from fem_impact.solid.build import build
 from fem_impact.solid.checkpoint import Checkpoint
 from fem_impact.solid.fine_zone import left_zones, outside_zones, skin_shares
@@ -144,12 +146,12 @@ def solve(
         end, time = case.size.steps * case.size.step, case.size.time
         # a level's own mesh says more, as soon as it stands
         show(setting_up(end, case.scene.id, None if options.resume or case.record is not None else time))
-    model = model or build(case)
+    # the set-up of a large mesh takes longer than all steps: what shows may end it between its stages
+    model = model or build(case, stage=partial(_tell, case, show))
     if show is None:
         view = view or RodState.of(model)
     else:
         show(_standing(case, model, options))
-        # those of a large mesh take longer than all steps: what shows may end them
         going_on = partial(show, setting_up(end, case.scene.id))
         view = view or RodState.of(model, modes_of(model, step=going_on))
     state = model.initial_state()
@@ -186,10 +188,21 @@ def solve(
 def _standing(case: Case, model: Model, options: RunOptions) -> Progress:
     """Return the report that the mesh stands, with the time that its modes, cells and steps will take."""
     end, g = case.size.steps * case.size.step, model.geometry
-    rod, barrier = len(g.rod.mesh.cells), 0 if g.barrier is None else len(g.barrier.cells)
-    time = run_time(rod + barrier, sum(zone.count for zone in model.zones), end / model.step)
-    time += modes_time(case.bodies, rod) if model.rod_stiffness is not None else 0.0
-    return standing(end, case.scene.id, None if options.resume else time)
+    time = run_time(g.count, sum(zone.count for zone in model.zones), end / model.step)
+    time += modes_time(case.bodies, len(g.rod.mesh.cells)) if model.rod_stiffness is not None else 0.0
+    return standing(end, case.scene.id, None if options.resume else time, _setup_s(case, g))
+
+
+def _tell(case: Case, show: Callable[[Progress | Notice], None] | None, geometry: Geometry) -> None:
+    """Report that a run with these meshes goes on with its set-up."""
+    if show is not None:
+        end = case.size.steps * case.size.step
+        show(setting_up(end, case.scene.id, setup_s=_setup_s(case, geometry)))
+
+
+def _setup_s(case: Case, geometry: Geometry) -> float:
+    """Return about the time, s, of the set-up with these meshes."""
+    return setup_time(case.bodies, case.slots.vibrating, len(geometry.rod.mesh.cells), geometry.count)
 
 
 def _checkpoint(

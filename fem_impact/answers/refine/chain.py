@@ -74,6 +74,7 @@ class LevelChain:
     decides : levels go on until it is content; without it, until the contact is resolved or, where the scene
         states a wanted error, until that is reached
     twin : a scene that runs on the meshes of this one; it states no place of the grid
+    read_s : wall time, s, that reading the scene took of the budget
     done : levels so far
     failed : why the level after them has no outcome, empty where none failed
     """
@@ -84,6 +85,7 @@ class LevelChain:
     workers: int = 1
     decides: Decides | None = None
     twin: Scene | None = None
+    read_s: float = 0.0
     done: list[LevelRun] = field(default_factory=list)
     failed: str = ""
 
@@ -124,13 +126,10 @@ class LevelChain:
     def refine(self) -> None:
         """Run levels, finer than those that have run, until one is enough or the budget is used up.
 
-        Raises
-        ------
-        SceneError, RunError, ResultError, OutputPathError
-            As `run`.
+        It raises what `run` does.
         """
         if not self.done:
-            require_pilot(self.meshes.pilot.size.time, self._limit_s)
+            require_pilot(self.meshes.pilot, self._limit_s)
         splits = self._next if self.done else self.meshes.first
         while splits is not None:
             try:
@@ -227,8 +226,8 @@ class LevelChain:
 
     @property
     def spent_s(self) -> float:
-        """Wall time, s, of all levels so far."""
-        return sum(level.wall_s for level in self.done)
+        """Wall time, s, of the budget that is used up so far."""
+        return self.read_s + sum(level.wall_s for level in self.done)
 
     @property
     def _offsets(self) -> tuple[float, ...]:

@@ -12,6 +12,8 @@ from math import inf
 from time import perf_counter
 
 from fem_impact.answers.refine.budget import LONGER, about_s
+from fem_impact.case.case import Case
+from fem_impact.case.size import setup_time
 from fem_impact.errors import RunError
 from fem_impact.fem.kernels import COMPILING
 from fem_impact.progress import Notice, Progress, left_text
@@ -57,11 +59,13 @@ def later_s(own_s: float, halvings: Sequence[int]) -> list[float]:
     return spans
 
 
-def require_pilot(time: float, limit_s: float) -> None:
-    """Refuse a pilot that takes about ``time``, s, and surely more than ``limit_s`` (OverBudgetError)."""
-    if PILOT * time > limit_s:
-        told = f"The coarsest level would take about {about_s(time)}: it is not begun."
-        raise OverBudgetError(f"{told} {_for_two(time)}")
+def require_pilot(pilot: Case, limit_s: float) -> None:
+    """Refuse a pilot that surely takes more than ``limit_s``, s (OverBudgetError)."""
+    size = pilot.size
+    setup_s = setup_time(pilot.bodies, pilot.slots.vibrating, size.rod, size.rod + size.barrier)
+    if max(PILOT * size.time, OWN[0] * setup_s) > limit_s:
+        told = f"The coarsest level would take about {about_s(size.time)}: it is not begun."
+        raise OverBudgetError(f"{told} {_for_two(size.time)}")
 
 
 def _for_two(pilot_s: float) -> str:
@@ -102,9 +106,11 @@ class LevelProgress:
         left_s = progress.eta_s
         if progress.step == 0 and left_s is not None:  # the mesh stands, and no step has shown the pace
             self.own_s = left_s * (self.duration_s / progress.end_time_s if self.duration_s else 1.0)
-            self._require_time(self.own_s, (OWN[0] if self.duration_s else PILOT) * self.own_s)
+            least_s = (OWN[0] if self.duration_s else PILOT) * self.own_s
+            self._require_time(self.own_s, max(least_s, OWN[0] * progress.setup_s))
         else:
-            self._require_time(left_s if progress.step else self.own_s or None)
+            about_left_s = left_s if progress.step else self.own_s or progress.setup_s or None
+            self._require_time(about_left_s, OWN[0] * progress.setup_s)
         if self.halvings is None or left_s is None:
             return self._tell(replace(progress, note=self.name, eta_s=None))
         own = [left_s + (self.turns - 1) * self.own_s] * len(OWN)

@@ -8,7 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem_impact.arrays import Array, Ints
+from fem_impact.fem.body import MeshedBody
 from fem_impact.fem.kernels import inlined, kernel
+from meshes import SKIN
 
 # a point this far outside the last quad (in its own units) still belongs to it: symmetry plane, round-off
 SLACK = 1e-6
@@ -182,6 +184,20 @@ class Patch(NamedTuple):
         np.minimum.at(least, self.quads, np.einsum("qi,qai->qa", flat, around[self.quads]))
         bend = np.where((least > EDGE) & (around[:, 2] > STEEP), 0.5, 0.0)
         return self._replace(bend=bend, sag=_sag(corners, around[self.quads], bend[self.quads]))
+
+
+def facing_skin(body: MeshedBody) -> Ints:
+    """Return the skin quads (m, 4) of the cells that may touch, all nodes free, facing the other body."""
+    quads = body.mesh.faces_with(SKIN)
+    corners = body.points[quads]
+    normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
+    steep = normal[:, 2] / np.linalg.norm(normal, axis=1)
+    facing = steep < -STEEP if body.name == "rod" else steep > STEEP
+    touching = body.mesh.finest if body.touching is None else body.touching
+    near = np.isin(quads, body.mesh.cells[touching]).all(axis=1)
+    # rod quads look down: turn them so that both patches turn the same way seen from above
+    chosen = quads[facing & near & ~body.mesh.is_hanging[quads].any(axis=1)]
+    return np.asarray(chosen[:, ::-1] if body.name == "rod" else chosen)
 
 
 def make_patch(quads: Ints, places: Ints, points: Array) -> Patch:

@@ -11,9 +11,10 @@ from fem_impact.answers.refine import level as level_module
 from fem_impact.answers.refine.chain import LevelChain
 from fem_impact.answers.refine.forecast import OWN, LevelProgress, OverBudgetError, later_s
 from fem_impact.answers.simulate import simulate
+from fem_impact.case import size
 from fem_impact.case.case import Case
 from fem_impact.errors import RunError
-from fem_impact.fem import eigen
+from fem_impact.fem import body, eigen
 from fem_impact.options import RunOptions
 from fem_impact.progress import Notice, Progress, describe
 from fem_impact.scene.shipped import load, replace_all
@@ -101,6 +102,21 @@ def test_modes_that_take_longer_than_the_budget_are_broken_off(monkeypatch):
     with pytest.raises(OverBudgetError, match=r"given up after 2\d s, .* The coarsest level gave no number"):
         chain.run()
     assert len(told) > 10 and not any(one.step for one in told)
+
+
+def test_a_set_up_that_no_budget_holds_is_given_up_before_its_matrices(monkeypatch):
+    chain = LevelChain(Case(load("quick")), budget_s=20.0)
+    _ = chain.meshes.pilot.size  # planned as small: the mesh shows more
+    monkeypatch.setattr(size, "SETUP", 0.1)
+    monkeypatch.setattr(chain_module, "require_pilot", lambda *_: None)
+    monkeypatch.setattr(body, "stiffness_of", None)
+    with pytest.raises(OverBudgetError, match=r"given up after 1 s, .*takes about \d\d+ s"):
+        chain.run()
+
+
+def test_what_reading_took_is_used_up():
+    with pytest.raises(OverBudgetError, match="it is not begun"):
+        LevelChain(Case(load("quick")), budget_s=20.0, read_s=26.0).run()
 
 
 def test_a_pilot_that_no_budget_holds_is_not_begun(monkeypatch):
