@@ -189,7 +189,6 @@ QUESTIONS = {
     "convergence": "How far is the usual mesh from vanishing elements?",
     "effects": "Does each scene choose the effects that it needs?",
     "reduced": "How far is the reduced model from the finite elements?",
-    "causes": "What do rate, hardness and a hard skin change?",
     "skin": "Does a hardened skin that follows from the printed hardness explain the tests?",
     "tip": "Which tip had the rods of Table 3?",
     "cost": "What does accuracy cost?",

@@ -1,46 +1,29 @@
-"""Uncertain inputs of a measured set.
-
-`UNCERTAIN_INPUTS` are sampled over their ranges, all at once, by the validation study. `input_changes` are
-made one at a time by the study of the sets; `sensitivity_rows` lists their changes of the results and
-`explanations` compares these with the difference from the measurement.
-"""
+"""Uncertain inputs of a measured set, sampled over their ranges all at once, and the mesh they vary on."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from math import degrees, hypot, log, radians
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from fem_impact import Case, Outcome, Scene, known, replace_all
-from fem_impact.answers.compare import COMPARED, MEASURED, UNSEEN, ComparisonRow
+from fem_impact import Case, Scene
 from fem_impact.answers.refine.level_meshes import LevelMeshes
 from fem_impact.case.effects.plasticity import hardening_of
-from fem_impact.jobs.job import Failure, Job
-from fem_impact.outcome.keys import Num
 from fem_impact.physics.hardening import TABOR_STRAIN, rate_gain, tabor_stress
 from fem_impact.scene.library import intervals_of
 from fem_impact.scene.material import JohnsonCookRate
 from rigid import Errors
 from rigid.experiments import MeasuredSet
 
-ONE_MESH = "one-mesh"  # name of the run that inputs are changed in
 ANGLE = radians(0.5)  # half the range of the inclination (assumed)
 CONTACT = Errors().contact  # m, half the range of the contact point's position
 TRACKING = Errors().tracking  # relative error of a tracked speed (paper)
 BACKING = (0.5, 1.0)  # times the plate's modulus
 LEVELS = 5  # tip radii of the sample: few, as each needs its own modes
 FAST = 1e3  # 1/s, where the intervals of the rate factor hold
-WIDER = 1.5  # times the margin of the barrier's block around the fine zone
-SHOWN = {
-    quantity.name: quantity.key
-    for quantity in (*MEASURED, *UNSEEN)
-    if quantity.name in (*COMPARED, "vibration/E_0", "friction/E_0")
-}
-"""Quantities whose change by an input is listed: name to key."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -196,33 +179,6 @@ def rates(scene: Scene, place: float) -> dict[str, Any]:
     return changed
 
 
-DESCRIPTIONS = {
-    "friction-low": "lowest friction of its interval",
-    "friction-high": "highest friction of its interval",
-    "hardness": "flow stress of both steels from their hardness instead of their tensile tests",
-    "rate-low": "lower end of the rate factors",
-    "rate-high": "upper end of the rate factors",
-    "block": f"barrier block with {WIDER:g} times the margin around the fine zone",
-    # the unchanged run evaluated with other lever arms of the impulse
-    "arms-edge": "arms of the tip's edge radius",
-    "arms-impulse": "arms of the impulse",
-}
-"""What is changed alone, by name."""
-
-
-def input_changes(scene: Scene) -> dict[str, dict[str, Any]]:
-    """Return the changed keys of a scene by names of `DESCRIPTIONS`, where it runs again."""
-    margin = WIDER * scene.accuracy.block_margin * 1e3
-    return {
-        "friction-low": {"surface.friction": scene.surface.friction_low},
-        "friction-high": {"surface.friction": scene.surface.friction_high},
-        "hardness": {f"{body}.material.law": "hardness" for body in scene.materials},
-        "rate-low": rates(scene, 0.0),
-        "rate-high": rates(scene, 1.0),
-        "block": {"accuracy.block_margin": f"{margin:.9g} mm"},
-    }
-
-
 def one_mesh(scene: Scene) -> Scene:
     """Return a scene on one mesh about its estimated contact, with cells twice as large as advised there.
 
@@ -233,66 +189,3 @@ def one_mesh(scene: Scene) -> Scene:
     stated = meshes.at(max(meshes.usual - 1, 0))
     accuracy = replace(stated.accuracy, levels=1, offsets=None, unresolved="report")
     return replace(stated, accuracy=accuracy, save=replace(stated.save, frames=0))
-
-
-def sensitivity_jobs(scene: Scene, out: Path) -> dict[str, Job]:
-    """Return the job of a scene on `one_mesh`, and that with each input changed, by the change's name."""
-    plain = one_mesh(scene)
-    jobs = {ONE_MESH: Job(f"{scene.id}-{ONE_MESH}", plain, out=out / f"{scene.id}-{ONE_MESH}")}
-    for name, keys in input_changes(plain).items():
-        job = f"{scene.id}-{name}"
-        jobs[name] = Job(job, replace_all(plain, keys), out=out / job)
-    return jobs
-
-
-def sensitivity_rows(
-    plain: Outcome | Failure, changed: Mapping[str, Outcome | Failure]
-) -> list[ComparisonRow]:
-    """Return one row per input and quantity: set, input, quantity, base and changed value."""
-    if not isinstance(plain, Outcome):
-        return []
-    values: list[tuple[str, str, Num]] = [
-        (name, quantity, key.of(run))
-        for name, run in changed.items()
-        if isinstance(run, Outcome)
-        for quantity, key in SHOWN.items()
-    ]
-    for name, arms in (("arms-edge", plain.restitution.edge), ("arms-impulse", plain.restitution.impulse)):
-        values += [(name, "e", arms.e), (name, "E_ln/E_0", arms.E_ln), (name, "E_lt/E_0", arms.E_lt)]
-    return [
-        {
-            "set": plain.provenance.scene_id,
-            "input": name,
-            "quantity": quantity,
-            "base": known(SHOWN[quantity].of(plain)),
-            "changed": known(value),
-        }
-        for name, quantity, value in values
-    ]
-
-
-def explanations(
-    comparison: Iterable[ComparisonRow], sensitivities: Iterable[ComparisonRow]
-) -> list[ComparisonRow]:
-    """Return, for each quantity outside its 95 % interval, the share of the miss by each input.
-
-    The miss is measured mean less model; an input's share is its change of the result over the miss: 1 brings
-    the model to the mean, below 0 takes it further away. An input could explain the miss if its change
-    reaches the interval. Changes are those on one mesh, applied to the model's value.
-    """
-    changes_of: dict[tuple[str, str], dict[str, float]] = {}
-    for row in sensitivities:
-        change = row["changed"] - row["base"]
-        changes_of.setdefault((row["set"], row["quantity"]), {})[row["input"]] = change
-    explained = []
-    for row in comparison:
-        change_by_input = changes_of.get((row["set"], row["quantity"]))
-        model, mean, low = row["model"], row["measured_mean"], row["measured_low"]
-        if None in (mean, model) or row["verdict"] == "inside" or change_by_input is None:
-            continue
-        shares = {name: change / (mean - model) for name, change in change_by_input.items()}
-        enough = ((low if model < low else row["measured_high"]) - model) / (mean - model)
-        could = [name for name, share in shares.items() if share >= enough]
-        known_values = {name: row[name] for name in ("set", "quantity", "model", "measured_mean")}
-        explained.append({**known_values, "shares": shares, "could": could})
-    return explained

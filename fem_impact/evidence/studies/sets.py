@@ -1,4 +1,4 @@
-"""The measured sets as users run them, beside the experiments, and what uncertain inputs could explain.
+"""The measured sets as users run them, beside the experiments.
 
 Levels run with the barrier's grid at two places half a cell apart, so that a band holds the scatter by the
 place too; the run at the first place of the last level is the one that is kept with its fields.
@@ -13,13 +13,6 @@ from pathlib import Path
 from fem_impact import Outcome, Unknown, known, load, replace_all, simulate
 from fem_impact.answers.compare import COMPARED, ComparisonRow, compare
 from fem_impact.answers.report import Request, Sheet, StudyReport
-from fem_impact.evidence.studies.inputs import (
-    DESCRIPTIONS,
-    ONE_MESH,
-    explanations,
-    sensitivity_jobs,
-    sensitivity_rows,
-)
 from fem_impact.jobs.job import Job
 from fem_impact.jobs.run import JobResults
 from fem_impact.outcome.keys import or_none
@@ -32,12 +25,6 @@ from fem_impact.tables.text import plain
 QUICK = {"save.frames": 40}  # a third of the frames
 QUICK_SETS = ("t3-machined", "t4", "t5b")
 TWO_PLACES = {"accuracy.offsets": 2}
-
-
-def jobs_of(name: str, quick: bool, out: Path) -> dict[str, Job]:
-    """Return the jobs of a set: its run and, unless quick, one mesh with each input changed."""
-    jobs = {"run": set_job(name, quick, out)}
-    return jobs if quick else jobs | sensitivity_jobs(jobs["run"].scene, out)
 
 
 def set_job(name: str, quick: bool, out: Path | None = None) -> Job:
@@ -57,60 +44,41 @@ def chosen(request: Request) -> tuple[str, ...]:
 
 
 def plan(request: Request, results: JobResults) -> list[Job]:
-    """Return the jobs of the measured sets."""
-    groups = (jobs_of(name, request.quick, request.out) for name in chosen(request))
-    return [job for group in groups for job in group.values()]
+    """Return the runs of the sets."""
+    return [set_job(name, request.quick, request.out) for name in chosen(request)]
 
 
 def conclude(request: Request, results: JobResults) -> StudyReport:
     """Return the study of sets and measurements, with their runs to be presented."""
-    outcomes, comparison, changed = list[Outcome](), list[ComparisonRow](), list[ComparisonRow]()
-    for name in chosen(request):
-        jobs = jobs_of(name, request.quick, request.out)
-        run = results[jobs["run"].name]
-        if isinstance(run, Outcome):
+    outcomes, comparison = list[Outcome](), list[ComparisonRow]()
+    for job, name in zip(plan(request, results), chosen(request), strict=True):
+        if isinstance(run := results[job.name], Outcome):
             outcomes.append(run)
             comparison += compare(run, tests_of(load(name)))
-        if not request.quick:
-            inputs = {name: results[jobs[name].name] for name in DESCRIPTIONS if name in jobs}
-            changed += sensitivity_rows(results[jobs[ONE_MESH].name], inputs)
-    report = sets_report(outcomes, comparison, changed)
+    report = sets_report(outcomes, comparison)
     return replace(report, runs=[request.out / outcome.provenance.scene_id for outcome in outcomes])
 
 
-SENSITIVITY = ("set", "quantity", "input", "base", "changed")
-
-
-def sets_report(
-    outcomes: Sequence[Outcome], comparison: Sequence[ComparisonRow], changed: Sequence[ComparisonRow]
-) -> StudyReport:
-    """Return the study: comparison, energy shares, limits of the levels, and what changed inputs explain."""
-    explained = explanations(comparison, changed)
-    sentences = [inside_sentence(comparison), *([miss_sentence(explained)] if explained else [])]
+def sets_report(outcomes: Sequence[Outcome], comparison: Sequence[ComparisonRow]) -> StudyReport:
+    """Return the study: comparison, energy shares and limits of the levels."""
+    sentence = inside_sentence(comparison)
     cells = {(row["set"], row["quantity"]): _cell(row) for row in comparison if row["quantity"] in COMPARED}
     names = dict.fromkeys(row["set"] for row in comparison)
     beside = Table.of(
         ("set", *COMPARED), [(name, *(cells.get((name, q)) for q in COMPARED)) for name in names]
     )
-    sheets = (
-        Sheet("sensitivity", "Values with each changed input", Table.of(SENSITIVITY, changed), shown=False),
-        Sheet("changes", "Changes by each input alone, on one mesh", _changes(changed)),
-        Sheet("explanations", EXPLAINED, _explanations(explained)),
-    )
     return StudyReport(
         "sets",
         "Model beside measurement",
-        sentences,
+        [sentence],
         sheets=[
             Sheet("comparison", "Every compared quantity", Table.of(COMPARISON, comparison), shown=False),
             Sheet("beside", BESIDE.format(_banded(outcomes)), beside),
             Sheet("shares", "Energies after the last separation, % of E_0", _shares(outcomes)),
             *_limits(outcomes),
-            *(sheets if changed else ()),
         ],
-        assumptions=[f"{name}: {text}." for name, text in DESCRIPTIONS.items()] if changed else (),
         sources=sorted({effect for outcome in outcomes for effect in outcome.provenance.effects}),
-        conclusions=[("", sentence) for sentence in sentences],
+        conclusions=[("", sentence)],
         outcomes=outcomes,
         comparison=comparison,
     )
@@ -128,22 +96,6 @@ def inside_sentence(comparison: Sequence[ComparisonRow]) -> str:
     )
 
 
-def miss_sentence(explained: Sequence[ComparisonRow]) -> str:
-    """Return the sentence on how many misses each input could explain, and how many none could."""
-    counts = {name: sum(name in row["could"] for row in explained) for name in DESCRIPTIONS}
-    ranked = sorted((name for name in counts if counts[name]), key=lambda name: -counts[name])
-    listed = ", ".join(f"{name} {counts[name]}" for name in ranked) or "none"
-    lost = sum(not row["could"] for row in explained)
-    return (
-        f"{len(explained)} computed quantities lie outside the 95 % interval of the measured mean. An "
-        f"uncertain input, changed alone, could explain: {listed}. No single input explains {lost}."
-    )
-
-
-EXPLAINED = (
-    "What could explain a quantity outside its interval; in brackets the share of the miss that an input "
-    "makes up: 100 % brings the model to the measured mean, below 0 takes it further away"
-)
 BESIDE = (
     "Model{} / measured mean with standard deviation; bold: inside the 95 % interval of the mean, "
     "?: undecided by the mesh"
@@ -214,28 +166,3 @@ def _limits(outcomes: Sequence[Outcome]) -> list[Sheet]:
     head = ("set", "e, limit", "of e, %", "E_vib / E_0, %, limit", "of E_vib, %", "CPU s")
     caption = "Limits for vanishing elements, their bands, these in per cent, and time of the last level"
     return [Sheet("limits", caption, Table.of(head, rows))] if rows else []
-
-
-def _changes(changed: Sequence[ComparisonRow]) -> Table:
-    """Return one row per set and quantity: value on one mesh and its change by each input."""
-    by_quantity: dict[tuple[str, str], dict[str, ComparisonRow]] = {}
-    for row in changed:
-        by_quantity.setdefault((row["set"], row["quantity"]), {})[row["input"]] = row
-    rows = []
-    for key, by_input in by_quantity.items():
-        base = next(iter(by_input.values()))["base"]
-        shown = {name: f"{row['changed'] - row['base']:+.2g}" for name, row in by_input.items()}
-        rows.append((*key, f"{base:.3g}", *(shown.get(name, "") for name in DESCRIPTIONS)))
-    return Table.of(("set", "quantity", "one mesh", *DESCRIPTIONS), rows)
-
-
-def _explanations(explained: Sequence[ComparisonRow]) -> Table:
-    """Return one row per quantity outside its interval: the inputs that could explain it, and the others."""
-    rows = []
-    for row in explained:
-        labels = {name: f"{name} ({share:+.0%})" for name, share in row["shares"].items()}
-        could = ", ".join(labels[name] for name in row["could"]) or "none of these"
-        cannot = ", ".join(label for name, label in labels.items() if name not in row["could"])
-        numbers = (f"{row[key]:.3g}" for key in ("model", "measured_mean"))
-        rows.append((row["set"], row["quantity"], *numbers, could, cannot))
-    return Table.of(("set", "quantity", "model", "measured", "could explain it", "cannot"), rows)

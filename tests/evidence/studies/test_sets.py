@@ -1,4 +1,4 @@
-"""The study of the measured sets: a run a set with its bands, changed inputs, failures as rows."""
+"""The study of the measured sets: a run a set with its bands, failures as rows."""
 
 import json
 
@@ -7,14 +7,11 @@ from study_fakes import outcome, published
 
 from fem_impact.answers.report import SCHEMA, Request
 from fem_impact.answers.simulate import simulate
-from fem_impact.case.case import Case
 from fem_impact.evidence.runner import run_study
-from fem_impact.evidence.studies.inputs import input_changes, one_mesh
-from fem_impact.evidence.studies.sets import QUICK_SETS, conclude, jobs_of, plan
+from fem_impact.evidence.studies.sets import QUICK_SETS, conclude, plan, set_job
 from fem_impact.jobs.job import Failure
 from fem_impact.pages.study_page import read_study, study_page
 from fem_impact.progress import NullMeter
-from fem_impact.scene.shipped import load, replace_all
 from fem_impact.tables.table import read_csv
 
 pytestmark = pytest.mark.usefixtures("unrendered")
@@ -52,7 +49,7 @@ def test_a_set_is_a_run_with_bands_and_a_table(tmp_path):
 
 
 def test_levels_run_at_two_places_of_the_grid_unless_quick(tmp_path):
-    full, quick = (jobs_of("t5b", quick, tmp_path)["run"] for quick in (False, True))
+    full, quick = (set_job("t5b", quick, tmp_path) for quick in (False, True))
     assert (full.scene.accuracy.offsets, quick.scene.accuracy.offsets) == (2, None)
     assert full.way == quick.way == simulate
     assert full.out == tmp_path / "t5b"
@@ -95,18 +92,6 @@ def test_a_first_look_is_one_set_a_rod(tmp_path):
     assert [job.name for job in plan(Request(tmp_path, quick=True), {})] == list(QUICK_SETS)
 
 
-def test_changed_inputs_are_run_unless_quick(tmp_path):
-    found = study(tmp_path, "t5b", quick=False)
-    assert [sheet["name"] for sheet in found.document["sheets"]][-3:] == [
-        "sensitivity",
-        "changes",
-        "explanations",
-    ]
-    assert {*read_csv(tmp_path / "sensitivity.csv").texts("input")} >= {*input_changes(load("t5b"))}
-    quick = study(tmp_path / "quick", "t5b").document["sheets"]
-    assert "sensitivity" not in {sheet["name"] for sheet in quick}
-
-
 def test_the_study_publishes_as_every_other(tmp_path):
     found = study(tmp_path, "t5b")
     read = read_study(tmp_path)
@@ -117,20 +102,3 @@ def test_the_study_publishes_as_every_other(tmp_path):
     assert read_csv(tmp_path / "runs.csv").texts("run") == ["t5b"]
     page = study_page(tmp_path)
     assert "Where the energy went" in page and "beside.csv" in page
-
-
-def test_inputs_are_changed_on_one_mesh_that_stays(tmp_path):
-    """Of another strength the contact is of another width, and its mesh would be another."""
-    scene = load("t5b")
-    plain = one_mesh(scene)
-    alone = Case.of(replace_all(scene, {"accuracy.levels": 1}))
-    assert Case.of(plain).zones.tip_size == pytest.approx(2 * alone.zones.tip_size)
-    assert (plain.accuracy.levels, plain.save.frames) == (1, 0)
-    jobs = jobs_of("t5b", False, tmp_path)
-    assert {job.way for name, job in jobs.items() if name != "run"} == {None}
-    for name in input_changes(plain):
-        changed = jobs[name].scene.accuracy
-        assert (changed.tip_size, changed.barrier_size) == (
-            plain.accuracy.tip_size,
-            plain.accuracy.barrier_size,
-        )

@@ -1,4 +1,4 @@
-"""The study's Markdown, its changed inputs, and pictures that may be missing."""
+"""The study's Markdown, and pictures that may be missing."""
 
 import json
 from concurrent.futures import Executor, Future
@@ -9,13 +9,10 @@ from study_fakes import outcome
 
 from fem_impact.answers.report import Request, StudyReport, publish
 from fem_impact.errors import MissingLibraryError
-from fem_impact.evidence.studies.inputs import explanations, sensitivity_rows
-from fem_impact.evidence.studies.sets import jobs_of, sets_report
+from fem_impact.evidence.studies.sets import sets_report
 from fem_impact.figures.panels import Panel, Picture, Series
-from fem_impact.jobs.job import Failure
 from fem_impact.outcome.shares import shares
 from fem_impact.pages.write import film, present
-from fem_impact.physics.hardening import rate_gain
 from fem_impact.progress import NullMeter
 from fem_impact.tables.table import COMPARISON as COLUMNS
 
@@ -52,9 +49,9 @@ OUTCOME = outcome(
 )
 
 
-def tables(outcomes, comparison=COMPARISON, changed=()):
+def tables(outcomes, comparison=COMPARISON):
     """The tables of the study by name."""
-    return {sheet.name: sheet.table for sheet in sets_report(outcomes, comparison, changed).sheets}
+    return {sheet.name: sheet.table for sheet in sets_report(outcomes, comparison).sheets}
 
 
 def test_marks_tell_inside_undecided_and_outside_apart():
@@ -85,48 +82,6 @@ def test_shares_are_percent_and_of_two_meshes_their_limits_with_bands():
     shown = ["0.35 ± 0.12" if share.label == "vibration" else "12.3" for share in shares("report")]
     shown[[share.label for share in shares("report")].index("damping")] = None
     assert cells == ("t5b", *shown, "25.0", "-2e-05", 9100, "7")  # of E_0, 25 % was added by gravity
-
-
-def test_a_study_changes_each_input_and_a_quick_one_none(tmp_path):
-    jobs = jobs_of("t3-contaminated", False, tmp_path)
-    changed = ["friction-low", "friction-high", "hardness", "rate-low", "rate-high", "block"]
-    assert list(jobs) == ["run", "one-mesh", *changed]
-    gains = [rate_gain(jobs[name].scene.barrier.material, 1e3) for name in ("rate-low", "rate-high")]
-    assert gains == pytest.approx([0.1, 0.6])
-    base = jobs["one-mesh"].scene
-    assert jobs["friction-low"].scene.surface.friction == base.surface.friction_low
-    assert jobs["friction-high"].scene.surface.friction == base.surface.friction_high
-    harder = jobs["hardness"].scene
-    assert harder.projectile.material.law == harder.barrier.material.law == "hardness"
-    assert jobs["block"].scene.accuracy.block_margin == pytest.approx(9e-3)
-    assert len({job.out for job in jobs.values() if job.out}) == 8
-    assert list(jobs_of("t3-contaminated", True, tmp_path)) == ["run"]
-
-
-def changed(name, quantity, value):
-    return {"set": "t5b", "input": name, "quantity": quantity, "base": 0.30, "changed": value}
-
-
-def test_rows_hold_runs_and_other_arms():
-    base = outcome(e_paper=0.3, e_edge=0.35, e_impulse=0.4)
-    rows = sensitivity_rows(base, {"hardness": outcome(e_paper=0.42), "block": Failure("t5b", "folded")})
-    e = {row["input"]: (row["base"], row["changed"]) for row in rows if row["quantity"] == "e"}
-    assert e == {"hardness": (0.3, 0.42), "arms-edge": (0.3, 0.35), "arms-impulse": (0.3, 0.4)}
-    assert sensitivity_rows(Failure("t5b", "folded"), {}) == []
-
-
-def test_an_input_explains_a_miss_only_if_it_reaches_the_interval():
-    miss = row("e", "miss by +3.0 SD", model=0.5) | {"measured_low": 0.30, "measured_high": 0.35}
-    values = {"hardness": 0.12, "block": 0.20, "friction-low": 0.40}
-    changes = [changed(name, "e", value) for name, value in values.items()]
-    (found,) = explanations([miss, row("mu", "inside")], changes)
-    assert found["could"] == ["hardness"]
-    assert found["shares"]["block"] == pytest.approx(0.10 / 0.173)
-    assert found["shares"]["friction-low"] < 0
-    told = tables([OUTCOME], [miss], changes)
-    explained = ("t5b", "e", "0.5", "0.327", "hardness (+104%)", "block (+58%), friction-low (-58%)")
-    assert told["explanations"].rows == (explained,)
-    assert told["changes"].rows[0][:4] == ("t5b", "e", "0.3", "+0.1")
 
 
 def test_a_missing_library_costs_a_film_only(tmp_path, monkeypatch):

@@ -13,6 +13,7 @@ from study_fakes import outcome, published
 
 from fem_impact.answers.report import Request
 from fem_impact.answers.v_and_v import Comparison
+from fem_impact.case.case import Case
 from fem_impact.case.effects.plasticity import hardening_of
 from fem_impact.errors import RunError
 from fem_impact.evidence.studies import validation as study
@@ -22,6 +23,7 @@ from fem_impact.evidence.studies.inputs import (
     UNCERTAIN_INPUTS,
     changes,
     hardened,
+    one_mesh,
     rates,
     sample_values,
 )
@@ -104,6 +106,16 @@ def test_the_ends_of_flow_stress_and_rate_are_those_of_the_stated_intervals():
     assert rate_gain(ends.projectile.material, 1e3) == pytest.approx(0.8)
     assert hardening_of(ends.barrier.material).flow_stress(0.08) == pytest.approx(575e6, rel=1e-3)
     assert rate_gain(replace_all(SCENE, rates(SCENE, 0.0)).barrier.material, 1e3) == pytest.approx(0.1)
+
+
+def test_inputs_vary_on_one_mesh_that_stays():
+    """Of another strength the contact is of another width, and its mesh would be another."""
+    plain = one_mesh(SCENE)
+    alone = Case.of(replace_all(SCENE, {"accuracy.levels": 1}))
+    assert Case.of(plain).zones.tip_size == pytest.approx(2 * alone.zones.tip_size)
+    assert (plain.accuracy.levels, plain.save.frames) == (1, 0)
+    changed = replace_all(plain, hardened(plain, 1.0)).accuracy
+    assert (changed.tip_size, changed.barrier_size) == (plain.accuracy.tip_size, plain.accuracy.barrier_size)
 
 
 def test_a_surface_of_second_order_is_exact_for_a_quadratic_and_knows_its_error_elsewhere():
