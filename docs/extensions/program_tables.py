@@ -18,7 +18,7 @@ from fem_impact.evidence.problems.problem import PROBLEMS, problem
 from fem_impact.outcome.keys import markdown_table
 from fem_impact.outcome.record import KEYS
 from fem_impact.pages.bibliography import references
-from fem_impact.scene import fields, library, material_fields
+from fem_impact.scene import fields, library
 from fem_impact.scene.family import FAMILIES
 from fem_impact.scene.parameter import Parameter
 from fem_impact.scene.units import DIMENSIONS
@@ -42,7 +42,7 @@ _PLACES |= {
     "tube": "`[projectile]`, of a tube",
     "motion": "`[impact]` on a barrier that moves",
 }
-_LAWS = {"rate": material_fields.RATES, "flow": material_fields.FLOWS}
+_LAWS = {"rate": fields.RATES, "flow": fields.FLOWS}
 _PLACES["skin"] = "`skin` of a material"
 _PLACES |= {
     f"{key} {law}": f'`{key}` of a material, with `law = "{law}"`'
@@ -56,7 +56,7 @@ def _groups() -> Iterator[tuple[str, tuple[Parameter, ...]]]:
     for name, value in vars(fields).items():
         if _parameters(value):
             yield name.strip("_").lower(), value
-    yield "skin", material_fields.SKIN
+    yield "skin", fields.SKIN
     for key, laws in _LAWS.items():
         yield from ((f"{key} {law}", numbers) for law, numbers in laws.items() if numbers)
 
@@ -74,8 +74,8 @@ def _default(field: Parameter, group: str) -> str:
 def scene_choices() -> str:
     """Keys that take one of a few words."""
     choices = {
-        "law of a material": material_fields.FlowLaw,
-        "shape of a material's skin": material_fields.SkinShape,
+        "law of a material": fields.FlowLaw,
+        "shape of a material's skin": fields.SkinShape,
         "barrier.boundary": fields.Boundary,
         "barrier.support": fields.Support,
         "accuracy.element": fields.Element,

@@ -15,8 +15,8 @@ from fem_impact.physics.contact import ContactEstimate
 from fem_impact.scene.material import JohnsonCookRate
 
 if TYPE_CHECKING:
+    from fem_impact.scene.fields import SkinShape
     from fem_impact.scene.material import Material
-    from fem_impact.scene.material_fields import SkinShape
 
 
 TABOR, TABOR_STRAIN = 3.0, 0.08  # hardness over the flow stress at this plastic strain

@@ -22,7 +22,7 @@ import numpy as np
 from fem_impact.physics.hardening import KGF_PER_MM2, TABOR_STRAIN, HardeningLaw, Skin
 
 if TYPE_CHECKING:
-    from fem_impact.scene.material_fields import SkinShape
+    from fem_impact.scene.fields import SkinShape
 
 FACES = 0.927  # projected area over that of the faces of Vickers' pyramid
 REACH, SPREADS = 0.3, 1.3

@@ -7,7 +7,7 @@ from itertools import pairwise
 from typing import ClassVar
 
 from fem_impact.errors import SceneError
-from fem_impact.scene import material_fields
+from fem_impact.scene import fields
 from fem_impact.scene.checks import check_numbers
 
 MOST_POINTS = 200  # of a table
@@ -35,7 +35,7 @@ class JohnsonCookFlow:
     heat_share: float | None = None
 
     def __post_init__(self) -> None:
-        check_numbers(self, material_fields.FLOWS[self.law])
+        check_numbers(self, fields.FLOWS[self.law])
         missing = [key for key in THERMAL if getattr(self, key) is None]
         if missing and len(missing) < len(THERMAL):
             remedy = f"Give all of {', '.join(THERMAL)}, or none: temperature then has no effect."
@@ -53,7 +53,7 @@ class RambergOsgoodFlow:
     n: float
 
     def __post_init__(self) -> None:
-        check_numbers(self, material_fields.FLOWS[self.law])
+        check_numbers(self, fields.FLOWS[self.law])
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,8 +68,8 @@ class TableFlow:
             raise SceneError(f"must hold 2 to {MOST_POINTS} points.", key="points", value=len(self.points))
         checked = tuple(
             (
-                float(material_fields.PLASTIC_STRAIN.checked(strain)),
-                float(material_fields.FLOW_STRESS.checked(stress)),
+                float(fields.PLASTIC_STRAIN.checked(strain)),
+                float(fields.FLOW_STRESS.checked(stress)),
             )
             for strain, stress in self.points
         )

@@ -11,7 +11,7 @@ from typing import Any
 
 from fem_impact.errors import SceneError, did_you_mean
 from fem_impact.plugins import added, wrong
-from fem_impact.scene import material_fields
+from fem_impact.scene import fields
 from fem_impact.scene.family import family_by_words
 from fem_impact.scene.material import Material
 from fem_impact.scene.material_tables import material_of
@@ -196,7 +196,7 @@ def melting_of(name: str) -> float | None:
 
 def intervals_of(name: str) -> dict[str, tuple[float, float]]:
     """Return the intervals of a shipped material, SI; ``rate_factor`` is that at 1000 per second."""
-    dimensions = {parameter.key: parameter.dimension for parameter in material_fields.MATERIAL}
+    dimensions = {parameter.key: parameter.dimension for parameter in fields.MATERIAL}
 
     def number(key: str, end: Any) -> float:
         return parse_quantity(end, dimensions[key], key) if isinstance(end, str) else float(end)
@@ -208,7 +208,7 @@ def intervals_of(name: str) -> dict[str, tuple[float, float]]:
 def sourced_values(name: str) -> list[tuple[str, str, str, str]]:
     """Return key, value, interval and source of each value of a shipped material, as texts or empty."""
     metal, spread, melting = material(name), intervals_of(name), melting_of(name)
-    numbers = {f.key: f for f in material_fields.MATERIAL if getattr(metal, f.key) is not None}
+    numbers = {f.key: f for f in fields.MATERIAL if getattr(metal, f.key) is not None}
     values = {key: str(one.write(getattr(metal, key))) for key, one in numbers.items()}
     values |= {} if melting is None else {"melting": f"{melting:g} K"}
 

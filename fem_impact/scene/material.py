@@ -7,7 +7,7 @@ from math import inf
 from typing import ClassVar, get_args
 
 from fem_impact.errors import SceneError
-from fem_impact.scene import material_fields
+from fem_impact.scene import fields
 from fem_impact.scene.checks import check_choice, check_numbers, check_text
 from fem_impact.scene.family import FAMILIES
 from fem_impact.scene.flow import Flow, JohnsonCookFlow, TableFlow
@@ -31,7 +31,7 @@ class JohnsonCookRate:
     tested: float
 
     def __post_init__(self) -> None:
-        check_numbers(self, material_fields.RATES[self.law])
+        check_numbers(self, fields.RATES[self.law])
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +43,7 @@ class CowperSymondsRate:
     q: float
 
     def __post_init__(self) -> None:
-        check_numbers(self, material_fields.RATES[self.law])
+        check_numbers(self, fields.RATES[self.law])
 
 
 Rate = JohnsonCookRate | CowperSymondsRate
@@ -65,11 +65,11 @@ class SkinSpec:
     factor: float
     depth: float | None = None
     load: float | None = None
-    shape: material_fields.SkinShape = "even"
+    shape: fields.SkinShape = "even"
 
     def __post_init__(self) -> None:
-        check_numbers(self, material_fields.SKIN)
-        check_choice(self.shape, get_args(material_fields.SkinShape), "shape")
+        check_numbers(self, fields.SKIN)
+        check_choice(self.shape, get_args(fields.SkinShape), "shape")
         if self.depth is None and self.load is None:
             remedy = "Give it, or the load of the hardness test, from which the depth then follows."
             raise SceneError("is missing.", key="depth", remedy=remedy)
@@ -107,7 +107,7 @@ class Material:
     hardness: float | None = None
     conductivity: float | None = None
     heat_capacity: float | None = None
-    law: material_fields.FlowLaw = "tensile"
+    law: fields.FlowLaw = "tensile"
     rate: Rate | None = None
     tangent_modulus: float | None = None
     flow: Flow | None = None
@@ -118,11 +118,11 @@ class Material:
 
     def __post_init__(self) -> None:
         check_text(self.name, "name", 60)
-        check_choice(self.law, get_args(material_fields.FlowLaw), "law")
+        check_choice(self.law, get_args(fields.FlowLaw), "law")
         check_choice(self.family, ("", *FAMILIES), "family")
         # a material that never yields has no strengths
         absent = [key for key in ("yield_stress", "ultimate_stress") if getattr(self, key) == inf]
-        check_numbers(self, tuple(p for p in material_fields.MATERIAL if p.key not in absent))
+        check_numbers(self, tuple(p for p in fields.MATERIAL if p.key not in absent))
         _check_strengths(self)
         _check_law(self)
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from fem_impact.errors import SceneError
-from fem_impact.scene import material_fields
+from fem_impact.scene import fields
 from fem_impact.scene.checks import check_choice, check_text
 from fem_impact.scene.flow import FLOWS, Flow, TableFlow
 from fem_impact.scene.material import RATES, Material, Rate, SkinSpec
@@ -25,9 +25,9 @@ def material_of(name: Any, table: Table, others: Iterable[str] = ()) -> Material
         A key is unknown, a value is missing or refused, or values contradict each other.
     """
     named = ("law", "rate", "flow", "skin", "family", *others)
-    numbers = numbers_of(table, material_fields.MATERIAL, (*named, "source", "sources"))
+    numbers = numbers_of(table, fields.MATERIAL, (*named, "source", "sources"))
     stated: dict[str, Any] = {
-        f.key: f.checked(numbers[f.key]) for f in material_fields.MATERIAL if numbers[f.key] is not None
+        f.key: f.checked(numbers[f.key]) for f in fields.MATERIAL if numbers[f.key] is not None
     }
     stated |= {key: table[key] for key in ("law", "family") if key in table}
     for key, read in (("rate", _rate), ("flow", _flow), ("skin", _skin)):
@@ -55,18 +55,18 @@ def _sources(table: Table, stated: list[str]) -> tuple[tuple[str, str], ...]:
 
 def _rate(table: Table) -> Rate:
     law = check_choice(needed(table, "law"), tuple(RATES), "law")
-    return RATES[law](**numbers_of(table, material_fields.RATES[law], ("law",)))
+    return RATES[law](**numbers_of(table, fields.RATES[law], ("law",)))
 
 
 def _skin(table: Table) -> SkinSpec:
     shape = {"shape": table["shape"]} if "shape" in table else {}
-    return SkinSpec(**numbers_of(table, material_fields.SKIN, ("shape",)), **shape)
+    return SkinSpec(**numbers_of(table, fields.SKIN, ("shape",)), **shape)
 
 
 def _flow(table: Table) -> Flow:
     law = check_choice(needed(table, "law"), tuple(FLOWS), "law")
     if law != TableFlow.law:
-        return FLOWS[law](**numbers_of(table, material_fields.FLOWS[law], ("law",)))
+        return FLOWS[law](**numbers_of(table, fields.FLOWS[law], ("law",)))
     check_keys(table, ("law", "points"))
     return TableFlow(_points(needed(table, "points", _EXAMPLE)))
 

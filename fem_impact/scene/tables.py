@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import Any, NoReturn, TypeVar
 
 from fem_impact.errors import SceneError, did_you_mean
-from fem_impact.scene import fields, material_fields
+from fem_impact.scene import fields
 from fem_impact.scene.parameter import Parameter
 from fem_impact.scene.units import parse_number, parse_quantity
 
@@ -24,7 +24,7 @@ OTHER_NAMES = {
 PLACES = {
     f.key: place
     for place, wanted in (
-        ("a material: projectile.material or barrier.material", material_fields.MATERIAL),
+        ("a material: projectile.material or barrier.material", fields.MATERIAL),
         ("[surface]", fields.SURFACE),
         ("[impact]", (*fields.IMPACT, fields.SLOPE, fields.HEIGHT, fields.SPEED)),
         ("[accuracy]", fields.ACCURACY),

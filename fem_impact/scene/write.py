@@ -12,7 +12,7 @@ from typing import Any
 
 import tomli_w
 
-from fem_impact.scene import fields, material_fields
+from fem_impact.scene import fields
 from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.flow import Flow, TableFlow
 from fem_impact.scene.impact import FIRST, Impact
@@ -141,21 +141,21 @@ def material_table(material: Material) -> dict[str, Any]:
     """Return a material as the table that a scene states."""
     law = {"law": material.law} if material.law != "tensile" else {}
     rate = material.rate
-    rates = {"rate": {"law": rate.law, **_written(rate, material_fields.RATES[rate.law])}} if rate else {}
+    rates = {"rate": {"law": rate.law, **_written(rate, fields.RATES[rate.law])}} if rate else {}
     flow = {"flow": _flow(material.flow)} if material.flow else {}
     skin = material.skin
-    skins = {"skin": {**_written(skin, material_fields.SKIN), "shape": skin.shape}} if skin else {}
+    skins = {"skin": {**_written(skin, fields.SKIN), "shape": skin.shape}} if skin else {}
     words = {"family": material.family} if material.family else {}
     sources = {"sources": dict(material.sources)} if material.sources else {}
-    numbers = _written(material, material_fields.MATERIAL)
+    numbers = _written(material, fields.MATERIAL)
     return {"name": material.name, **words, **numbers, **law, **flow, **rates, **skins, **sources}
 
 
 def _flow(flow: Flow) -> dict[str, Any]:
     if isinstance(flow, TableFlow):
-        points = [[strain, material_fields.FLOW_STRESS.write(stress)] for strain, stress in flow.points]
+        points = [[strain, fields.FLOW_STRESS.write(stress)] for strain, stress in flow.points]
         return {"law": flow.law, "points": points}
-    return {"law": flow.law, **_written(flow, material_fields.FLOWS[flow.law])}
+    return {"law": flow.law, **_written(flow, fields.FLOWS[flow.law])}
 
 
 def _written(part: object, wanted: tuple[Parameter, ...]) -> dict[str, Any]:

@@ -5,7 +5,7 @@ import pytest
 from fem_impact.case.case import Case
 from fem_impact.case.metals import unknowns
 from fem_impact.errors import SceneError
-from fem_impact.scene import library, material_fields
+from fem_impact.scene import fields, library
 from fem_impact.scene.family import FAMILIES, family_by_words, kind_of
 from fem_impact.scene.library import (
     aliases_of,
@@ -207,4 +207,4 @@ def test_a_surface_of_steel_beside_another_metal_names_the_interval_of_the_pair(
 
 
 def test_each_bound_of_a_material_is_that_of_its_table():
-    assert {f.key for f in material_fields.MATERIAL} >= {"tangent_modulus", "loss_factor"}
+    assert {f.key for f in fields.MATERIAL} >= {"tangent_modulus", "loss_factor"}

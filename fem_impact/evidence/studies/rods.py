@@ -21,9 +21,9 @@ from fem_impact.outcome.groups import ContactInterval
 from fem_impact.outcome.keys import or_none
 from fem_impact.outcome.record import KEY_TABLE
 from fem_impact.outcome.shares import shares
+from fem_impact.scene.fields import FlowLaw
 from fem_impact.scene.impact import Impact
 from fem_impact.scene.library import surfaces
-from fem_impact.scene.material_fields import FlowLaw
 from fem_impact.scene.surface import Surface
 from fem_impact.scene.types import Save
 from fem_impact.tables.table import Table
