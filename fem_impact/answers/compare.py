@@ -89,16 +89,14 @@ def verdict(model: float, band: float | None, measured: Statistic) -> str:
 
 def measured_value(outcome: Outcome, name: str) -> tuple[Num, float | None]:
     """Return value and half band of a number of tests: a key of the outcome, or one of `OTHERS`."""
-    return (OTHERS[name](outcome), None) if name in OTHERS else outcome.estimate(name)
+    return OTHERS[name][1](outcome) if name in OTHERS else outcome.estimate(name)
 
 
 def _quantities(measured: Iterable[str]) -> tuple[ComparedQuantity, ...]:
     """Return all compared quantities: those of a camera, others that the tests hold, those none can see."""
     usual = {quantity.measured for quantity in MEASURED}
     more = [ComparedQuantity(n, KEY_TABLE[n], n) for n in measured if n in KEY_TABLE and n not in usual]
-    other = [
-        ComparedQuantity(n, Key(n, "number", n.rsplit("_", 1)[1], ""), n) for n in measured if n in OTHERS
-    ]
+    other = [ComparedQuantity(n, Key(n, "number", OTHERS[n][0], ""), n) for n in measured if n in OTHERS]
     return (*MEASURED, *more, *other, *UNSEEN)
 
 

@@ -12,6 +12,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import islice, product
 from typing import Any
 
 import numpy as np
@@ -19,25 +20,29 @@ import numpy as np
 from fem_impact.answers.compare import MEASURED, measured_value
 from fem_impact.answers.simulate import simulate
 from fem_impact.answers.v_and_v import COVERAGE, Comparison, joint
-from fem_impact.answers.vary import measure
+from fem_impact.answers.vary import in_unit, measure
 from fem_impact.arrays import Array
 from fem_impact.errors import SceneError, UsageError
 from fem_impact.options import FIDELITIES, RunOptions
 from fem_impact.outcome.keys import Num, Unknown, known
 from fem_impact.progress import CaseProgress, silent, watched
 from fem_impact.run.tests import NUMBERS, MeasuredTests, tests_of
-from fem_impact.scene.shipped import replace_all
+from fem_impact.scene.shipped import bare, named, replace_all
 from fem_impact.scene.types import Scene
+from fem_impact.scene.write import to_dict
 from rigid.experiments import Statistic
 
 SAMPLES = 64  # of each of the two samples that Sobol's indices are made of
 SEED = 20260101
 FOLLOWS = ("E_ln_over_E_0", "E_lt_over_E_0", "E_r_over_E_0")
-MOVES = ("V_n", "V_t")
+MOVES = ("V_n", "V_t", "e_t")
 """Quantities that follow from e, mu and Omega, and are no further evidence in the joint statement; velocities
-are where neither e nor mu is measured."""
+and their ratio are where neither e nor mu is measured."""
 FRICTION = "surface.friction"
-Ends = tuple[Any, Any]
+CORNERS = 256  # of the intervals, tried before any run
+Ends = tuple[Any, Any] | str
+Interval = tuple[str, float, float, str]
+"""Key, lowest and highest value, and their unit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,7 +103,8 @@ def validate(
     Parameters
     ----------
     uncertain : lowest and highest value of each uncertain input by its key, such as
-        ``{"impact.angle": ("44 deg", "46 deg")}``; each is uniform between. By default friction over its
+        ``{"impact.angle": ("44 deg", "46 deg")}``, or how far it may lie from the scene's value,
+        ``{"impact.v_n": "+-2 %"}`` or ``"+-0.1 m/s"``; each is uniform between. By default friction over its
         interval
     fidelity : of the compared run
     samples : a power of two; (inputs + 2) times as many runs are made
@@ -108,7 +114,7 @@ def validate(
     Raises
     ------
     SceneError
-        The scene names no tests, or a value is none of the key.
+        The scene names no tests, or is refused somewhere in the intervals, which are named.
     UsageError
         The ends of an interval are no numbers of one unit, or there is no interval.
 
@@ -123,7 +129,9 @@ def validate(
     if tests is None:
         raise SceneError("is missing: there is nothing to compare with.", key="measured", remedy=_TESTS)
     stated = _friction(scene) if uncertain is None else uncertain
-    intervals = [interval_of(key, ends) for key, ends in stated.items()]
+    intervals = [interval_of(scene, key, ends) for key, ends in stated.items()]
+    for corner in islice(product((0.0, 1.0), repeat=len(intervals)), CORNERS):
+        at_place(scene, intervals, np.array(corner))
     quick = inputs_by or ("rigid" if fidelity == "rigid" else "modal")
     if quick not in FIDELITIES:
         remedy = f"Known: {', '.join(FIDELITIES)}."
@@ -155,7 +163,7 @@ def validate(
         _comparison(scene.id, names[i], found[i], statistics[names[i]], float(np.sqrt(np.mean(change**2))))
         for i, change in zip(seen, moved, strict=True)
     )
-    follow = {*FOLLOWS, *(MOVES if {"e", "mu"} & set(names) else ())}
+    follow = {*FOLLOWS, *(MOVES if {"e", "mu"} & set(names) else MOVES[2:] if "V_t" in names else ())}
     free = [at for at, i in enumerate(seen) if names[i] not in follow] or list(range(len(seen)))
     C = moved[free] @ moved[free].T / moved.shape[1]
     C += np.diag([comparisons[j].u_num ** 2 for j in free])
@@ -244,24 +252,78 @@ def _measured(tests: MeasuredTests) -> list[str]:
     return [n for n in tests.statistics() if n in compared or n in NUMBERS]
 
 
-def interval_of(key: str, ends: Ends) -> tuple[str, float, float, str]:
-    """Return key, ends and unit of an interval."""
-    read = [measure(end) for end in ends]
+def interval_of(scene: Scene, key: str, ends: Ends) -> Interval:
+    """Return an interval by its ends, or by ``+-`` how far they lie from the scene's value.
+
+    Raises
+    ------
+    UsageError
+        The ends are no two numbers of one unit, or the scene states no number that they could lie about.
+    """
+    given = [ends] if isinstance(ends, str) else list(ends)
+    if len(given) == 1 and isinstance(given[0], str) and given[0].strip().startswith(("+-", "\u00b1")):
+        return _about(scene, bare(key), given[0])
+    read = [measure(end) for end in given]
     numbers, units = [number for number, _ in read if not isinstance(number, str)], {unit for _, unit in read}
     if len(read) != 2 or len(numbers) != 2 or len(units) != 1:
-        remedy = f"Write {key}=LOW,HIGH with one unit, such as impact.angle=44,46deg."
-        raise UsageError("needs two numbers of one unit.", key=key, value=list(ends), remedy=remedy)
-    (low, high), (unit,) = numbers, units
-    return key, low, high, unit
+        remedy = f"Write {key}=LOW,HIGH with one unit, such as impact.angle=44,46deg, or {key}=+-2%."
+        raise UsageError("needs two numbers of one unit.", key=key, value=given, remedy=remedy)
+    return key, min(numbers), max(numbers), units.pop()
 
 
-def at_place(scene: Scene, intervals: Sequence[tuple[str, float, float, str]], place: Array) -> Scene:
-    """Return the scene with its uncertain inputs at places (inputs,), each from 0 to 1 of its interval."""
+def _about(scene: Scene, key: str, text: str) -> Interval:
+    """Return the interval of a text such as ``+-2 %`` or ``+-0.1 m/s`` about the scene's value of a key."""
+    stated: Any = to_dict(scene)
+    for name in key.split("."):
+        stated = stated.get(name, "") if isinstance(stated, dict) else ""
+    value, unit = measure(stated)
+    half, of = measure(text.strip().lstrip("+-\u00b1"))
+    if of == "%" and not isinstance(half, str) and not isinstance(value, str):
+        half = abs(value) * half / 100
+    elif of or unit:
+        half = in_unit(f"{half} {of}", unit)
+    if isinstance(value, str) or isinstance(half, str) or not half > 0:
+        where = f"value, {named(stated)}" if stated != "" else "value: it states none"
+        problem = f"gives no interval about the scene's {where}."
+        raise UsageError(problem, key=key, value=text, remedy=f"Write {key}=LOW,HIGH with one unit.")
+    return key, value - half, value + half, unit
+
+
+def at_place(scene: Scene, intervals: Sequence[Interval], place: Array) -> Scene:
+    """Return the scene with its uncertain inputs at places (inputs,), each from 0 to 1 of its interval.
+
+    Raises
+    ------
+    SceneError
+        It is refused there; the intervals that it is refused for are named.
+    """
     changes: dict[str, Any] = {}
     for (key, low, high, unit), share in zip(intervals, place.tolist(), strict=True):
         value = low + share * (high - low)
         changes[key] = f"{value!r} {unit}" if unit else value
-    return replace(replace_all(scene, changes), measured=scene.measured)  # its tests are of this impact
+    try:
+        return replace(replace_all(scene, changes), measured=scene.measured)  # its tests are of this impact
+    except SceneError as error:
+        raise _refused(scene, intervals, changes, error) from None
+
+
+def _refused(
+    scene: Scene, intervals: Sequence[Interval], changes: dict[str, Any], error: SceneError
+) -> SceneError:
+    """Return why a scene is refused at a place, with the intervals but for which it would not be."""
+    for key in [*changes]:
+        others = {other: value for other, value in changes.items() if other != key}
+        try:
+            replace_all(scene, others)
+        except SceneError:
+            changes = others
+    where = " and ".join(
+        f"{key} = {low:.6g} to {high:.6g} {unit}".rstrip()
+        for key, low, high, unit in intervals
+        if key in changes
+    )
+    problem = f"{error.problem} That happens within the stated {where}."
+    return SceneError(problem, key=error.key, value=error.value, remedy="State less.")
 
 
 def _comparison(

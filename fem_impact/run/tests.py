@@ -48,21 +48,39 @@ class MeasuredTests(Protocol):
         """Return the covariance (k, k) of the means of named quantities, SI."""
 
 
-def _contact_time(outcome: Outcome) -> Num:
+Estimate = tuple[Num, float | None]
+"""A number and its half-width, None where that is not known."""
+
+
+def _contact_time(outcome: Outcome) -> Estimate:
     intervals = outcome.contact.intervals
-    return intervals if isinstance(intervals, Unknown) else sum(one.end - one.start for one in intervals)
+    if isinstance(intervals, Unknown):
+        return intervals, None
+    return sum(one.end - one.start for one in intervals), None
 
 
-def _depth(outcome: Outcome) -> Num:
+def _depth(outcome: Outcome) -> Estimate:
     sites = outcome.contact.sites
-    return sites if isinstance(sites, Unknown) else max((one.depth for one in sites), default=0.0)
+    return sites if isinstance(sites, Unknown) else max((one.depth for one in sites), default=0.0), None
 
 
-OTHERS: dict[str, Callable[[Outcome], Num]] = {
-    "contact_time_s": _contact_time,
-    "depth_m": _depth,
+def _tangential_ratio(outcome: Outcome) -> Estimate:
+    """Return e_t = V_t / v_t of the mass centre, as Kharaz, Gorham and Salman 2001 give it of spheres."""
+    before, (after, half) = outcome.motion.v_t, outcome.estimate("V_t_m_per_s")
+    if before == 0:
+        return Unknown("the scene strikes straight: e_t = V_t / v_t, and v_t is 0."), None
+    if isinstance(after, Unknown):
+        return after, None
+    return after / before, None if half is None else half / abs(before)
+
+
+OTHERS: dict[str, tuple[str, Callable[[Outcome], Estimate]]] = {
+    "contact_time_s": ("s", _contact_time),
+    "depth_m": ("m", _depth),
+    "e_t": ("-", _tangential_ratio),
 }
-"""Numbers of tests that are no key of an outcome: time of all contacts, indentation of the barrier."""
+"""Numbers of tests that are no key of an outcome, with their units: time of all contacts, indentation of the
+barrier, tangential restitution."""
 NUMBERS = frozenset({key.name for key in KEY_TABLE.values() if key.kind == "number"} | set(OTHERS))
 """What a file of means may state beside the quantities of a camera."""
 

@@ -3,15 +3,16 @@
 import numpy as np
 import pytest
 
-from fem_impact.answers.compare import compare
+from fem_impact.answers.compare import compare, measured_value
 from fem_impact.answers.v_and_v import joint
-from fem_impact.answers.validate import validate
+from fem_impact.answers.validate import interval_of, validate
+from fem_impact.cli.main import main
 from fem_impact.errors import ResultError, SceneError, UsageError
 from fem_impact.run import tests as own_tests
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.read import read_dict
-from fem_impact.scene.shipped import load
-from fem_impact.scene.write import to_dict
+from fem_impact.scene.shipped import load, replace_all
+from fem_impact.scene.write import to_dict, to_toml
 
 F = (0.2, 0.3)
 UNCERTAIN = {"surface.friction": F, "impact.v_n": ("-1.1 m/s", "-0.9 m/s")}
@@ -116,6 +117,64 @@ def test_velocities_are_evidence_where_neither_e_nor_mu_is_measured(tmp_path):
     assert validate(scene_with(tmp_path, means), UNCERTAIN, "rigid", samples=2).joined == ("V_t", "Omega")
     found = validate(scene_with(tmp_path, means + "mu,0.3,0.04,4\n"), UNCERTAIN, "rigid", samples=2)
     assert found.joined == ("Omega", "mu")
+
+
+def test_a_tangential_ratio_is_that_of_the_velocities_with_their_band(tmp_path):
+    scene = scene_with(tmp_path, "quantity,mean,sd,n\ne_t,0.94,0.01,4\nV_t_m_per_s,-8.5,0.2,4\n")
+    outcome = simulate(scene, "modal")
+    after, half = outcome.estimate("V_t_m_per_s")
+    assert measured_value(outcome, "e_t") == pytest.approx((after / -9, half / 9))
+    found = validate(scene, UNCERTAIN, "rigid", samples=2)
+    ratio, velocity = found.comparisons
+    assert (ratio.quantity, ratio.S) == ("e_t", pytest.approx(velocity.S / -9))
+    assert found.joined == ("V_t",)
+    straight = replace_all(scene, {"impact.v_t": "0 m/s", "measured": scene.measured})
+    assert "v_t is 0" in measured_value(simulate(straight, "rigid"), "e_t")[0].reason
+
+
+@pytest.mark.parametrize(
+    ("key", "text", "ends"),
+    [
+        ("impact.v_n", "+-2 %", (-1.02, -0.98, "m/s")),
+        ("impact.v_n_m_per_s", "+-200mm/s", (-1.2, -0.8, "m/s")),
+        ("surface.friction", "+- 0.05", (0.2, 0.3, "")),
+        ("projectile.material.yield_stress", ["\u00b110%"], (491.4, 600.6, "MPa")),
+    ],
+)
+def test_an_interval_may_lie_about_the_value_of_the_scene(tmp_path, key, text, ends):
+    _, low, high, unit = interval_of(scene_with(tmp_path, MU), key, text)
+    assert ((low, high), unit) == (pytest.approx(ends[:2]), ends[2])
+
+
+@pytest.mark.parametrize(
+    ("key", "text"), [("impact.omega", "+-2%"), ("barrier.material", "+-2%"), ("impact.height", "+-1 mm")]
+)
+def test_an_interval_about_no_number_is_refused(tmp_path, key, text):
+    with pytest.raises(UsageError, match=f"{key} = .* gives no interval about the scene's value"):
+        interval_of(scene_with(tmp_path, MU), key, text)
+
+
+def test_an_interval_with_impossible_materials_is_refused_before_any_run_and_named(tmp_path):
+    rod = "projectile.material"
+    uncertain = {f"{rod}.yield_stress": "+-5 %", f"{rod}.ultimate_stress": "+-5 %", **UNCERTAIN}
+    with pytest.raises(SceneError) as refused:
+        validate(scene_with(tmp_path, MU), uncertain, "solid")
+    said = str(refused.value)
+    assert f'{rod}.ultimate_stress = "562 MPa": is below the yield stress.' in said
+    assert f"{rod}.yield_stress = 518.7 to 573.3 MPa and {rod}.ultimate_stress = 562.4 to 621.6 MPa" in said
+    assert "friction" not in said and "v_n" not in said
+
+
+def test_the_command_says_first_that_the_reduced_model_refutes_little(tmp_path, capsys):
+    file = tmp_path / "scene.toml"
+    scene = scene_with(tmp_path, "quantity,mean,sd,n,systematic\nOmega_rad_per_s,1,0.1,4,0\n")
+    file.write_text(to_toml(scene, tmp_path))
+    line = ["validate", str(file), "--samples", "2", "--quiet", "--uncertain", "surface.friction=+-1%"]
+    assert main(line) == 0
+    said = capsys.readouterr().out
+    assert said.startswith("Little can be refuted: the error told of the reduced model holds 100 %")
+    assert "in seconds of computing:" in " ".join(said.split())
+    assert f"\n  fem-impact validate {file} --uncertain surface.friction=+-1% --fidelity solid\n" in said
 
 
 @pytest.mark.parametrize(

@@ -131,7 +131,7 @@ def judge(
     scene = scene.first_impact
     f = scene.surface.friction_low, scene.surface.friction_high
     stated = {} if f[0] == f[1] else {FRICTION: f}
-    intervals = [interval_of(key, ends) for key, ends in {**stated, **(uncertain or {})}.items()]
+    intervals = [interval_of(scene, key, ends) for key, ends in {**stated, **(uncertain or {})}.items()]
     scenes = _places(scene, intervals)
     steps, notes, more = list[str](), list[str](), finite_elements(budget_s)
     lacking = not_reduced(Case(scene).bodies)
