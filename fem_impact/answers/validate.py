@@ -322,8 +322,8 @@ def _refused(
         for key, low, high, unit in intervals
         if key in changes
     )
-    problem = f"{error.problem} That happens within the stated {where}."
-    return SceneError(problem, key=error.key, value=error.value, remedy="State less.")
+    remedy = f"{error.remedy} (Within the stated {where}.)".strip()
+    return SceneError(error.problem, key=error.key, value=error.value, remedy=remedy)
 
 
 def _comparison(
