@@ -47,7 +47,7 @@ def add_uncertain(parser: argparse.ArgumentParser, then: str) -> None:
     """Add the intervals of uncertain inputs; ``then`` says what they are for."""
     about = (
         "lowest and highest value of an uncertain input, as impact.angle=44,46deg, or how far it may lie "
-        f"from the scene's, as impact.angle=+-1deg or impact.v_n=+-2%: {then}; may be repeated"
+        f"from the scene's, as impact.angle=+-1deg or impact.v_n=+-2%%: {then}; may be repeated"
     )
     parser.add_argument("--uncertain", action="append", default=[], metavar="KEY=LOW,HIGH", help=about)
 
