@@ -176,6 +176,8 @@ class Case:
     @cached_property
     def zones(self) -> AnyZones:
         """The fine zones of the meshes (solid)."""
+        if self.later is not None and self.later.zones is not None:
+            return self.later.zones
         return self._estimated if self.record is None else recorded_zones(self.bodies, self.record)
 
     @cached_property

@@ -11,10 +11,11 @@ if TYPE_CHECKING:
     import pandas
 
 _N = " (number from 1)"
-NO_SHARES = (
-    "E_after_J and W_friction_J tell with errors what a strike takes; how that along its normal is divided, "
-    "and the force, have none"
+NO_ERROR = (
+    "no error is known of the loss factor of vibration in flight and of what the balance leaves; a rigid "
+    "strike has no force"
 )
+"""Why W_damping_J, E_vib_before_J, E_other_J and some forces have no half-width."""
 
 
 @group
@@ -155,7 +156,7 @@ class Strikes:
         if isinstance(self.certain, Unknown) or number > self.certain:
             return Unknown(f"it is not certain what strike {number} is of: see strikes_spread")
         half = self.spread[number - 1].half_widths.get(name)
-        return Unknown(NO_SHARES) if half is None else half
+        return Unknown(NO_ERROR) if half is None else half
 
     def to_dataframe(self) -> pandas.DataFrame:
         """Return a row a strike, with the columns of its JSON (ResultError: there are none)."""

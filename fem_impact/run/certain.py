@@ -9,16 +9,17 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from math import copysign, pi, radians
+from itertools import takewhile
+from math import copysign, exp, log, pi, radians
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from fem_impact.case.case import Case
 from fem_impact.errors import SceneError
-from fem_impact.outcome.keys import Num, Unknown, known, or_none
+from fem_impact.outcome.keys import Num, Unknown, keys_of, known, or_none
 from fem_impact.outcome.strikes import StrikeRecord, Strikes, StrikeSpread
-from fem_impact.run.modal_error import HELD, TOLD, place_at, stored
+from fem_impact.run.modal_error import FACTORS, HELD, LEAST_VIBRATION, TOLD, VIBRATION, place_at, stored
 from fem_impact.run.strikes import Followed, other_end
 from rigid import critical_ratio
 from rigid.strikes import State, Strike
@@ -38,26 +39,10 @@ EXACT = Unknown(
     "rigid theory tells no error of its own, and the scene states no interval: surface.friction_low and "
     "friction_high, strikes.angle_error or speed_error"
 )
-ERRED = (
-    *(
-        "time",
-        "x",
-        "z",
-        "along",
-        "alpha",
-        "approach",
-        "sliding",
-        "v_n",
-        "v_t",
-        "omega",
-        "V_n",
-        "V_t",
-        "Omega",
-    ),
-    *("e", "mu", "impulse_n", "impulse_t", "before", "after", "friction"),
-)
-"""Numbers of a strike that have half-widths."""
-NAMES = {one: StrikeRecord.__dataclass_fields__[one].metadata["key"][0] for one in ERRED}
+UNTOLD = "fidelity", "part", "damping", "taken", "other"
+"""What of a strike has no half-width: see `NO_ERROR`."""
+NAMES = {key.path[-1]: key.name for key in keys_of(StrikeRecord) if key.path[-1] not in UNTOLD}
+"""Keys of the numbers that have half-widths."""
 INTERVALS = "the stated intervals of friction, angle and speed"
 BY = {
     "modal": "the half-widths of the reduced model's e, mu and friction in each of its strikes, which know "
@@ -73,11 +58,20 @@ OPEN = {
 
 
 class Doubt(NamedTuple):
-    """Half-widths of what the model of a strike gives: e, impulse ratio, and loss to friction, J."""
+    """Half-widths of what the model of a strike gives, or places within them, nine in ten within -1 to 1.
+
+    They are of e, of the impulse ratio and of friction, J, which go together, of the vibration after it, J,
+    and of the natural logarithm of the largest force.
+    """
 
     e: float = 0.0
     mu: float = 0.0
     friction: float = 0.0
+    vibration: float = 0.0
+    force: float = 0.0
+
+
+KNOWN = Doubt()
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,7 +96,7 @@ def with_spread(case: Case, strikes: Strikes, coarser: Strikes | None = None) ->
         if not (_varies(case) or any(one.doubt for one in each)):
             return _without(strikes, EXACT)
         plain = _run(case.scene, each)
-        runs = [_run(scene, each, *moved) for scene, *moved in _drawn(case)]
+        runs = [_run(scene, each, at) for scene, at in _drawn(case)]
     except SceneError as error:
         return _without(strikes, Unknown(f"rigid theory does not follow the scene: {error.problem}"))
     certain, length = _common([own, plain, *runs]), case.contact.body.length
@@ -145,25 +139,38 @@ def _each(case: Case, own: Sequence[StrikeRecord], coarser: Sequence[StrikeRecor
         body.upto = 1
         begin = body.touching(one.alpha, one.v_n, one.v_t, one.omega)
         body.go_on(begin)
-        law, doubt = body.each[0], None
+        doubt: Doubt | None = None
         if one.fidelity == "modal":
             doubt = _by_stored(case, body, begin, one)
-        elif one.fidelity == "solid":
-            same = [
-                old for old in coarser[number : number + 1] if (old.fidelity, old.part) == ("solid", one.part)
-            ]
-            doubt = next((_apart(one, old, one) for old in same), None)
-        else:
-            finer = [old for old in found if old.own.fidelity != "rigid"]
-            doubt = _apart(finer[-1].own, finer[-1].law, one) if finer else None
-        found.append(Known(one, law, doubt))
+        elif pair := _by_two(one, coarser[number : number + 1], found):
+            doubt = _apart(*pair, one)
+        found.append(Known(one, body.each[0], doubt))
     return found
+
+
+def _by_two(
+    one: StrikeRecord, coarser: Sequence[StrikeRecord], before: Sequence[Known]
+) -> tuple[StrikeRecord, StrikeRecord] | None:
+    """Return a strike by two models whose distance is what is open of ``one``, None where there is none.
+
+    Of finite elements it is ``one`` itself and that of a coarser mesh, of a rigid body the last strike before
+    by a finer model and by the law.
+    """
+    if one.fidelity == "solid":
+        return next(((one, old) for old in coarser if (old.fidelity, old.part) == ("solid", one.part)), None)
+    return next(((old.own, old.law) for old in reversed(before) if old.own.fidelity != "rigid"), None)
 
 
 def _apart(one: StrikeRecord, other: StrikeRecord, of: StrikeRecord) -> Doubt:
     """Return how far two models of a strike are apart, for a strike ``of`` another energy."""
-    rubbed = abs(one.friction - other.friction) * of.before / one.before
-    return Doubt(abs(one.e - other.e), abs(one.mu - other.mu), rubbed)
+    share = of.before / one.before
+    return Doubt(
+        abs(one.e - other.e),
+        abs(one.mu - other.mu),
+        abs(one.friction - other.friction) * share,
+        abs(one.vibration - other.vibration) * share,
+        abs(log(one.force / other.force)) if one.force and other.force else 0.0,
+    )
 
 
 def _by_stored(case: Case, body: Followed, begin: State, one: StrikeRecord) -> Doubt:
@@ -180,11 +187,12 @@ def _by_stored(case: Case, body: Followed, begin: State, one: StrikeRecord) -> D
         )
     )
     place, table = np.array(place_at(pair, case.bodies.bending_period, stops)), stored()
-    e, mu, friction = (
-        table.half_width(place, TOLD.index(name), table.far(place))
-        for name in ("e_edge", "mu", "W_friction_over_E_0")
+    e, mu, friction, vibration, force = (
+        table.half_width(place, (*TOLD, *FACTORS).index(name), table.far(place))
+        for name in ("e_edge", "mu", "W_friction_over_E_0", VIBRATION, "peak_force_N")
     )
-    return Doubt(e, mu, friction * one.before)
+    vibrates = max(one.vibration, LEAST_VIBRATION * one.before)
+    return Doubt(e, mu, friction * one.before, vibration * vibrates, force)
 
 
 def _varies(case: Case) -> bool:
@@ -202,15 +210,16 @@ def _holds(case: Case, each: Sequence[Known]) -> str:
     return f"They hold {held}" + (f"; not {' nor '.join(outside.values())}." if outside else ".")
 
 
-def _drawn(case: Case) -> Iterator[tuple[Scene, float, float]]:
+def _drawn(case: Case) -> Iterator[tuple[Scene, Doubt]]:
     """Yield scenes whose friction, angle and speed fill the stated intervals evenly.
 
-    With each come two places, nine in ten within -1 to 1: of e and of mu within what is not known of them.
+    With each come places within what is not known of its strikes.
     """
     scene, surface, impact = case.scene, case.scene.surface, case.scene.impact
     low, high = surface.friction_low, surface.friction_high
     for run, share in enumerate(np.linspace(0.0, 1.0, RUNS).tolist(), 1):
-        angle, speed, e, mu = (2.0 * _halton(run, base) - 1.0 for base in (2, 3, 5, 7))
+        angle, speed, *places = (2.0 * _halton(run, base) - 1.0 for base in (2, 3, 5, 7, 11, 13))
+        e, mu, vibration, force = (place / HELD for place in places)
         off = angle * (scene.strikes.angle_error or 0.0)
         faster = 1.0 + speed * (scene.strikes.speed_error or 0.0)
         moved = replace(
@@ -222,11 +231,15 @@ def _drawn(case: Case) -> Iterator[tuple[Scene, float, float]]:
             slope=impact.vertical,
         )
         friction = low + share * (high - low)
-        yield replace(scene, surface=replace(surface, friction=friction), impact=moved), e / HELD, mu / HELD
+        drawn = replace(scene, surface=replace(surface, friction=friction), impact=moved)
+        yield drawn, Doubt(e, mu, mu, vibration, force)
 
 
 def _halton(number: int, base: int) -> float:
-    """Return the number's place in the unit interval by its digits in a base, which fill it evenly."""
+    """Return the number's place in the unit interval by its digits in a base, which fill it evenly.
+
+    `scipy.stats.qmc.Halton` does the same, but takes longer to import than all sequences take.
+    """
     place, share = 0.0, 1.0
     while number:
         share /= base
@@ -235,8 +248,8 @@ def _halton(number: int, base: int) -> float:
     return place
 
 
-def _run(scene: Scene, each: Sequence[Known], e: float = 0.0, mu: float = 0.0) -> list[StrikeRecord]:
-    """Return the first strikes of a scene; ``e`` and ``mu`` are places within what is not known of both."""
+def _run(scene: Scene, each: Sequence[Known], at: Doubt = KNOWN) -> list[StrikeRecord]:
+    """Return the first strikes of a scene; ``at`` are places within what is not known of them."""
     body = Followed.of(Case.of(scene, "rigid"))
     mass, left = body.case.contact.body.mass, list(each)
 
@@ -246,17 +259,41 @@ def _run(scene: Scene, each: Sequence[Known], e: float = 0.0, mu: float = 0.0) -
             left.clear()  # from here on another sequence
             return strike
         one = left.pop(0)
-        doubt, own, law = one.doubt or Doubt(), one.own, one.law
+        doubt, own, law = one.doubt or KNOWN, one.own, one.law
         return strike.having(
-            max(0.0, strike.e + own.e - law.e + e * doubt.e),
-            strike.mu + own.mu - law.mu + mu * doubt.mu,
-            max(0.0, strike.friction + (own.friction - law.friction + mu * doubt.friction) / mass),
+            max(0.0, strike.e + own.e - law.e + at.e * doubt.e),
+            strike.mu + own.mu - law.mu + at.mu * doubt.mu,
+            max(0.0, strike.friction + (own.friction - law.friction + at.friction * doubt.friction) / mass),
             body.pull.k2,
         )
 
     body.moved, body.upto = moved, min(SEEN, scene.impact.most_strikes or SEEN)
     body.go_on(body.coming)
-    return body.each
+    pairs = zip(body.each, each, strict=False)
+    alike = [_divided(one, of, at) for one, of in takewhile(lambda pair: _same_part(*pair), pairs)]
+    return alike + body.each[len(alike) :]
+
+
+def _same_part(one: StrikeRecord, of: Known) -> bool:
+    return one.part == of.own.part
+
+
+def _divided(one: StrikeRecord, of: Known, at: Doubt) -> StrikeRecord:
+    """Return a rigid strike that stands for ``of`` with that one's force and with its loss divided alike.
+
+    Vibration is the same share of the energy before, the force is as large over the impulse; what is not
+    known of both is added, and plastic work takes what they leave of the loss.
+    """
+    own, doubt = of.own, of.doubt or KNOWN
+    share, push = one.before / own.before, one.impulse_n / (own.impulse_n or one.impulse_n)
+    vibration = max(0.0, own.vibration * share + at.vibration * doubt.vibration)
+    rest = share * (own.lost - own.friction - own.vibration - own.plastic)
+    return replace(
+        one,
+        vibration=vibration,
+        plastic=one.lost - one.friction - vibration - rest,
+        force=own.force and own.force * push * exp(at.force * doubt.force),
+    )
 
 
 def other_end_curve(scene: Scene) -> tuple[list[float], list[float]]:
@@ -331,6 +368,7 @@ def _spread(
         half_widths={
             name: _half([getattr(one, key) for one in struck], getattr(plain, key))
             for key, name in NAMES.items()
+            if getattr(plain, key) is not None
         }
         if plain
         else {},

@@ -2,20 +2,23 @@
 
 All strikes are those of one mesh of the rod, which is fine wherever the reduced or the rigid model has it
 strike. Flights are crossed exactly: the rigid motion under gravity, and each mode of the rod as a damped
-oscillator. The barrier is a new block under each strike.
+oscillator. The barrier is a new block under each strike, but where an earlier one has dented it: there the
+block of that strike goes on, with its dent, hardening and residual stress.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from math import sqrt
+from typing import NamedTuple
 
 import numpy as np
+from scipy.spatial import KDTree
 
 from fem_impact.arrays import Array
 from fem_impact.case.bodies import Bodies, LaterStrike
 from fem_impact.case.case import Case
-from fem_impact.case.record import expected_record, joined
+from fem_impact.case.record import ContactRecord, expected_record, joined
 from fem_impact.errors import SceneError
 from fem_impact.fem.flight import FreeVibration
 from fem_impact.modal.rod import ModalRod
@@ -26,14 +29,20 @@ from fem_impact.run.modal_strikes import ModalCourse, modal_loss, one_strike, sw
 from fem_impact.run.resolution import unresolved
 from fem_impact.run.strikes import LEAST_BY_LAW, Followed
 from fem_impact.solid.build import START_GAP, build
-from fem_impact.solid.carry import carry, later_view, lowered, turned
+from fem_impact.solid.carry import carry, dented, later_view, lowered, turned
 from fem_impact.solid.run import SolidResult, solve
 from rigid.strikes import Finish, State, next_touch
 
 TOLD = (
     "{} strikes are computed with finite elements of one rod, which keeps its dents, hardening and residual "
-    "stress; each meets a surface that no strike before has dented. In flight {} modes swing on, damped by "
-    "the loss factor {:g}; what vibrates above them ends with its strike."
+    "stress; {} In flight {} modes swing on, damped by the loss factor {:g}; what vibrates above them ends "
+    "with its strike."
+)
+FRESH = "each meets a surface that no strike before has dented."
+AGAIN = "on the barrier strikes {} meet the dents of earlier ones, all others an undented surface."
+BEYOND = (
+    "Strike {} lands partly on the dent of strike {}, beyond its fine cells, and meets a surface without "
+    "that dent."
 )
 ELSEWHERE = (
     "Strike {} lands {:.2g} mm beside the fine cells that are held ready: finite elements end before it."
@@ -81,6 +90,20 @@ def _expected(case: Case, count: int) -> list[LaterStrike]:
     ]
 
 
+class Dent(NamedTuple):
+    """A block of the barrier that was struck.
+
+    ``along``, m, is where its frame begins on the barrier, ``pressed`` (k, 3), m, what of its skin has been
+    pressed so far, ``strike`` the number of the last strike on it, with its ``case`` and ``end``.
+    """
+
+    along: float
+    pressed: Array
+    strike: int
+    case: Case
+    end: SolidResult
+
+
 @dataclass(eq=False)
 class SolidCourse:
     """Strikes by finite elements so far.
@@ -95,6 +118,7 @@ class SolidCourse:
     flight : its vibration now
     loss : loss factor of the modes in flight
     damped : energy, J, that the modes have lost since the last strike
+    dents : of the barrier; again : numbers of the strikes that met one
     told : what limits trust in them
     """
 
@@ -106,6 +130,8 @@ class SolidCourse:
     flight: FreeVibration
     loss: float
     damped: float = 0.0
+    dents: list[Dent] = field(default_factory=list)
+    again: list[int] = field(default_factory=list)
     told: list[str] = field(default_factory=list)
 
     @classmethod
@@ -118,6 +144,7 @@ class SolidCourse:
         begin, case = body.coming, body.case
         course = cls(case, body, end, case.bodies.mesh_inclination, begin, end.flight, modal_loss(case))
         course._enter(begin, end, 0.0)
+        course._keep_dent(begin, case, None)
         return course
 
     @property
@@ -128,7 +155,8 @@ class SolidCourse:
     @property
     def limits(self) -> list[str]:
         """What limits trust in them."""
-        several = [TOLD.format(len(self.body.each), len(self.flight.a), self.loss)]
+        struck = AGAIN.format(", ".join(map(str, self.again))) if self.again else FRESH
+        several = [TOLD.format(len(self.body.each), struck, len(self.flight.a), self.loss)]
         return [*(several if self.body.upto != 1 else []), *self.told]
 
     def to_the_end(self, options: RunOptions) -> Finish:
@@ -210,11 +238,17 @@ class SolidCourse:
         scene = replace(self.case.scene, accuracy=accuracy, effects=self.case.active)
         here = expected_record(_bodies(self.case, later), zones.tip_size, zones.barrier_size)
         assert self.case.record is not None, "a rod that strikes again has its zones from a record"
+        dent = self._dent(before, here)
+        if dent is not None:
+            later = replace(later, zones=dent.case.zones)
         case = Case(scene, "solid", replace(here, rod=self.case.record.rod), later)
         model = build(case, mesh=self.last.model.geometry.rod)
         view = later_view(model, self.last, before.alpha - self.begun)
         motion = view.rigid(model.initial_state())
         centre = np.array([motion.centre[0], 0.0, before.height])
+        if dent is not None:
+            model, centre[0] = dented(model, dent.end), before.along - dent.along
+            self.again.append(len(self.body.each) + 1)
         moved = replace(motion, centre=centre, V_n=before.V_n, V_t=before.V_t, Omega=before.Omega)
         vibration = replace(self.flight, modes=view.modes)
         model = lowered(carry(model, view, self.last, turn, moved, vibration), START_GAP)
@@ -225,7 +259,39 @@ class SolidCourse:
             return False
         self.begun = before.alpha
         self._enter(before, end, taken)
+        self._keep_dent(before, case, dent)
         return True
+
+    def _dent(self, before: State, here: ContactRecord) -> Dent | None:
+        """Return the dent on which a strike lands that may touch ``here``; None: the surface is undented."""
+        if here.barrier is None:
+            return None
+        size, lowest = self.last.model.geometry.barrier_size, before.along - self.body.comes(before)[1]
+        for dent in self.dents:
+            place = here.barrier.touched + np.array([lowest - dent.along, 0.0, 0.0])
+            if not (_away(dent.pressed, place) < size).any():
+                continue
+            block = dent.end.model.geometry.barrier
+            assert block is not None, "what is pressed is meshed"
+            fine = block.points[np.unique(block.cells[block.finest])]
+            if (_away(fine, place) < WITHIN * size).all():
+                return dent
+            number = len(self.body.each) + 1
+            self.told.append(BEYOND.format(number, dent.strike))
+        return None
+
+    def _keep_dent(self, before: State, case: Case, dent: Dent | None) -> None:
+        """Keep the block that was struck last, in place of the ``dent`` on which that strike landed."""
+        touched, number = self.last.record.barrier, len(self.body.each)
+        if touched is None or not any(zone.body == "barrier" for zone in self.last.model.zones):
+            return
+        if dent is None:
+            start = self.last.view.rigid(self.last.model.initial_state())
+            along, pressed = before.along - float(start.centre[0]), touched.touched
+        else:
+            along, pressed = dent.along, np.concatenate([dent.pressed, touched.touched])
+            self.dents.remove(dent)
+        self.dents.append(Dent(along, pressed, number, case, self.last))
 
     def _enter(self, before: State, end: SolidResult, taken: float) -> None:
         """Enter a strike, and go on from the state after it."""
@@ -266,3 +332,8 @@ class SolidCourse:
         )
         spent = record.vibration + record.friction + record.plastic + accounts["damping"]
         return replace(record, other=record.lost + taken + fell - spent)
+
+
+def _away(places: Array, of: Array) -> Array:
+    """Return how far, m, each point ``of`` (m, 3) lies from the nearest of some places (k, 3)."""
+    return np.asarray(KDTree(places).query(of)[0])

@@ -1,4 +1,4 @@
-"""A rod that has struck before: what of its last run goes into the model of its next strike."""
+"""Bodies that have struck before: what of their last runs goes into the model of the next strike."""
 
 from __future__ import annotations
 
@@ -13,7 +13,6 @@ from fem_impact.fem.hexmodes import LANES
 from fem_impact.solid.model import Model
 from fem_impact.solid.rodview import RodState
 from fem_impact.solid.run import SolidResult
-from fem_impact.solid.yielding import YieldingZone
 
 NOW = np.zeros(1)
 
@@ -85,15 +84,25 @@ def carry(
     v[rod] = _of_all(model, vibration.modes.shape @ (vibration.modes.omega * vibration.b))[rod]
     v[rod[:, 0]] += motion.V_t + motion.Omega * arm[:, 2]
     v[rod[:, 2]] += motion.V_n - motion.Omega * arm[:, 0]
-    for new, old in zip(_rod_zones(model), _rod_zones(last.model), strict=True):
-        new.blocks.stress[:] = turned_stress(old.blocks.stress, angle)
-        new.blocks.strain[:] = old.blocks.strain
-        new.blocks.flow[:] = old.blocks.flow
+    _take_over(model, last.model, "rod", angle)
     return replace(model, start=(x, v))
 
 
-def _rod_zones(model: Model) -> list[YieldingZone]:
-    return [zone for zone in model.zones if zone.body == "rod"]
+def dented(model: Model, last: SolidResult) -> Model:
+    """Return a model whose barrier is that of an earlier run on the same mesh, at rest with its dents."""
+    x, block = model.start[0].copy(), model.layout.barrier_slice
+    x[block] = last.state.x[last.model.layout.barrier_slice]
+    _take_over(model, last.model, "barrier", 0.0)
+    return replace(model, start=(x, model.start[1]))
+
+
+def _take_over(model: Model, earlier: Model, body: str, angle: float) -> None:
+    """Give a body's zones the stresses and the hardening of an earlier run, turned from n towards t, rad."""
+    of_new, of_old = ([zone for zone in one.zones if zone.body == body] for one in (model, earlier))
+    for new, old in zip(of_new, of_old, strict=True):
+        new.blocks.stress[:] = turned_stress(old.blocks.stress, angle)
+        new.blocks.strain[:] = old.blocks.strain
+        new.blocks.flow[:] = old.blocks.flow
 
 
 def turned_stress(stress: Array, angle: float) -> Array:

@@ -249,13 +249,19 @@ def test_half_widths_grow_from_the_models_own_as_the_sequence_goes_on(steep):
     own = reduce(case, closed(case)).validity.model_band
     assert steep.half_width(1, "e") == pytest.approx(own["e_edge"], rel=0.1)
     times = [steep.half_width(number, "time_s") for number in range(1, 1 + steep.certain)]
+    E_0 = steep.each[0].before
+    assert steep.half_width(1, "E_vib_J") == pytest.approx(own["E_vib_over_E_0"] * E_0, rel=0.1)
+    assert steep.half_width(1, "peak_force_N") > 0.02 * steep.each[0].force
+    # what the rigid motion loses and friction does not take
+    loss = max(steep.half_width(1, "E_after_J"), steep.half_width(1, "W_friction_J"))
+    assert steep.half_width(1, "E_plastic_J") == pytest.approx(loss, rel=1.0)
     assert times[0] == 0.0
     assert times[-1] > 5.0 * times[1] > 0.0
     assert 0.0 < steep.friction_half < steep.friction
 
 
 def test_a_number_of_a_strike_without_a_half_width_has_a_reason(steep, floor):
-    assert "how that along its normal is divided" in steep.half_width(1, "E_plastic_J").reason
+    assert "loss factor of vibration in flight" in steep.half_width(2, "W_damping_J").reason
     assert "strikes_spread" in steep.half_width(steep.certain + 1, "time_s").reason
     assert floor.strikes.spread[floor.strikes.certain].half_widths == {}
     parts = {(one.tip, one.tail, one.other, one.none) for one in steep.spread[: steep.certain]}

@@ -153,6 +153,24 @@ def test_a_yielding_rod_strikes_in_the_order_of_the_reduced_model(name):
 
 
 @pytest.mark.slow
+def test_a_ball_that_comes_down_on_its_dent_rebounds_nearly_as_from_an_elastic_barrier():
+    """On a fresh surface the second strike has e = 0.68 and 1.9 kN: dent and hardening count."""
+    changes = {"strikes.fidelity": "solid for the first 2, then rigid", "accuracy.tip_size": "0.3 mm"}
+    straight = {"impact.angle": "0 deg", "impact.v_n": "-2 m/s"}
+    data = to_dict(replace_all(load("quick"), FALL | changes | straight))
+    data.pop("measured", None)
+    data["projectile"] = {"shape": "ball", "diameter": "20 mm", "material": "rod-steel"}
+    outcome = simulate(read_dict(data), "solid")
+    first, second, _ = outcome.strikes.each
+    assert first.e < 0.65
+    assert second.e > 0.9
+    assert second.force == pytest.approx(first.force, rel=0.1)
+    assert second.plastic < 0.1 * first.plastic
+    told = " ".join(texts(outcome.validity.limitations, "model"))
+    assert "on the barrier strikes 2 meet the dents of earlier ones" in told
+
+
+@pytest.mark.slow
 def test_a_run_that_is_killed_between_strikes_goes_on_to_the_same_end(tmp_path, monkeypatch):
     def killed(*_):
         raise KeyboardInterrupt
