@@ -52,7 +52,22 @@ def reduced_pairs() -> tuple[dict[str, float], ...]:
     (`fem_impact.run.modal_error`); nan where one model does not know a number. ``fem-impact study coverage``
     makes the table: its sheet ``pairs``.
     """
-    rows = csv.DictReader(_data("pairs.csv").splitlines())
+    return _rows("pairs.csv")
+
+
+@cache
+def vibration_pairs() -> tuple[dict[str, float], ...]:
+    """Return a row a scene that ran by both models, with vibration and without it.
+
+    It holds where the scene stands, and by how much changes by vibration of the reduced model differ, over
+    their scales (`fem_impact.answers.verdict.reliability`); nan where one model does not know a number.
+    ``fem-impact study coverage`` makes the table, of a seed and the measured sets: its sheet ``changes``.
+    """
+    return _rows("changes.csv")
+
+
+def _rows(name: str) -> tuple[dict[str, float], ...]:
+    rows = csv.DictReader(_data(name).splitlines())
     return tuple({key: float(text or "nan") for key, text in row.items() if key != "scene"} for row in rows)
 
 

@@ -10,9 +10,10 @@ from concurrent.futures import BrokenExecutor, Executor, Future, ThreadPoolExecu
 from contextlib import contextmanager
 from multiprocessing import connection, get_context, parent_process
 from multiprocessing.connection import Connection
+from traceback import format_exception
 from typing import Any, ParamSpec, TypeVar
 
-from fem_impact.errors import MissingLibraryError, UsageError
+from fem_impact.errors import FemImpactError, MissingLibraryError, UsageError
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -155,6 +156,8 @@ def _serve(pipe: Connection) -> None:
         try:
             answer = fn(*args, **kwargs), None
         except Exception as error:  # it is raised in the process of the study
+            if not isinstance(error, FemImpactError):  # a fault of the program: its place is known only here
+                error.add_note("".join(format_exception(error)))
             answer = None, error
         pipe.send(answer)
 

@@ -21,7 +21,7 @@ from fem_impact.answers.verdict.effect import (
     untargeted,
 )
 from fem_impact.answers.verdict.levels import Means, Tell, by_levels, finite_elements
-from fem_impact.answers.verdict.reliability import CHANGED, known_error
+from fem_impact.answers.verdict.reliability import CHANGED
 from fem_impact.answers.verdict.screening import Screening, screening
 from fem_impact.answers.verdict.twins import inclined, twins
 from fem_impact.case.case import Case
@@ -165,8 +165,7 @@ def assess(
         tell(step)
     here, used, more = quick, "modal", finite_elements(budget_s)
     # where nothing like the scene was computed both ways, the reduced model's error is not known well enough
-    unlike = quick is not None and not known_error(scene).alike
-    open_still = quick is None or unlike or quick.answer(tolerance) == "undecided"
+    open_still = quick is None or not quick.alike or quick.answer(tolerance) == "undecided"
     if fidelity == "solid" or (fidelity == "auto" and open_still):
 
         def estimate(levels: Sequence[LevelRun]) -> VibrationEffect | None:

@@ -19,7 +19,6 @@ from fem_impact.answers.verdict.effect import (
     unfinished,
     untargeted,
 )
-from fem_impact.answers.verdict.reliability import known_error
 from fem_impact.answers.verdict.twins import twins
 from fem_impact.case.case import Case
 from fem_impact.case.effects.heating import halves
@@ -88,12 +87,12 @@ class Rigidity(Criterion):
         self.of, self.called = of, f"the change of {of} by vibration"
 
     def reduced(self, scene: Scene) -> Bound | Unknown:
-        """Return the change with the largest error on comparable scenes."""
+        """Return the change with its known error."""
         pair = modal_pair(scene)
         if failed := unfinished(pair, self.of):
             return Unknown(failed)
         effect = modal_effect(scene, pair, self.of)
-        return _about(abs(effect.value), effect.band, known_error(scene).alike)
+        return _about(abs(effect.value), effect.band, effect.alike)
 
     def meshed(self, scene: Scene) -> tuple[Scene, Scene | None]:
         """Return the twins."""

@@ -14,7 +14,7 @@ from fem_impact.answers.refine.extrapolate import (
     level_limits,
     vibration_floor,
 )
-from fem_impact.answers.verdict.reliability import CHANGED, known_error
+from fem_impact.answers.verdict.reliability import CHANGED, known_error, sentence
 from fem_impact.answers.verdict.twins import twins
 from fem_impact.case.case import Case
 from fem_impact.case.plates import half_space_error, is_thin
@@ -67,6 +67,8 @@ class VibrationEffect:
     source : where value and band come from, as a sentence
     model : what all of it rests on
     errors : half-widths of shares of E_0, by their names in an outcome's energy, as far as they are known
+    alike : whether scenes like this one were computed by the reduced model and finite elements, or finite
+        elements computed this one
     """
 
     of: str
@@ -80,6 +82,7 @@ class VibrationEffect:
     source: str
     model: str
     errors: Mapping[str, float]
+    alike: bool = True
 
     def at_least(self, off: float) -> VibrationEffect:
         """Return the change with a band no smaller than ``off``, an error that finite elements showed."""
@@ -103,7 +106,7 @@ class VibrationEffect:
 def unfinished(pair: Pair, of: str = "e") -> str:
     """Return why a pair of twins says nothing of a number, empty where it does."""
     for run, which in zip(pair, ("with", "without"), strict=True):
-        if not run.validity.finished or or_none(CHANGED[of][0].of(run)) is None:
+        if not run.validity.finished or or_none(CHANGED[of].of(run)) is None:
             return f"the run {which} vibration gives no {of}: {run.validity.stopped_because}"
     return ""
 
@@ -120,21 +123,23 @@ def modal_effect(scene: Scene, pair: Pair, of: str = "e") -> VibrationEffect:
     Shares of E_0 have the half-widths that the run itself tells; all plastic work that of the shares beside
     it together, with which it adds up to one.
     """
-    error, bodies = known_error(untargeted(scene)), Case(scene).bodies
+    value, bodies = difference(pair, of), Case(scene).bodies
+    half, far = known_error(untargeted(scene), pair[0], of, value)
     thin = half_space_error(bodies) * abs(known(pair[0].restitution.edge.e)) if is_thin(bodies) else 0.0
     halves = {share.key.path[-1]: pair[0].estimate(share.key)[1] for share in SHARES}
     shares = {name: half for name, half in halves.items() if half is not None}
     return VibrationEffect(
         of,
         scene.impact.angle,
-        _difference(pair, of),
-        error.changes[of] + thin,
+        value,
+        half + thin,
         known(pair[0].energy.vibration),
         shares["vibration"],
         *pair,
-        error.sentence(of) + THIN_PLATE.format(thin) * bool(thin),
+        sentence(of, half, far) + THIN_PLATE.format(thin) * bool(thin),
         REDUCED,
         {**shares, "plastic": sum(shares.values())},
+        not far,
     )
 
 
@@ -151,7 +156,7 @@ def solid_effect(levels: Sequence[MeshRuns], of: str = "e") -> VibrationEffect |
         return None
     coarse, fine = used[-2:]
     free, stiff = pair_of(fine)
-    changes, wide = [[_difference(pair_of(level), of)] for level in used], [level.wide for level in used]
+    changes, wide = [[difference(pair_of(level), of)] for level in used], [level.wide for level in used]
     value, band = level_limit([level.size for level in used], changes, wide)
     E_vib, E_vib_band = (of[VIBRATION.name] for of in (limits, bands))
     floor = vibration_floor(free)
@@ -188,9 +193,9 @@ def _size(level: MeshRuns) -> str:
     return f"{level.size * 1e3:.3g} mm"
 
 
-def _difference(pair: Pair, of: str) -> float:
+def difference(pair: Pair, of: str) -> float:
     """Return a number with vibration less that without it."""
-    key = CHANGED[of][0]
+    key = CHANGED[of]
     return float(known(key.of(pair[0])) - known(key.of(pair[1])))
 
 

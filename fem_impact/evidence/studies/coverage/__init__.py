@@ -1,7 +1,8 @@
 """Coverage: how often the truth lies inside the errors that the program tells, over scenes drawn at random.
 
 Scenes run as a user runs them, with default levels and with the reduced model; where the default run gives
-its numbers and is not dear, again with one level more, and where that is not dear with two.
+its numbers and is not dear, again with one level more, and where that is not dear with two. Where the
+reduced model gives its numbers, finite elements tell as well what a twin changes that cannot vibrate.
 """
 
 from __future__ import annotations
@@ -10,7 +11,15 @@ from collections.abc import Mapping
 
 from fem_impact.answers.report import Request, StudyReport
 from fem_impact.evidence.studies.coverage.report import report_of
-from fem_impact.evidence.studies.coverage.run import DEFAULT, FINEST, MODAL, NEXT, CoverageResult, CoverageRun
+from fem_impact.evidence.studies.coverage.run import (
+    DEFAULT,
+    FINEST,
+    MODAL,
+    NEXT,
+    TWINS,
+    CoverageResult,
+    CoverageRun,
+)
 from fem_impact.evidence.studies.coverage.scenes import SEED, DrawnScene, drawn
 from fem_impact.jobs.job import Failure
 
@@ -34,7 +43,7 @@ def plan(request: Request, results: Results) -> list[CoverageRun]:
     """Return the runs of every scene that the results so far call for.
 
     The reduced model takes no mesh. A finer run follows one that gave numbers and was not dear (`NEXT`); one
-    with two levels more does not if quick.
+    with two levels more, or with a twin, does not if quick.
     """
     runs = []
     for scene in scenes(request):
@@ -42,7 +51,7 @@ def plan(request: Request, results: Results) -> list[CoverageRun]:
         for model, (before, most_s) in NEXT.items():
             done = results.get(CoverageRun(scene, before).name)
             affords = isinstance(done, CoverageResult) and done.has_numbers and done.cpu_s <= most_s
-            if affords and not (request.quick and model == FINEST):
+            if affords and not (request.quick and model in (FINEST, TWINS)):
                 wanted.append(model)
         runs += [CoverageRun(scene, model) for model in wanted]
     return runs

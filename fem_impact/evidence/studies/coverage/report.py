@@ -13,6 +13,7 @@ import numpy as np
 from fem_impact.answers.report import Sheet, StudyReport
 from fem_impact.answers.verdict.criteria import LIMITED
 from fem_impact.case.case import Case
+from fem_impact.evidence.studies.coverage.changes import changes
 from fem_impact.evidence.studies.coverage.judge import (
     AIM,
     KEYS,
@@ -91,6 +92,7 @@ def report_of(scenes: Sequence[DrawnScene], results: Results, seed: int) -> Stud
             _ends(ended),
             _reasons(ended),
             _pairs(scenes, results),
+            changes(scenes, results),
             _all("errors", "Every told error beside the truth", errors),
             _all("times", "Every told time beside the time taken, s", taken),
             _all("ended", "Every default run: how it ended", ended),

@@ -7,12 +7,17 @@ import json
 import tempfile
 import time
 import traceback
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
+from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import fem_impact
+from fem_impact.answers.verdict.effect import Answer, VibrationEffect, solid_effect, untargeted
+from fem_impact.answers.verdict.levels import by_levels
+from fem_impact.answers.verdict.reliability import CHANGED
+from fem_impact.answers.verdict.twins import twins
 from fem_impact.errors import FemImpactError, ResultError, SceneError
 from fem_impact.evidence.studies.coverage.scenes import DrawnScene
 from fem_impact.outcome.keys import Unknown
@@ -21,6 +26,7 @@ from fem_impact.progress import Notice, Progress
 from fem_impact.run.program import source_digest
 
 if TYPE_CHECKING:
+    from fem_impact.answers.refine.level import LevelRun
     from fem_impact.jobs.job import JobKind
     from fem_impact.scene.types import Scene
 
@@ -28,15 +34,18 @@ if TYPE_CHECKING:
 Trouble = Literal["", "refused", "stopped", "too dear", "fault"]
 """Why a run has no outcome: refused before any work, stopped by an error, broken off by the study, a fault of
 the program."""
-DEFAULT, FINER, FINEST, MODAL = "default", "finer", "finest", "modal"
+DEFAULT, FINER, FINEST, MODAL, TWINS = "default", "finer", "finest", "modal", "twins"
 LEVELS: Mapping[str, int] = {FINER: 1, FINEST: 2}
 """Levels more than a scene's own by model."""
-PLANNED: Mapping[str, float] = {DEFAULT: 20.0, FINER: 50.0, FINEST: 100.0, MODAL: 0.5}
+PLANNED: Mapping[str, float] = {DEFAULT: 20.0, FINER: 50.0, FINEST: 100.0, MODAL: 0.5, TWINS: 40.0}
 """Processor time, s, that a run of each model is expected to take."""
-MOST: Mapping[str, float] = {DEFAULT: 60.0, FINER: 90.0, FINEST: 180.0, MODAL: 60.0}
-"""Processor time, s, after which a run of each model is broken off: it is too dear for the study."""
-NEXT: Mapping[str, tuple[str, float]] = {FINER: (DEFAULT, 11.0), FINEST: (FINER, 10.0)}
-"""After which run a finer one follows, and the processor time, s, that this may have taken at most."""
+MOST: Mapping[str, float] = {DEFAULT: 60.0, FINER: 90.0, FINEST: 180.0, MODAL: 60.0, TWINS: 90.0}
+"""Processor time, s, after which a run of each model is broken off: it is too dear for the study. Twins get
+it as the budget of their levels."""
+NEXT: Mapping[str, tuple[str, float]] = {FINER: (DEFAULT, 11.0), FINEST: (FINER, 10.0), TWINS: (MODAL, inf)}
+"""After which run another follows, and the processor time, s, that this may have taken at most."""
+NARROW = 0.02
+"""Half-width of the change of e by vibration at which twins get no finer level."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +61,7 @@ class CoverageResult:
     forecast_s, left_s : least and most time, s, that were told after the pilot to be left, and the processor
         time that it then took, as an idle machine takes; None where nothing was told
     notices : sentences told during the run
+    changes : of twins: change by vibration and its half-width, by the numbers of `CHANGED`
     """
 
     outcome: Outcome | None
@@ -63,6 +73,7 @@ class CoverageResult:
     forecast_s: tuple[float, float] | None = None
     left_s: float | None = None
     notices: tuple[str, ...] = ()
+    changes: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
     @property
     def end(self) -> str:
@@ -122,7 +133,10 @@ class _Listener:
 
 @dataclass(frozen=True, slots=True)
 class CoverageRun:
-    """A drawn scene by one model: levels as by default, one or two finer, or the reduced model."""
+    """A drawn scene by one model: levels as by default, one or two finer, with a twin, or the reduced model.
+
+    The twin cannot vibrate.
+    """
 
     drawn: DrawnScene
     model: str
@@ -192,6 +206,8 @@ class CoverageRun:
             scene = self.drawn.scene(folder)
             if self.model == MODAL:
                 return CoverageResult(fem_impact.simulate(scene, "modal"))
+            if self.model == TWINS:
+                return CoverageResult(None, changes=_changes(scene))
             levels = scene.accuracy.levels + LEVELS.get(self.model, 0)
             scene = replace(scene, accuracy=replace(scene.accuracy, levels=levels))
             options = fem_impact.RunOptions(progress=listener)
@@ -207,7 +223,31 @@ class CoverageRun:
             return CoverageResult(None, "fault", traceback.format_exc())
 
 
-_PLAIN = ("trouble", "reason", "cpu_s", "wall_s", "planned_s", "forecast_s", "left_s")
+_PLAIN = ("trouble", "reason", "cpu_s", "wall_s", "planned_s", "forecast_s", "left_s", "changes")
+
+
+@dataclass(frozen=True, slots=True)
+class _Effects:
+    """Changes by vibration on levels of finite elements, by the numbers of `CHANGED` that these give."""
+
+    known: Mapping[str, VibrationEffect]
+
+    def answer(self, limit: float) -> Answer:
+        """Say whether the half-width of e is below a limit."""
+        return "yes" if self.known["e"].band <= limit else "undecided"
+
+
+def _changes(scene: Scene) -> dict[str, tuple[float, float]]:
+    """Return changes by vibration and half-widths by the numbers of `CHANGED`, none where nothing is told."""
+
+    def estimate(levels: Sequence[LevelRun]) -> _Effects | None:
+        effects = {of: solid_effect([level.runs for level in levels], of) for of in CHANGED}
+        known = {of: effect for of, effect in effects.items() if effect}
+        return _Effects(known) if "e" in known else None
+
+    pair, means = twins(untargeted(scene)), (MOST[TWINS], 1)
+    found, _, _ = by_levels(pair, estimate, str, NARROW, means, lambda _: None, [])
+    return {of: (effect.value, effect.band) for of, effect in found.known.items()} if found else {}
 
 
 def _expected_s(scene: Scene) -> float | None:
