@@ -63,6 +63,7 @@ class ModalResult:
     E_0, kinetic, friction, plastic, skin, stored, residual : J, of the whole rod; kinetic is the rigid
         motion's, skin friction and plastic work of the sheared surface, stored what the contact still holds
         elastically where the run was cut off
+    viscous, waves : what a viscous contact took, and waves in the barrier under what lay flat, J
     plate : work on a plate that bends, J; ``barrier`` : what the motion of a free barrier holds, J
     V_bn, V_bt, Omega_b : velocity of the barrier, m/s, as seen from where it was before, and its spin, rad/s
     away : (n, t) rod's mass centre from the barrier's at the end, m
@@ -74,7 +75,7 @@ class ModalResult:
     laid : whether a straight part landed flat
     finished, reason : whether the impact is over, and why the march ended
     last, time : motion and modes at the end, gravity in them, and its time, s
-    record : (m, 16) what moved over time, see `fem_impact.modal.motion`; no rows where none was wanted
+    record : (m, 17) what moved over time, see `fem_impact.modal.motion`; no rows where none was wanted
     step, steps, wall, cpu : s, -, s, s
     """
 
@@ -89,6 +90,7 @@ class ModalResult:
     plastic: float
     skin: float
     viscous: float
+    waves: float
     stored: float
     plate: float
     barrier: float
@@ -127,7 +129,7 @@ class Course:
     now : motion and modes; held : the contact of each site
     clock, tally : (9,), (5,) see `fem_impact.modal.motion`
     contacts : (MOST_CONTACTS, 4) start, end, s, impulses along n and t, N s, of each interval of contact
-    record : (m, 16) what moved over time
+    record : (m, 17) what moved over time
     """
 
     now: ModalState
@@ -286,13 +288,14 @@ def _result(
     scene, now, tally, clock = case.scene, course.now, course.tally, course.clock
     motion, energies = now.rigid[:3], _energies(rod, now)
     plastic, friction, held_n, held_t = _spent(course.held, course.held.work_t)
-    viscous = tally[SUM.viscous]
-    if over:  # a viscous dent that is left swells without a push, and what springs held has slipped
-        viscous, held_n = viscous + held_n, 0.0
+    viscous, waves = tally[SUM.viscous], float(course.held.flats.works[:, 3].sum())
+    laid = bool((course.held.flats.deepest > 0.0).any())
+    if over:  # a dent that is left swells without a push, and what springs held has slipped
+        viscous, waves, held_n = viscous + (not laid) * held_n, waves + laid * held_n, 0.0
     base_n, base_t, base_spin = now.rigid[[AT.V_bn, AT.V_bt, AT.Omega_b]]
     barrier = 0.5 * (scene.barrier.mass or 0.0) * float(base_n**2 + base_t**2)
     barrier += 0.5 * (scene.barrier.inertia or 0.0) * float(base_spin**2)
-    parts = energies.sum(), friction, plastic, viscous, held_n, held_t, barrier, tally[SUM.plate]
+    parts = energies.sum(), friction, plastic, viscous, waves, held_n, held_t, barrier, tally[SUM.plate]
     contacts = course.contacts[: int(clock[CLOCK.touches])]
     fell = fall(case.slots.gravity, scene.impact.vertical, clock[CLOCK.time], contacts[:, :2])
     V_n, V_t = motion[0] + fell[0], motion[1] + fell[1]
@@ -310,6 +313,7 @@ def _result(
         skin=friction
         + float(course.held.works[:, WORK.shear].sum() + course.held.flats.works[:, WORK.shear].sum()),
         viscous=viscous,
+        waves=waves,
         stored=held_n + held_t,
         plate=tally[SUM.plate],
         barrier=barrier,
@@ -321,7 +325,7 @@ def _result(
         fallen=tally[SUM.gravity] + kinetic - _kinetic(rod, *motion),
         contacts=contacts,
         sites=pressed_sites(case, rod, course.held),
-        laid=bool((course.held.flats.deepest > 0.0).any()),
+        laid=laid,
         force=tally[SUM.force],
         finished=over,
         reason=_reason(over, bounds),

@@ -14,8 +14,10 @@ from fem_impact.modal.sites import skin
 from fem_impact.modal.touch import LAID
 from fem_impact.physics.contact import FLAT, ContactPair
 from fem_impact.physics.flow_law import FULLY_PLASTIC, REPRESENTATIVE, FlowLaw, flow_law
+from fem_impact.scene.material import Material
 
 ON_SIDE = 0.25 * pi  # stiffness of a side over E* times its length (Popov 2010)
+RIGID = 1e-9  # share of the contact's give that a barrier which gives nothing is taken to have
 
 
 def lay_flat(
@@ -44,7 +46,8 @@ def lay_flat(
             for k in (s, other):
                 row = held.site[k]
                 row[SITE.known], row[SITE.awake], row[SITE.wake] = LAID, 0.0, 0.0
-            return (s, other), CELLS * float(held.flats.law[f, LAW.normal])
+            law = held.flats.law[f]
+            return (s, other), CELLS / float(1 / law[LAW.rod] + 1 / law[LAW.barrier])
     return None
 
 
@@ -60,6 +63,23 @@ def height_of(rod: ModalRod, now: ModalState, s: int) -> float:
     t, n = skin(rod.sites, s, turn)
     t, n = t + rod.sites.along_t[s] @ now.q, n + rod.sites.along_n[s] @ now.q
     return float(cos(turn) * n - sin(turn) * t)
+
+
+def flexibility(case: Case) -> float:
+    """Return (1 - nu^2) / E of the barrier, 1/Pa; 0 of a rigid one."""
+    pair = case.contact
+    return (1 - pair.barrier.nu**2) / pair.barrier.E if pair.compliant else 0.0
+
+
+def impedance(metal: Material) -> float:
+    """Return rho V, Pa s/m, of a half-space under a flat part; V = 3.4 c_s / (pi (1 - nu)) is Lysmer's.
+
+    Examples
+    --------
+    >>> round(impedance(Material("steel", 210e9, 0.3, 7850.0)) / (7850.0 * 3208.0), 2)
+    1.55
+    """
+    return 3.4 / (pi * (1 - metal.nu)) * sqrt(metal.rho * metal.E / (2 * (1 + metal.nu)))
 
 
 def _roundness(rod: ModalRod, s: int, turn: float) -> float:
@@ -109,7 +129,9 @@ def _set_face(
     if not flow.ploughs:
         plane, column = column, plane
     # a rod that is pressed over all its face yields as a column
-    _set_row(held, f, pair, flow, pair.modulus, min(FULLY_PLASTIC * plane, column), 2 * wide / CELLS, 0.0)
+    _set_row(
+        case, held, f, pair, flow, pair.modulus, min(FULLY_PLASTIC * plane, column), 2 * wide / CELLS, 0.0
+    )
 
 
 def _set_side(
@@ -128,10 +150,11 @@ def _set_side(
         depth = (energy / (hardness * length * 4 / 3 * sqrt(2 * R))) ** (2 / 3)
         strain = REPRESENTATIVE * sqrt(2 * depth / R)
         hardness *= (1.0 + flow.slope * strain) ** flow.exponent
-    _set_row(held, f, pair, flow, ON_SIDE * pair.modulus, hardness, length / CELLS, 2 * R)
+    _set_row(case, held, f, pair, flow, ON_SIDE * pair.modulus, hardness, length / CELLS, 2 * R)
 
 
 def _set_row(
+    case: Case,
     held: Touched,
     f: int,
     pair: ContactPair,
@@ -141,7 +164,12 @@ def _set_row(
     size: float,
     widens: float,
 ) -> None:
-    """Enter a row of cells of a stiffness a metre, Pa, a hardness, Pa, and a size, m."""
+    """Enter a row of cells of a stiffness a metre, Pa, a hardness, Pa, and a size, m.
+
+    A barrier with a mass of its own, or a plate that bends, is no half-space that waves leave through.
+    """
     sheared = 0.5 * pair.shear_stiffness / pair.modulus  # tangential over normal stiffness
-    cell = stiffness * size
-    held.flats.law[f] = cell, sheared * cell, hardness, flow.skin, flow.friction, size, widens, 1.0
+    cell, share = stiffness * size, max(flexibility(case) * pair.modulus, RIGID)
+    leaves = pair.compliant and not (case.scene.barrier.mass or case.slots.plate)
+    each = cell / (1 - share), cell / share, sheared * cell, impedance(pair.barrier) if leaves else 0.0
+    held.flats.law[f] = *each, hardness, flow.skin, flow.friction, size, widens, 1.0

@@ -196,6 +196,7 @@ def enter(
         tally[SUM.gravity],
         tally[SUM.viscous],
     )
+    row[ROW.waves] = held.flats.works[:, 3].sum()
     row[ROW.plastic], row[ROW.friction], held_n, held_t = spent(held, work_t)
     row[ROW.contact] = held_n + held_t
 
@@ -228,7 +229,7 @@ def march(
 
     Returns `OVER` or `CUT`, or the site: given its law, the march goes on where it stopped. ``now``,
     ``held``, ``clock`` (9,) and ``tally`` (5,) move. ``contacts`` (MOST_CONTACTS, 4) are filled with start,
-    end, s, and impulses along n and t, N s; ``record`` (m, 16) with what moved over time; it may have none.
+    end, s, and impulses along n and t, N s; ``record`` (m, 17) with what moved over time; it may have none.
     """
     dt, rigid = bounds.step, now.rigid
     turns = np.cos(modes.omega * dt), np.sin(modes.omega * dt)

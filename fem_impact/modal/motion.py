@@ -110,11 +110,11 @@ class SiteIndex(NamedTuple):
 
 
 class RowIndex(NamedTuple):
-    """Where each number stands in a row (16,) of the record.
+    """Where each number stands in a row (17,) of the record.
 
     Time, s, forces, N, velocities of the rod, m/s and rad/s; energies, J, of its rigid motion, of the motion
     and the strain of its modes; plastic work, friction, what the contact holds, the barrier's motion, what a
-    plate took, the work of gravity, and what a viscous contact took, J.
+    plate took, the work of gravity, what a viscous contact took, and waves in the barrier, J.
     """
 
     time: int = 0
@@ -133,6 +133,7 @@ class RowIndex(NamedTuple):
     plate: int = 13
     gravity: int = 14
     viscous: int = 15
+    waves: int = 16
 
 
 AT, SUM, CLOCK, SITE, ROW = MotionIndex(), TallyIndex(), ClockIndex(), SiteIndex(), RowIndex()

@@ -9,6 +9,7 @@ import numpy as np
 from fem_impact.arrays import Array
 from fem_impact.case.case import Case
 from fem_impact.modal.flat import LAW
+from fem_impact.modal.landing import flexibility
 from fem_impact.modal.motion import SITE, Touched
 from fem_impact.modal.rod import ModalRod
 from fem_impact.modal.sites import skin
@@ -36,7 +37,7 @@ def _pressed(case: Case, rod: ModalRod, held: Touched, s: int) -> ContactSite:
     middle = skin(rod.sites, s, float(of[SITE.turned]))[0] - _first(case)
     depth = float(of[SITE.deepest])
     if not (flow.yields and flow.ploughs):
-        depth = float(of[SITE.force]) * _flexibility(case) / (2.0 * sqrt(half * wide))
+        depth = float(of[SITE.force]) * flexibility(case) / (2.0 * sqrt(half * wide))
     return _site([of], middle - half, middle + half, 2.0 * wide, depth)
 
 
@@ -50,7 +51,7 @@ def _laid(case: Case, rod: ModalRod, held: Touched, f: int) -> ContactSite:
     sunk = 0.5 * (flats.dent[f] + flats.deepest[f])
     wide = np.sqrt(flats.base[f] + flats.law[f, LAW.widens] * sunk)
     half = 0.5 * flats.law[f, LAW.size]
-    share, dent = _flexibility(case) * pair.modulus, float(flats.dent[f].max())
+    share, dent = flexibility(case) * pair.modulus, float(flats.dent[f].max())
     depth = share * (float(flats.deepest[f].max()) - dent) + (dent if pair.softer == pair.barrier else 0.0)
     low, high = float(places.min()) - half, float(places.max()) + half
     return _site(rows, low, high, 2.0 * float(wide[cells].max()), depth)
@@ -76,9 +77,3 @@ def _first(case: Case) -> float:
     body, angle = case.bodies.body, case.contact.angle
     x, z = body.contact_point(angle)
     return float(cos(angle) * (x - body.x_c) + sin(angle) * (z - body.z_c))
-
-
-def _flexibility(case: Case) -> float:
-    """Return (1 - nu^2) / E of the barrier, 1/Pa; 0 of a rigid one."""
-    pair = case.contact
-    return (1 - pair.barrier.nu**2) / pair.barrier.E if pair.compliant else 0.0

@@ -180,7 +180,7 @@ def meet(held: Touched, turn: float, dt: float) -> tuple[float, float, float]:
             a, b = held.site[flats.ends[f, 0]], held.site[flats.ends[f, 1]]
             depths, moved = (a[SITE.depth], b[SITE.depth]), (a[SITE.moved], b[SITE.moved])
             rubs = factor_at(0.5 * abs(moved[0] + moved[1]) / dt, held.over_speed)
-            N_a, N_b, T_a, T_b = press_flat(flats, f, depths, moved, rubs)
+            N_a, N_b, T_a, T_b = press_flat(flats, f, depths, moved, rubs, dt)
             a[SITE.force_n] += N_a
             b[SITE.force_n] += N_b
             a[SITE.force_t] += T_a

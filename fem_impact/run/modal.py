@@ -34,6 +34,7 @@ SOFT_ROD = Unknown(
     "this model was .14 and .17 of E_0 too high in two scenes"
 )
 UNDAMPED = Unknown("the reduced model has no material damping")
+UNSENT = Unknown("a local contact law sends no waves into the barrier")
 KEPT = Unknown("the modes of a rod are computed once and kept")
 
 
@@ -125,7 +126,7 @@ def _energy(case: Case, result: ModalResult) -> Energy:
         plastic_barrier=plastic_barrier,
         locked_rod=NO_STRESS,
         locked_barrier=NO_STRESS,
-        radiated=Unknown("a local contact law sends no waves into the barrier"),
+        radiated=result.waves / E_0 if result.laid else UNSENT,
         plate=result.plate / E_0 if case.slots.plate else UNBENT,
         barrier=result.barrier / E_0 if case.scene.barrier.mass else MASSIVE,
         closing=Unknown("the reduced model has no contact nodes"),
@@ -154,8 +155,9 @@ TILT_TOLD = 0.01  # rad, as for the rod's own rotation
 LEVEL = "A barrier that turns moves the struck point with it, but the surface there keeps its direction."
 LAID = (
     "A face or side that lands flat is a row of springs between its ends, with the stiffness of a flat punch "
-    "or of a lying cylinder. Waves that it sends into the barrier are left out: e was .06 to .07 too high "
-    "beside finite elements on three pins."
+    "or of a lying cylinder, and a dashpot for the waves that it sends into the barrier. Finite elements "
+    "let them out where the effect radiation is on: the measured rod of 80 mm that lands flat at 1.5 m/s has "
+    "e .91, by finite elements .89 +- .03 with that effect and .94 without it."
 )
 ASSUMPTIONS = (
     "Contact force by Hertz' law; where a body yields, by Tabor's hardness of the softer body over the "

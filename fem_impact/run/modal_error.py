@@ -188,17 +188,18 @@ def factor_of(place: Place, name: str, far: float) -> float:
 
 def unlike(place: Place, outcome: Outcome) -> tuple[str, ...]:
     """Return in what a scene is unlike all stored ones, of which one place touched."""
-    several = ("the number of places that touch",) if _touches_twice(outcome) else ()
-    return (*stored().outside(np.array(place)), *several)
+    return (*stored().outside(np.array(place)), *_unheard(outcome))
 
 
 def farness(place: Place, outcome: Outcome) -> float:
-    """Return how far a scene lies beyond the stored ones, 0 to 1; 1 where several places touch."""
-    return 1.0 if _touches_twice(outcome) else stored().far(np.array(place))
+    """Return how far a scene lies beyond the stored ones, 0 to 1; 1 where it touches as none of them does."""
+    return 1.0 if _unheard(outcome) else stored().far(np.array(place))
 
 
-def _touches_twice(outcome: Outcome) -> bool:
-    return len(or_none(outcome.contact.sites) or ()) > 1
+def _unheard(outcome: Outcome) -> tuple[str, ...]:
+    """Return how a scene touches as no stored one does: of those hardly one lands flat, and sends waves."""
+    several = ("the number of places that touch",) * (len(or_none(outcome.contact.sites) or ()) > 1)
+    return several + ("what lands flat",) * (or_none(outcome.energy.radiated) is not None)
 
 
 def sentence(place: Place, outcome: Outcome) -> str:

@@ -38,6 +38,7 @@ def write_history(case: Case, result: ModalResult, path: Path) -> None:
         "E_kinetic_barrier_J": record[:, ROW.barrier],
         "W_friction_J": record[:, ROW.friction],
         "W_damping_J": record[:, ROW.viscous],
+        "W_radiated_J": record[:, ROW.waves],
         "E_gravity_J": -record[:, ROW.gravity],
         "V_n_m_per_s": record[:, ROW.V_n] + barrier.v_n,
         "V_t_m_per_s": record[:, ROW.V_t] + barrier.v_t,

@@ -1,7 +1,7 @@
 """Faces and sides that land flat, and bodies on two equal places, in the reduced model."""
 
 from dataclasses import replace
-from math import pi, sqrt
+from math import atan2, exp, pi, sqrt
 
 import pytest
 
@@ -38,8 +38,8 @@ def test_a_symmetric_body_that_lands_on_its_face_does_not_turn(shape, effects):
     assert abs(found.Omega) < 1e-6 and abs(found.V_t) < 1e-8
     assert found.finished and abs(found.residual) < 1e-5 * found.E_0
     assert site.low_t + site.high_t == pytest.approx(-2 * (RADIUS - (0 if shape else 3e-3)), abs=1e-9)
-    if effects == STIFF:
-        assert pytest.approx(1.5, rel=1e-5) == found.V_n
+    if effects == STIFF:  # what does not come back left as waves
+        assert found.waves == pytest.approx(found.E_0 - 0.5 * found.rod.mass * found.V_n**2, rel=1e-5)
 
 
 @pytest.mark.parametrize(
@@ -47,10 +47,29 @@ def test_a_symmetric_body_that_lands_on_its_face_does_not_turn(shape, effects):
 )
 def test_a_flat_part_is_a_linear_spring_of_the_printed_stiffness(angle, stiffness):
     """Half a period of the rod's mass on 2 a E* (flat punch) or pi/4 E* L (lying cylinder: Popov 2010)."""
-    case, found = land(angle, PLAIN, effects=("barrier-elastic",))
+    heavy = {"barrier.mass": "1e6 kg"}  # a barrier with a mass of its own is no half-space: no waves leave
+    case, found = land(angle, PLAIN, heavy, effects=("barrier-elastic",))
     duration = pi * sqrt(found.rod.mass / (stiffness * case.contact.modulus))
     assert found.contacts[0, 1] - found.contacts[0, 0] == pytest.approx(duration, rel=0.01)
     assert (found.V_n, found.Omega) == (pytest.approx(1.5, rel=1e-5), pytest.approx(0.0, abs=1e-6))
+
+
+def test_a_stiff_face_on_a_half_space_bounces_off_a_spring_and_a_dashpot():
+    """A mass on spring and dashpot leaves where its acceleration ends, at exp(-zeta w t) of its speed.
+
+    Spring and dashpot of a rigid disc on a half-space: 2 a E / (1 - nu^2) and 3.4 a^2 sqrt(rho G) / (1 - nu)
+    (Lysmer and Richart 1966).
+    """
+    stiff = {"projectile.material.E": "10000 GPa", "barrier.material.E": "20 GPa"}
+    case, found = land(0, PLAIN, stiff, effects=("barrier-elastic",))
+    plate, m = case.contact.barrier, found.rod.mass
+    spring = 2 * RADIUS * plate.E / (1 - plate.nu**2)
+    shear = plate.E / (2 * (1 + plate.nu))
+    dashpot = 3.4 * RADIUS**2 * sqrt(plate.rho * shear) / (1 - plate.nu)
+    zeta = dashpot / (2 * sqrt(spring * m))
+    turned = atan2(2 * zeta * sqrt(1 - zeta**2), 2 * zeta**2 - 1)
+    assert found.V_n == pytest.approx(1.5 * exp(-zeta / sqrt(1 - zeta**2) * turned), rel=1e-2)
+    assert abs(found.residual) < 1e-5 * found.E_0
 
 
 def test_a_long_rod_that_lands_on_its_side_bends_and_does_not_turn():
@@ -98,9 +117,10 @@ def test_a_fast_face_yields_as_a_column():
 
 
 def test_the_face_of_the_measured_rod_rebounds_as_by_finite_elements():
-    """e .97 by finite elements; with the law of its round edge the reduced model had .67."""
+    """e .886 +- .030 by finite elements with the effect radiation; by the law of its round edge .67."""
     outcome = simulate(scene_of(0), "modal")
-    assert outcome.restitution.edge.e == pytest.approx(0.97, abs=0.015)
-    assert "Waves that it sends into the barrier" in " ".join(texts(outcome.validity.limitations, "model"))
+    assert outcome.restitution.edge.e == pytest.approx(0.886, abs=0.03)
+    assert "what lands flat" in " ".join(texts(outcome.validity.limitations, "model"))
+    assert "a dashpot for the waves that it sends" in " ".join(texts(outcome.validity.limitations, "model"))
     inclined = texts(simulate(scene_of(45), "modal").validity.limitations, "model")
     assert "lands flat" not in " ".join(inclined)
