@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fem_impact.arrays import Array, Bools, Ints
-from fem_impact.physics.beam import bending_period, latest_time, stretching_period
+from fem_impact.physics.beam import bending_period, latest_time, ovalling_period, stretching_period
 from fem_impact.physics.contact import ContactEstimate, ContactPair, Plate
-from fem_impact.physics.wall import ovalling_period
 from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.sliding import SpeedTable

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 
+from fem_impact.case import limits
 from fem_impact.case.bodies import Bodies, LaterStrike
 from fem_impact.case.cells import coarse_tip, thin_cells
 from fem_impact.case.choose import Decision, all_effects, choices, decide, neglected, require_approach
@@ -15,16 +16,6 @@ from fem_impact.case.effects.skin import NOT_RIGID, require_skins
 from fem_impact.case.effects.slots import ModelSpec
 from fem_impact.case.elastic_only import require_crushing_named
 from fem_impact.case.layers import block_of, require_layers, thin_layer
-from fem_impact.case.limits import (
-    require_carried,
-    require_first_part,
-    require_followed,
-    require_own_mesh,
-    require_point,
-    require_shallow,
-    require_still,
-    scene_limitations,
-)
 from fem_impact.case.mesh import require_mesh
 from fem_impact.case.metals import unknowns
 from fem_impact.case.plates import is_thin, require_plate, require_plate_mesh, too_thin
@@ -80,19 +71,19 @@ class Case:
             raise UsageError("is not a fidelity.", key="fidelity", value=fidelity, remedy=hint)
         case = cls(scene, fidelity, record)
         require_crushing_named(scene)
-        require_still(scene.barrier, fidelity)
-        require_followed(scene)
-        require_own_mesh(case.bodies, fidelity)
+        limits.require_still(scene.barrier, fidelity)
+        limits.require_followed(scene)
+        limits.require_own_mesh(case.bodies, fidelity)
         require_plate(case.bodies, case.meshed_through)
-        require_first_part(case.bodies)
+        limits.require_first_part(case.bodies)
         if record is None:
-            require_point(case.bodies, fidelity)
+            limits.require_point(case.bodies, fidelity)
         slots = case.slots
         require_layers(case.bodies, fidelity)
         require_skins(case.bodies, fidelity)
         require_closed_form(case.bodies, slots, fidelity)
         if fidelity == "solid":
-            require_carried(scene, slots)
+            limits.require_carried(scene, slots)
             case._require_mesh(slots)
         if fidelity == "solid" and "modal" in dict(scene.strikes.stated):
             cls.of(scene, "modal")  # which computes later strikes
@@ -100,7 +91,7 @@ class Case:
 
     def _require_mesh(self, slots: ModelSpec) -> None:
         """Refuse what cannot be meshed, or needs more memory than there is (SceneError)."""
-        require_shallow(self.bodies)
+        limits.require_shallow(self.bodies)
         if self.record is None:
             require_fine_zone(self.bodies)
         require_mesh(self.scene.projectile, self.scene.across)
@@ -198,7 +189,7 @@ class Case:
     @cached_property
     def limitations(self) -> tuple[Limitation, ...]:
         """What limits trust in any run of the case, before it is run."""
-        of_scene = scene_limitations(self.bodies, self.slots.bending is not None)
+        of_scene = limits.scene_limitations(self.bodies, self.slots.bending is not None)
         meshed = self.fidelity == "solid"
         of_scene += limitations("model", *too_thin(self.bodies, meshed))
         unstated = limitations("input", *unknowns(self.bodies))

@@ -12,18 +12,7 @@ from fem_impact.cli.parser import CommandParser
 from fem_impact.cli.terminal import print_json, print_table
 from fem_impact.options import FIDELITIES
 from fem_impact.plugins import listed
-from fem_impact.scene.library import (
-    about,
-    aliases_of,
-    family_of,
-    friction_pairs,
-    intervals_of,
-    material,
-    materials,
-    shipped,
-    sourced_values,
-    sources_of,
-)
+from fem_impact.scene import library
 from fem_impact.scene.shipped import load
 from fem_impact.scene.write import digest
 from fem_impact.tables.table import Table
@@ -64,7 +53,7 @@ def scenes(options: Options) -> int:
             "measured": scene.measured,
             "digest": digest(scene),
         }
-        for scene in map(load, shipped())
+        for scene in map(load, library.shipped())
     ]
     if options.json:
         print_json({"scenes": rows})
@@ -81,7 +70,7 @@ HEAD = ("material", "E_Pa", "nu", "rho_kg_per_m3", "yield_stress_Pa", "ultimate_
 
 def _materials(options: Options) -> int:
     """List the shipped materials with their values, then the source of each value."""
-    known = materials()
+    known = library.materials()
     rows = [
         (name, m.E, m.nu, m.rho, *(x if x < math.inf else None for x in (m.yield_stress, m.ultimate_stress)))
         for name, m in known.items()
@@ -100,26 +89,26 @@ def _materials(options: Options) -> int:
 def _beside(name: str) -> dict[str, Any]:
     """Return what stands beside the values of a shipped material."""
     return {
-        "aliases": list(aliases_of(name)),
-        "family": family_of(material(name)),
-        "about": about(name),
-        "intervals": intervals_of(name),
-        "sources": sources_of(name),
+        "aliases": list(library.aliases_of(name)),
+        "family": library.family_of(library.material(name)),
+        "about": library.about(name),
+        "intervals": library.intervals_of(name),
+        "sources": library.sources_of(name),
     }
 
 
 def _lines(name: str) -> Iterator[str]:
     """Return name, aliases and state of a shipped material, and each value with its source."""
-    other = ", ".join(aliases_of(name))
-    yield from ("", *wrapped(f"{name}{f' ({other})' if other else ''}: {about(name)}"))
-    for key, value, interval, source in sourced_values(name):
+    other = ", ".join(library.aliases_of(name))
+    yield from ("", *wrapped(f"{name}{f' ({other})' if other else ''}: {library.about(name)}"))
+    for key, value, interval, source in library.sourced_values(name):
         spread = f" ({interval})" if interval else ""
         yield from wrapped(f"{' '.join(filter(None, (key, value)))}{spread}: {source}", "  ")
 
 
 def _friction(options: Options) -> int:
     """List the dry pairs of materials of which friction is known."""
-    pairs = friction_pairs()
+    pairs = library.friction_pairs()
     if options.json:
         print_json({"pairs": pairs})
         return 0

@@ -23,7 +23,7 @@ __all__ = ["statement_of"]
 
 def statement_of(case: Case) -> dict[str, Any]:
     """Return the document of ``--json``, from which the texts are made; SI units."""
-    from fem_impact.case.laws import laws
+    from fem_impact.case.metals import laws
     from fem_impact.outcome.groups import EffectChoice
     from fem_impact.outcome.keys import keys_of
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+import tomllib
+from importlib.resources import files
 from typing import Literal, NamedTuple
 
 Kind = Literal["metal", "brittle", "ground", "plastic", "rubber", "wood"]
@@ -16,47 +18,10 @@ class Family(NamedTuple):
     words: tuple[str, ...]
 
 
+_STATED = files("fem_impact.scene").joinpath("data/families.toml").read_text(encoding="utf-8")
 FAMILIES: dict[str, Family] = {
-    "stainless steel": Family("metal", ("steel", "metal"), ("stainless", "304", "304l", "316", "316l")),
-    "cast iron": Family("metal", ("metal",), ("iron",)),
-    "steel": Family("metal", ("metal",), ("steel",)),
-    "aluminium": Family("metal", ("metal",), ("aluminium", "aluminum", "dural")),
-    "brass": Family("metal", ("metal",), ("brass",)),
-    "bronze": Family("metal", ("metal",), ("bronze",)),
-    "copper": Family("metal", ("metal",), ("copper", "cu")),
-    "titanium": Family("metal", ("metal",), ("titanium", "ti")),
-    "tungsten": Family("metal", ("metal",), ("tungsten",)),
-    "lead": Family("metal", ("metal",), ("lead",)),
-    "zinc": Family("metal", ("metal",), ("zinc", "zamak")),
-    "magnesium": Family("metal", ("metal",), ("magnesium", "magnox")),
-    "zirconium": Family("metal", ("metal",), ("zirconium", "zircaloy")),
-    "nickel": Family("metal", ("metal",), ("nickel", "inconel")),
-    "metal": Family("metal", (), ("metal",)),
-    "glass": Family("brittle", (), ("glass",)),
-    "ceramic": Family(
-        "brittle", (), ("ceramic", "alumina", "zirconia", "nitride", "carbide", "sapphire", "porcelain")
-    ),
-    "concrete": Family("ground", (), ("concrete", "mortar", "cement", "masonry", "brick")),
-    "rock": Family(
-        "ground", (), ("rock", "stone", "granite", "basalt", "marble", "limestone", "sandstone", "slate")
-    ),
-    "soil": Family("ground", (), ("soil", "sand", "clay", "gravel", "earth")),
-    "polyethylene": Family("plastic", ("plastic",), ("polyethylene", "hdpe", "ldpe", "uhmwpe", "pe")),
-    "polyamide": Family("plastic", ("plastic",), ("polyamide", "nylon", "pa6", "pa66")),
-    "ptfe": Family("plastic", ("plastic",), ("ptfe", "teflon")),
-    "acrylic": Family("plastic", ("plastic",), ("acrylic", "pmma", "plexiglas", "perspex")),
-    "rubber": Family("rubber", (), ("rubber", "elastomer", "neoprene", "silicone", "epdm", "latex")),
-    "plastic": Family(
-        "plastic",
-        (),
-        (
-            *("plastic", "polymer", "polycarbonate", "pc", "abs", "peek", "pom", "acetal", "pvc", "epoxy"),
-            *("polypropylene", "pp", "polystyrene", "polyurethane", "pu"),
-        ),
-    ),
-    "wood": Family(
-        "wood", (), ("wood", "hardwood", "timber", "oak", "beech", "ash", "maple", "pine", "spruce")
-    ),
+    name: Family(one["kind"], tuple(one["wider"]), tuple(one["words"]))
+    for name, one in tomllib.loads(_STATED).items()
 }
 
 

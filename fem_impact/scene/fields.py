@@ -17,11 +17,13 @@ def _numbers(tables: Mapping[str, Any]) -> tuple[Parameter, ...]:
     return tuple(Parameter(key, **{"dimension": "", **table}) for key, table in tables.items())
 
 
-PROJECTILE, TUBE, SURFACE, TOP, BARRIER, LAYER, ACCURACY, SAVE, HEATING, STRIKES, MATERIAL, SKIN = (
+PROJECTILE, TUBE, POINT, SHAPE, MATERIAL, SKIN = (
+    _numbers(_STATED[section]) for section in ("projectile", "tube", "point", "shape", "material", "skin")
+)
+SURFACE, SLIDING, TOP, BARRIER, LAYER, ACCURACY, SAVE, HEATING, STRIKES = (
     _numbers(_STATED[section])
     for section in (
-        *("projectile", "tube", "surface", "top", "barrier", "layer", "accuracy", "save", "heating"),
-        *("strikes", "material", "skin"),
+        *("surface", "sliding", "top", "barrier", "layer", "accuracy", "save", "heating", "strikes"),
     )
 )
 ANGLE, V_N, V_T, OMEGA, HEIGHT, SLOPE, SPEED = _numbers(_STATED["impact"])

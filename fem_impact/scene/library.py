@@ -15,8 +15,7 @@ from fem_impact.scene import fields
 from fem_impact.scene.family import family_by_words
 from fem_impact.scene.material import Material
 from fem_impact.scene.material_tables import material_of
-from fem_impact.scene.sliding import SlidingLaw
-from fem_impact.scene.sliding_table import law_of
+from fem_impact.scene.sliding import SlidingLaw, law_of
 from fem_impact.scene.surface import Surface
 from fem_impact.scene.tables import Table, needed
 from fem_impact.scene.types import MEASURED_SETS

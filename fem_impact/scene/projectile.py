@@ -9,19 +9,10 @@ from math import inf, isclose
 from typing import TYPE_CHECKING
 
 from fem_impact.errors import SceneError
-from fem_impact.scene import fields
+from fem_impact.scene import fields, shapes
 from fem_impact.scene.checks import check_choice, check_numbers
 from fem_impact.scene.material import Material
 from fem_impact.scene.own_mesh import OwnMesh, cell_regions, face_regions, faceted_body
-from fem_impact.scene.shapes import (
-    NamedShape,
-    Point,
-    Profile,
-    RodTip,
-    checked_points,
-    outline_of,
-    turned_body,
-)
 from fem_impact.scene.surface import Surface
 
 if TYPE_CHECKING:
@@ -76,8 +67,8 @@ class ProjectileSpec:
     tip: str
     tip_radius: float
     material: Material
-    shape: NamedShape | Profile | OwnMesh | None = None
-    bore: tuple[Point, ...] = ()
+    shape: shapes.NamedShape | shapes.Profile | OwnMesh | None = None
+    bore: tuple[shapes.Point, ...] = ()
     segments: tuple[Segment, ...] = ()
     regions: tuple[Region, ...] = ()
     faces: tuple[Face, ...] = ()
@@ -85,13 +76,13 @@ class ProjectileSpec:
     @classmethod
     def turned(
         cls,
-        shape: NamedShape | Profile,
+        shape: shapes.NamedShape | shapes.Profile,
         material: Material,
-        bore: tuple[Point, ...] = (),
+        bore: tuple[shapes.Point, ...] = (),
         segments: tuple[Segment, ...] = (),
     ) -> ProjectileSpec:
         """Return a projectile of a shape of its own; length and largest diameter follow from it."""
-        line = outline_of(shape)
+        line = shapes.outline_of(shape)
         length, diameter = float(line[-1, 1]), 2.0 * float(line[:, 0].max())
         return cls(length, diameter, "shape", 0.0, material, shape, bore, segments)
 
@@ -126,7 +117,7 @@ class ProjectileSpec:
     @property
     def is_ball(self) -> bool:
         """Return whether this is a solid ball of one material, which has no axis."""
-        named = self.shape if isinstance(self.shape, NamedShape) else None
+        named = self.shape if isinstance(self.shape, shapes.NamedShape) else None
         return named is not None and named.name == "ball" and not self.bore and not self.segments
 
     @property
@@ -200,8 +191,8 @@ class ProjectileSpec:
         if isinstance(self.shape, OwnMesh):
             of = tuple((region.name, region.material.rho) for region in self.regions)
             return faceted_body(self.shape, density, of)
-        shape = self.shape or RodTip(self.length, self.diameter, self.tip, self.tip_radius)
-        return turned_body(shape, self.bore, density)
+        shape = self.shape or shapes.RodTip(self.length, self.diameter, self.tip, self.tip_radius)
+        return shapes.turned_body(shape, self.bore, density)
 
     @property
     def rigid_body(self) -> Body:
@@ -229,7 +220,7 @@ class ProjectileSpec:
                     else 'Change tip_radius, or choose tip = "plain" for a sharp-edged flat face.',
                 )
         if self.bore != ():
-            object.__setattr__(self, "bore", checked_points(self.bore, "bore"))
+            object.__setattr__(self, "bore", shapes.checked_points(self.bore, "bore"))
         if self.segments:
             last = self.segments[-1]
             if last.to == inf:

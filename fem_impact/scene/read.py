@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from fem_impact.errors import ResultError, SceneError, UsageError
-from fem_impact.scene import fields, library, own_mesh
+from fem_impact.scene import fields, library, own_mesh, shapes, types
 from fem_impact.scene.barrier import Barrier, Layer
 from fem_impact.scene.checks import check_names
 from fem_impact.scene.impact import WAYS, Impact, the_way
@@ -19,37 +19,17 @@ from fem_impact.scene.library import read_material
 from fem_impact.scene.material import Material
 from fem_impact.scene.pairs import pair_surface
 from fem_impact.scene.projectile import Face, ProjectileSpec, Region, Segment
-from fem_impact.scene.shapes import (
-    HEIGHT,
-    RADIUS,
-    TIPS,
-    NamedShape,
-    Profile,
-    read_points,
-    refuse_as_tip,
-    refuse_tip,
-    sizes_of,
-    stated_by_length,
-    stated_points,
-)
 from fem_impact.scene.strikes import Following
 from fem_impact.scene.surface import Surface
 from fem_impact.scene.surface_table import of_known, read_surface
 from fem_impact.scene.tables import UNKNOWN_KEY, Table, check_keys, listed, needed, numbers_of, within
-from fem_impact.scene.types import (
-    OWN,
-    Accuracy,
-    Heating,
-    Save,
-    Scene,
-)
 from fem_impact.scene.units import parse_number, parse_quantity, parse_share
 
 _LARGEST_FILE = 1_000_000
 _TOML = 'A scene is a TOML file: key = value lines under [section] headings, text in "quotes".'
 
 
-def read_toml(path: str | Path) -> Scene:
+def read_toml(path: str | Path) -> types.Scene:
     """Read one scene file."""
     return read_dict(read_tables(Path(path)), str(path))
 
@@ -62,23 +42,28 @@ def read_tables(path: Path) -> dict[str, Any]:
     if not isinstance(rod, Mapping) or not isinstance(rod.get("profile"), str):
         return data
     try:
-        points = read_points(path.parent / rod["profile"])
+        points = shapes.read_points(path.parent / rod["profile"])
     except ResultError as error:
         raise SceneError(str(error), key="projectile.profile", source=str(path)) from None
-    return data | {"projectile": {**rod, "profile": [[HEIGHT.write(z), RADIUS.write(r)] for z, r in points]}}
+    return data | {
+        "projectile": {
+            **rod,
+            "profile": [[shapes.HEIGHT.write(z), shapes.RADIUS.write(r)] for z, r in points],
+        }
+    }
 
 
 def _beside(data: dict[str, Any], path: Path) -> dict[str, Any]:
     """Return the tables with the files of own tests and mesh found from the place of the scene's file."""
     name, rod = data.get("measured"), data.get("projectile")
-    if isinstance(name, str) and name.endswith(OWN):
+    if isinstance(name, str) and name.endswith(types.OWN):
         data = data | {"measured": str((path.parent / name).resolve())}
     if isinstance(rod, Mapping) and isinstance(rod.get("mesh"), str):
         data = data | {"projectile": {**rod, "mesh": str((path.parent / rod["mesh"]).resolve())}}
     return data
 
 
-def read_dict(data: Mapping[str, Any], source: str = "scene") -> Scene:
+def read_dict(data: Mapping[str, Any], source: str = "scene") -> types.Scene:
     """Check nested tables and make the scene; ``source`` is named in every message."""
     try:
         return read_scene(data)
@@ -136,7 +121,7 @@ _TOP = (
 )
 
 
-def read_scene(data: Table) -> Scene:
+def read_scene(data: Table) -> types.Scene:
     """Make a scene from its tables; keys in messages are dotted from the top."""
     if not isinstance(data, Mapping):
         raise SceneError("a scene must be a table of tables.", value=data)
@@ -153,7 +138,9 @@ def read_scene(data: Table) -> Scene:
         "impact": lambda: within(data, "impact", _impact),
         "accuracy": lambda: within(data, "accuracy", _accuracy, {}),
         "save": lambda: within(data, "save", _save, {}),
-        "heating": lambda: within(data, "heating", lambda t: Heating(**numbers_of(t, fields.HEATING)), {}),
+        "heating": lambda: within(
+            data, "heating", lambda t: types.Heating(**numbers_of(t, fields.HEATING)), {}
+        ),
         "strikes": lambda: within(data, "strikes", _strikes, {}),
     }
     # all parts read; of several complaints a misspelt key comes before what is missing for it
@@ -170,7 +157,7 @@ def read_scene(data: Table) -> Scene:
         pair = read["projectile"].material, read["barrier"].struck
         of_pair = partial(of_known, lambda: pair_surface(*pair))
         read["surface"] = within(data, "surface", of_pair, {}) if rubs or "surface" in data else SMOOTH
-    scene = Scene(
+    scene = types.Scene(
         **read,
         title=data.get("title", data.get("id")),
         effects=effects,
@@ -185,11 +172,11 @@ def _strikes(table: Table) -> Following:
     return Following(table.get("fidelity", ""), **numbers_of(table, fields.STRIKES, ("fidelity",)))
 
 
-def _check_measured(scene: Scene) -> None:
+def _check_measured(scene: types.Scene) -> None:
     """Refuse the name of a measured set beside another rod or angle, whose arms and results differ."""
     if scene.measured is None:
         return
-    if scene.measured.endswith(OWN):
+    if scene.measured.endswith(types.OWN):
         if not Path(scene.measured).is_file():
             remedy = "Name a CSV file, from the place of the scene's file."
             raise SceneError("there is no such file.", key="measured", value=scene.measured, remedy=remedy)
@@ -217,7 +204,7 @@ def _projectile(table: Table) -> ProjectileSpec:
     if tube := {key: table[key] for key in ("inner_diameter", "inner_diameter_m") if key in table}:
         return _tube({key: value for key, value in table.items() if key not in tube}, tube)
     own = {
-        "bore": stated_points(table.get("bore", ()), "bore"),
+        "bore": shapes.stated_points(table.get("bore", ()), "bore"),
         "segments": listed(table["segments"], "segments", _segment, SEGMENT) if "segments" in table else (),
     }
     known = {key: value for key, value in table.items() if key not in own}
@@ -231,8 +218,8 @@ def _projectile(table: Table) -> ProjectileSpec:
         return _of_mesh(known, own)
     if "profile" in known:
         check_keys(known, ("profile", "profile_smooth", "material"))
-        points = stated_points(known["profile"], "profile")
-        shape = Profile(points, known.get("profile_smooth", False))
+        points = shapes.stated_points(known["profile"], "profile")
+        shape = shapes.Profile(points, known.get("profile_smooth", False))
         return ProjectileSpec.turned(shape, within(known, "material", read_material), **own)
     return _named_shape(known, own) if "shape" in known else _rod(known, own)
 
@@ -313,12 +300,14 @@ def _region(material: Any, name: str) -> Material:
 def _named_shape(table: Table, own: dict[str, Any]) -> ProjectileSpec:
     """Read a shape by name; those that are rods with a published kind of tip become such rods."""
     name = table["shape"]
-    refuse_tip(table)
-    by_length = stated_by_length(name, table)
-    sizes = numbers_of(table, sizes_of(name, by_length), ("shape", "material"))
+    shapes.refuse_tip(table)
+    by_length = shapes.stated_by_length(name, table)
+    sizes = numbers_of(table, shapes.sizes_of(name, by_length), ("shape", "material"))
     material = within(table, "material", read_material)
-    if name not in TIPS:
-        return ProjectileSpec.turned(NamedShape(name, tuple(sizes.values()), by_length), material, **own)
+    if name not in shapes.TIPS:
+        return ProjectileSpec.turned(
+            shapes.NamedShape(name, tuple(sizes.values()), by_length), material, **own
+        )
     radius = {"flat": 0.0, "hemisphere": sizes["diameter"] / 2}.get(name) or sizes.get("edge_radius", 0.0)
     return ProjectileSpec(
         sizes["length"], sizes["diameter"], "B" if radius else "plain", radius, material, **own
@@ -339,7 +328,7 @@ def _layer(table: Table) -> Layer:
 
 
 def _rod(table: Table, own: dict[str, Any]) -> ProjectileSpec:
-    refuse_as_tip(table.get("tip"))
+    shapes.refuse_as_tip(table.get("tip"))
     plain = {"tip_radius": 0.0} if table.get("tip") == "plain" else {}
     numbers = numbers_of(table, fields.PROJECTILE, ("tip", "material"), plain)
     tip = needed(table, "tip", '"A", "B" or "plain"')
@@ -371,26 +360,26 @@ def _impact(table: Table) -> Impact:
     return made(**numbers_of(table, stated, words), **words)
 
 
-def _save(table: Table) -> Save:
+def _save(table: Table) -> types.Save:
     words = {key: table[key] for key in ("fields",) if key in table}
-    return Save(**numbers_of(table, fields.SAVE, ("fields",)), **words)
+    return types.Save(**numbers_of(table, fields.SAVE, ("fields",)), **words)
 
 
-def _accuracy(table: Table | str) -> Accuracy:
+def _accuracy(table: Table | str) -> types.Accuracy:
     """Read a mesh, or a wanted error written alone or as the key ``target``."""
     if isinstance(table, str):
-        return Accuracy(**_wanted(table, ""))
+        return types.Accuracy(**_wanted(table, ""))
     choices = ("element", "yielding_element", "fine_zone", "unresolved")
     numbers = numbers_of(table, fields.ACCURACY, (*choices, "target"))
     numbers |= {key: table[key] for key in choices if key in table}
     if "target" not in table:
-        return Accuracy(**numbers)
+        return types.Accuracy(**numbers)
     for key in fields.MESH:
         if key in table:
             raise SceneError(
                 "stands beside a target, which chooses the mesh.", key=key, remedy="Keep one of the two."
             )
-    return Accuracy(**numbers, **_wanted(table["target"], "target"))
+    return types.Accuracy(**numbers, **_wanted(table["target"], "target"))
 
 
 def _wanted(text: Any, key: str) -> dict[str, Any]:

@@ -6,11 +6,11 @@ from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
-from math import pi
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fem_impact.errors import ResultError, SceneError
+from fem_impact.scene import fields
 from fem_impact.scene.checks import check_choice
 from fem_impact.scene.parameter import Parameter
 from fem_impact.scene.units import DIMENSIONS, Unit, parse_quantity
@@ -23,22 +23,8 @@ if TYPE_CHECKING:
 Point = tuple[float, float]
 TIPS = ("flat", "rounded-edge", "hemisphere")  # shapes that are rods with a tip of the published kinds
 MOST_POINTS = 2000
-HEIGHT = Parameter("z", "place on the axis, from the tip", "length", 0.0, 10.0)
-RADIUS = Parameter("r", "radius", "length", 0.0, 0.5)
-SIZES = (
-    Parameter("length", "length of the projectile, tip to tail", "length", 1e-3, 10.0),
-    Parameter("diameter", "largest diameter", "length", 1e-4, 1.0),
-    Parameter("edge_radius", "radius of the rounded edge", "length", 0.0, 0.5, low_open=True),
-    Parameter("nose_radius", "radius of the sphere at the tip", "length", 0.0, 0.5, low_open=True),
-    Parameter("face_diameter", "diameter of the flat face at the tip", "length", 0.0, 1.0, low_open=True),
-    Parameter(
-        "cone_angle", "angle between axis and cone", "angle", 0.0, pi / 2, low_open=True, high_open=True
-    ),
-    Parameter("calibre_radius", "radius of the ogive over the diameter", "", 0.5, 100.0, low_open=True),
-    Parameter(
-        "nose_length", "length of the nose, from the tip to the cylinder", "length", 0.0, 10.0, low_open=True
-    ),
-)
+HEIGHT, RADIUS = fields.POINT
+SIZES = fields.SHAPE
 BY_LENGTH = "nose_length"
 TIP = ("tip", "tip_radius", "tip_radius_m")
 """Keys of a rod's tip."""

@@ -6,22 +6,20 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from math import prod
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Any, Self
 
 from fem_impact.errors import SceneError
 from fem_impact.scene.checks import check_text
-from fem_impact.scene.parameter import Parameter
+from fem_impact.scene.fields import SLIDING as AXES
+from fem_impact.scene.tables import Table, check_keys, needed
+from fem_impact.scene.units import parse_quantity
 
 if TYPE_CHECKING:
     from fem_impact.arrays import Array
 
+
 MOST = 1000  # numbers of a grid
 LARGEST = 10.0  # factor
-AXES = (
-    Parameter("speed", "sliding speeds, growing from 0", "speed", 0.0, 1e4),
-    Parameter("pressure", "pressures, growing", "stress", 0.0, 1e12),
-    Parameter("temperature", "temperatures before the impact, growing", "temperature", 1.0, 5000.0),
-)
 SpeedTable = tuple[tuple[float, ...], tuple[float, ...]]
 """Sliding speeds, m/s, and the factor of f at each."""
 
@@ -106,3 +104,48 @@ class SlidingLaw:
             low, high = int(place), min(int(place) + 1, len(values) - 1)
             values = values[low] + (place - low) * (values[high] - values[low])
         return self.speed, tuple(values.tolist())
+
+
+EXAMPLE = '{ speed = ["0 m/s", "1 m/s", "5 m/s"], factor = [1, 0.8, 0.6], source = "own tests" }'
+
+
+def law_of(table: Table, name: str = "") -> SlidingLaw:
+    """Return the law of a table: axes with their units, factors in as many levels of lists (SceneError)."""
+    check_keys(table, (*(axis.key for axis in AXES), "factor", "source"))
+    axes = {}
+    for axis in AXES:
+        stated = (
+            needed(table, axis.key, f"a list, as in {EXAMPLE}")
+            if axis.key == "speed"
+            else table.get(axis.key, [])
+        )
+        if not isinstance(stated, list | tuple):
+            raise SceneError("must be a list.", key=axis.key, value=stated, remedy=f"As in {EXAMPLE}.")
+        axes[axis.key] = tuple(parse_quantity(one, axis.dimension, axis.key) for one in stated)
+    import numpy as np
+
+    try:
+        factor = np.array(needed(table, "factor", "a number for each speed"), dtype=np.float64)
+    except (ValueError, TypeError):
+        remedy = "Write a list of numbers for each speed, one such list for each pressure."
+        raise SceneError("must be numbers, in rows of one length.", key="factor", remedy=remedy) from None
+    lengths = tuple(len(axes[axis.key]) for axis in reversed(AXES) if axes[axis.key])
+    if factor.shape != lengths:
+        wanted = " lists of ".join(map(str, lengths))
+        raise SceneError(
+            f"is not {wanted} numbers.", key="factor", remedy="Rows are pressures, then temperatures."
+        )
+    source = needed(table, "source", '"our own tests", where the factors come from')
+    return SlidingLaw(factor=tuple(factor.ravel().tolist()), source=source, name=name, **axes)
+
+
+def written(law: SlidingLaw) -> str | dict[str, Any]:
+    """Return the name of a law, or its table."""
+    if law.name:
+        return law.name
+    import numpy as np
+
+    axes = {axis.key: [axis.write(value) for value in getattr(law, axis.key)] for axis in AXES}
+    axes = {key: values for key, values in axes.items() if values}
+    shape = [len(axes[axis.key]) for axis in reversed(AXES) if axis.key in axes]
+    return {**axes, "factor": np.reshape(law.factor, shape).tolist(), "source": law.source}

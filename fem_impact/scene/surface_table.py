@@ -8,8 +8,7 @@ from functools import partial
 
 from fem_impact.errors import SceneError
 from fem_impact.scene import fields, library
-from fem_impact.scene.sliding import SlidingLaw
-from fem_impact.scene.sliding_table import EXAMPLE, law_of
+from fem_impact.scene.sliding import EXAMPLE, SlidingLaw, law_of
 from fem_impact.scene.surface import Surface
 from fem_impact.scene.tables import Table, check_keys, needed, numbers_of
 

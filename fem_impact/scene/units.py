@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 import re
+import tomllib
 from dataclasses import dataclass
 from decimal import Decimal
+from importlib.resources import files
 from typing import Any
 
 from fem_impact.errors import SceneError, UsageError, did_you_mean
@@ -50,60 +52,10 @@ class Dimension:
         return ", ".join(u.symbol for u in self.units)
 
 
-_RPM = 2.0 * math.pi / 60.0
+_STATED = files("fem_impact.scene").joinpath("data/units.toml").read_text(encoding="utf-8")
 DIMENSIONS: dict[str, Dimension] = {
-    d.name: d
-    for d in (
-        Dimension(
-            "length",
-            "m",
-            "mm",
-            "240 mm",
-            (Unit("m"), Unit("mm", -3), Unit("cm", -2), Unit("um", -6), Unit("inch", 0, 0.0254)),
-        ),
-        Dimension(
-            "speed",
-            "m_per_s",
-            "m/s",
-            "-2.1 m/s",
-            (Unit("m/s"), Unit("mm/s", -3), Unit("km/s", 3), Unit("km/h", 0, 1 / 3.6)),
-        ),
-        Dimension("angle", "rad", "deg", "45 deg", (Unit("rad"), Unit("deg", 0, math.pi / 180.0))),
-        Dimension(
-            "angular speed",
-            "rad_per_s",
-            "rad/s",
-            "45 rad/s",
-            (Unit("rad/s"), Unit("deg/s", 0, math.pi / 180.0), Unit("rpm", 0, _RPM)),
-        ),
-        Dimension(
-            "stress", "Pa", "MPa", "546 MPa", (Unit("Pa"), Unit("kPa", 3), Unit("MPa", 6), Unit("GPa", 9))
-        ),
-        Dimension("density", "kg_per_m3", "kg/m3", "7850 kg/m3", (Unit("kg/m3"), Unit("g/cm3", 3))),
-        Dimension("inertia", "kg_m2", "kg m2", "0.02 kg m2", (Unit("kg m2"), Unit("g cm2", -7))),
-        Dimension("mass", "kg", "kg", "5 kg", (Unit("kg"), Unit("g", -3), Unit("t", 3))),
-        Dimension("force", "N", "N", "5 kN", (Unit("N"), Unit("kN", 3))),
-        Dimension("temperature", "K", "K", "430 degC", (Unit("K"), Unit("degC", offset=273.15))),
-        Dimension("conductivity", "W_per_m_K", "W/(m K)", "53 W/(m K)", (Unit("W/(m K)"), Unit("W/mK"))),
-        Dimension(
-            *("heat capacity", "J_per_kg_K", "J/(kg K)", "440 J/(kg K)"), (Unit("J/(kg K)"), Unit("J/kgK"))
-        ),
-        Dimension("strain rate", "per_s", "/s", "1 /s", (Unit("/s"), Unit("1/s"))),
-        Dimension(
-            "time",
-            "s",
-            "ms",
-            "2.5 ms",
-            (
-                Unit("s"),
-                Unit("ms", -3),
-                Unit("us", -6),
-                Unit("ns", -9),
-                Unit("min", 0, 60.0),
-                Unit("h", 0, 3600.0),
-            ),
-        ),
-    )
+    name: Dimension(name, **{**stated, "units": tuple(Unit(*unit) for unit in stated["units"])})
+    for name, stated in tomllib.loads(_STATED).items()
 }
 
 

@@ -21,7 +21,7 @@ from fem_impact.scene.own_mesh import OwnMesh
 from fem_impact.scene.parameter import Parameter
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.shapes import HEIGHT, RADIUS, NamedShape, Point, Profile, sizes_of
-from fem_impact.scene.sliding_table import written
+from fem_impact.scene.sliding import written
 from fem_impact.scene.surface import Surface
 from fem_impact.scene.types import OWN, Accuracy, Scene
 

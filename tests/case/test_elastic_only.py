@@ -4,8 +4,7 @@ import pytest
 
 from fem_impact.case.case import Case
 from fem_impact.case.elastic_only import LEFT_OUT, NOT_STATED, UNSORTED, VISCOUS, left_out
-from fem_impact.case.laws import laws
-from fem_impact.case.metals import unknowns
+from fem_impact.case.metals import laws, unknowns
 from fem_impact.errors import SceneError
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.material import Material

@@ -9,7 +9,7 @@ import pytest
 from fem_impact.case.case import Case
 from fem_impact.case.effects.barrier import compliance_share
 from fem_impact.errors import SceneError
-from fem_impact.evidence.references.zener import zener_impact
+from fem_impact.evidence.references.hertz import zener_impact
 from fem_impact.modal.impact import drop_round
 from fem_impact.modal.motion import SUM, Bounds, Start
 from fem_impact.outcome.limitation import texts

@@ -8,8 +8,7 @@ from fem_impact.answers.verdict.screening import screening
 from fem_impact.case.case import Case
 from fem_impact.case.effects.vibration import number
 from fem_impact.fem.eigen import rod_modes
-from fem_impact.physics.beam import bending_period
-from fem_impact.physics.wall import ovalling_period
+from fem_impact.physics.beam import bending_period, ovalling_period
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.solid.build import build

@@ -7,16 +7,9 @@ from typing import TYPE_CHECKING
 
 from fem_impact.case.effects.slots import Effect, ModelSpec
 from fem_impact.errors import SceneError
+from fem_impact.physics import hardening
 from fem_impact.physics.contact import LIMIT_PRESSURE
-from fem_impact.physics.flow_curves import johnson_cook, ramberg_osgood
-from fem_impact.physics.hardening import (
-    TABOR_STRAIN,
-    HardeningLaw,
-    TabulatedHardening,
-    hardness_hardening,
-    linear_hardening,
-    power_hardening,
-)
+from fem_impact.physics.hardening import johnson_cook, ramberg_osgood
 from fem_impact.scene.flow import RambergOsgoodFlow, TableFlow
 
 if TYPE_CHECKING:
@@ -67,10 +60,10 @@ def strength_of(material: Material) -> float:
     """
     if not material.yields or material.ultimate_stress < inf:
         return max(material.yield_stress, material.ultimate_stress)
-    return float(hardening_of(material).flow_stress(TABOR_STRAIN))
+    return float(hardening_of(material).flow_stress(hardening.TABOR_STRAIN))
 
 
-def hardening_of(material: Material) -> HardeningLaw:
+def hardening_of(material: Material) -> hardening.HardeningLaw:
     """Return the hardening law of a material, by whichever of its values states one.
 
     Raises
@@ -83,11 +76,11 @@ def hardening_of(material: Material) -> HardeningLaw:
         remedy = "Give it, or leave the effect by which the body yields out of effects."
         raise SceneError("is not stated.", key=f"yield_stress of {material.name}", remedy=remedy)
     if material.plastic_modulus is not None:
-        return linear_hardening(material.yield_stress, material.plastic_modulus)
+        return hardening.linear_hardening(material.yield_stress, material.plastic_modulus)
     if material.flow is not None:
         flow = material.flow
         if isinstance(flow, TableFlow):
-            return TabulatedHardening(flow.points)
+            return hardening.TabulatedHardening(flow.points)
         if isinstance(flow, RambergOsgoodFlow):
             return ramberg_osgood(material.yield_stress, flow.n)
         cold = (material.yield_stress, flow.B, flow.n)
@@ -100,8 +93,8 @@ def hardening_of(material: Material) -> HardeningLaw:
     try:
         if material.law == "hardness" and material.hardness is not None:
             key, value = "hardness", f"{material.hardness:g}"
-            return hardness_hardening(material.E, material.yield_stress, material.hardness)
-        return power_hardening(material.E, material.yield_stress, material.ultimate_stress)
+            return hardening.hardness_hardening(material.E, material.yield_stress, material.hardness)
+        return hardening.power_hardening(material.E, material.yield_stress, material.ultimate_stress)
     except ValueError as error:
         instead = "law and hardness" if key == "hardness" else key
         remedy = f"Give one that fits, or in place of {instead} a tangent_modulus, hardening or flow curve."

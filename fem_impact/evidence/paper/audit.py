@@ -9,18 +9,7 @@ from typing import Any
 from fem_impact.errors import UsageError, did_you_mean
 from fem_impact.tables.table import Cell, Column, Table
 from fem_impact.tables.text import wrapped
-from rigid import Coefficients, Estimate, first_order
-from rigid.experiments import (
-    AuditRecord,
-    MeasuredSet,
-    Statistic,
-    audit,
-    audit_statistics,
-    column_arms,
-    correlations,
-    measured_set,
-    set_ids,
-)
+from rigid import Coefficients, Estimate, experiments, first_order
 
 SCATTER = (*Coefficients._fields, "E_ln_over_E_0", "E_lt_over_E_0", "E_r_over_E_0")
 CSV_COLUMNS = ("set", "table", "row", "column", "printed", "recomputed", "tolerance", "agrees", "explanation")
@@ -45,7 +34,7 @@ def finite(value: Any) -> float | None:
     return number if math.isfinite(number) else None
 
 
-def statistic_entry(estimate: Statistic) -> dict[str, Any]:
+def statistic_entry(estimate: experiments.Statistic) -> dict[str, Any]:
     """Return mean, SD and 95 % interval of the mean by name."""
     numbers = {name: finite(getattr(estimate, name)) for name in ("mean", "sd", "low", "high")}
     return {**numbers, "tests": estimate.n}
@@ -76,12 +65,12 @@ def audit_document(set_id: str | None = None) -> dict[str, Any]:
     UsageError
         There is no such set.
     """
-    if set_id and set_id not in set_ids():
-        remedy = did_you_mean(set_id, set_ids(), f"Measured: {', '.join(set_ids())}.")
+    if set_id and set_id not in experiments.set_ids():
+        remedy = did_you_mean(set_id, experiments.set_ids(), f"Measured: {', '.join(experiments.set_ids())}.")
         raise UsageError("is not a measured set.", key="--set", value=set_id, remedy=remedy)
-    ids = (set_id,) if set_id else set_ids()
-    records = [r for r in (*audit(), *audit_statistics()) if r.set_id in ids]
-    sets = [measured_set(name) for name in ids]
+    ids = (set_id,) if set_id else experiments.set_ids()
+    records = [r for r in (*experiments.audit(), *experiments.audit_statistics()) if r.set_id in ids]
+    sets = [experiments.measured_set(name) for name in ids]
     return {
         "summary": _summary(records),
         "columns": list(_columns(records)),
@@ -97,7 +86,7 @@ def records_table(document: Mapping[str, Any]) -> Table:
     return Table.of(CSV_COLUMNS, document["records"])
 
 
-def _summary(records: Sequence[AuditRecord]) -> dict[str, int]:
+def _summary(records: Sequence[experiments.AuditRecord]) -> dict[str, int]:
     apart = [r for r in records if not r.agrees]
     markers = sum(_is_marker(r) for r in apart)
     return {
@@ -109,12 +98,12 @@ def _summary(records: Sequence[AuditRecord]) -> dict[str, int]:
     }
 
 
-def _is_marker(r: AuditRecord) -> bool:
+def _is_marker(r: experiments.AuditRecord) -> bool:
     """Return whether this is a tip velocity of a single test, measured at a marker, not at the contact."""
     return r.column in ("V_cn", "V_ct") and r.row not in ("mean", "sd")
 
 
-def _columns(records: Sequence[AuditRecord]) -> Iterator[dict[str, Any]]:
+def _columns(records: Sequence[experiments.AuditRecord]) -> Iterator[dict[str, Any]]:
     for which, summarises in (("rows", False), ("mean and SD lines", True)):
         lines = [r for r in records if (r.row in ("mean", "sd")) is summarises]
         for name in dict.fromkeys(r.column for r in lines):
@@ -123,7 +112,7 @@ def _columns(records: Sequence[AuditRecord]) -> Iterator[dict[str, Any]]:
             yield {"lines": which, "column": name, "numbers": len(group), "agree": agree}
 
 
-def _constants(s: MeasuredSet) -> dict[str, Any]:
+def _constants(s: experiments.MeasuredSet) -> dict[str, Any]:
     """Return the arms, mass and k2 with which a set's columns were computed."""
     return {
         "set": s.id,
@@ -132,14 +121,14 @@ def _constants(s: MeasuredSet) -> dict[str, Any]:
         "d_d_m": float(s.arms.d_d),
         "mass_kg": s.mass,
         "k_squared_m2": s.k2,
-        "other_d_c_m": dict(column_arms(s.id)),
+        "other_d_c_m": dict(experiments.column_arms(s.id)),
         "reconstructed": s.reconstructed,
     }
 
 
-def _disagreements(records: Iterable[AuditRecord]) -> Iterator[dict[str, Any]]:
+def _disagreements(records: Iterable[experiments.AuditRecord]) -> Iterator[dict[str, Any]]:
     """Yield the disagreements; the markers' velocities as one entry a set and column."""
-    markers: dict[tuple[str, str], list[AuditRecord]] = {}
+    markers: dict[tuple[str, str], list[experiments.AuditRecord]] = {}
     for r in records:
         if not r.agrees and _is_marker(r):
             markers.setdefault((r.set_id, r.column), []).append(r)
@@ -150,14 +139,14 @@ def _disagreements(records: Iterable[AuditRecord]) -> Iterator[dict[str, Any]]:
         yield {**_entry(worst), "row": f"{len(group)} rows, worst {worst.row}"}
 
 
-def _entry(r: AuditRecord) -> dict[str, Any]:
+def _entry(r: experiments.AuditRecord) -> dict[str, Any]:
     return {"set": r.set_id, **{name: getattr(r, name) for name in CSV_COLUMNS[1:]}}
 
 
-def _scatter(s: MeasuredSet) -> dict[str, Any]:
+def _scatter(s: experiments.MeasuredSet) -> dict[str, Any]:
     """Return scatter, uncertainty of e_m and correlations of one set."""
     statistics, rows = s.statistics(), s.recomputed()
-    pairs = correlations({name: rows[name] for name in Coefficients._fields})
+    pairs = experiments.correlations({name: rows[name] for name in Coefficients._fields})
     return {
         "set": s.id,
         **{name: statistic_entry(statistics[name]) for name in SCATTER},

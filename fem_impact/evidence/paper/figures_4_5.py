@@ -9,19 +9,8 @@ import numpy as np
 
 from fem_impact.evidence.paper.drawn import Drawn, Statement, canvas
 from fem_impact.figures.style import INK, PALETTE, QUIET, write_data
-from rigid import Errors, coefficients, critical_ratio
+from rigid import Errors, coefficients, critical_ratio, experiments
 from rigid.arrays import Floats
-from rigid.experiments import (
-    Correlation,
-    MeasuredSet,
-    angle_sets,
-    at_angle,
-    correlation,
-    correlations,
-    critical_ratio_against_angle,
-    measured_set,
-    statistic,
-)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -37,7 +26,7 @@ FRICTION = 0.57
 
 COLUMNS_5 = ("alpha_deg", "mu_mean", "mu_low", "mu_high", "mu_c", "mu_c_low", "mu_c_high")
 
-Pairs = dict[tuple[str, str], Correlation]
+Pairs = dict[tuple[str, str], experiments.Correlation]
 
 
 def figure_4(out: Path) -> Drawn:
@@ -49,10 +38,10 @@ def figure_4(out: Path) -> Drawn:
         Directory for picture and data.
     """
     picture = out / "figure-4.png"
-    s = measured_set("t2")
+    s = experiments.measured_set("t2")
     recomputed = {name: s.recomputed()[name] for name in NAMES}
     printed = {name: s.printed[name] for name in NAMES}
-    r_recomputed, r_printed = correlations(recomputed), correlations(printed)
+    r_recomputed, r_printed = experiments.correlations(recomputed), experiments.correlations(printed)
     tests = s.printed["test"].astype(int)
     write_data(picture, COLUMNS_4, zip(tests, *recomputed.values(), *printed.values(), strict=True))
     sentence = _sentence_4(s, r_recomputed, r_printed)
@@ -73,7 +62,7 @@ def _panel(
     recomputed: dict[str, Floats],
     printed: dict[str, Floats],
     pair: tuple[str, str],
-    r: Correlation,
+    r: experiments.Correlation,
 ) -> None:
     x, y = pair
     dots: dict[str, Any] = {"marker": "o", "linestyle": "none"}
@@ -81,7 +70,7 @@ def _panel(
     axes.plot(printed[x], printed[y], **rings, label="test, as printed")
     label = "test, from velocities with $d_c$ = 83 mm"
     axes.plot(recomputed[x], recomputed[y], **dots, color=PALETTE["blue"], markersize=3.2, label=label)
-    a, b = statistic(recomputed[x]), statistic(recomputed[y])
+    a, b = experiments.statistic(recomputed[x]), experiments.statistic(recomputed[y])
     bars: dict[str, Any] = {"xerr": a.high - a.mean, "yerr": b.high - b.mean}
     axes.errorbar(a.mean, b.mean, **bars, color=PALETTE["vermilion"], lw=1.8, label="mean, 95 % interval")
     axes.set(xlabel=NAMES[x], ylabel=NAMES[y])
@@ -90,7 +79,7 @@ def _panel(
     axes.grid()
 
 
-def _sentence_4(s: MeasuredSet, recomputed: Pairs, printed: Pairs) -> str:
+def _sentence_4(s: experiments.MeasuredSet, recomputed: Pairs, printed: Pairs) -> str:
     largest = max(abs(c.r) for c in printed.values())
     first = (
         f"Table 2, 30 tests: as printed, no two coefficients correlate (r at most {largest:.2f} in size); "
@@ -100,7 +89,7 @@ def _sentence_4(s: MeasuredSet, recomputed: Pairs, printed: Pairs) -> str:
         return f"{first}nor do they when recomputed from the velocities."
     pair = real[0]
     ratios = coefficients(**s.motion, **{**s.body, "d_c": OTHER_ARM})
-    other = correlation(ratios.mu, ratios.e_m)
+    other = experiments.correlation(ratios.mu, ratios.e_m)
     verdict = "still do" if other.is_significant else "do not"
     return (
         f"{first}from the velocities {' and '.join(pair)} do weakly (r = {recomputed[pair].r:+.2f}), yet "
@@ -112,8 +101,10 @@ def _sentence_4(s: MeasuredSet, recomputed: Pairs, printed: Pairs) -> str:
 def figure_5(out: Path) -> Drawn:
     """Draw mean mu with its 95 % interval, and mu_c with the range that e and the contact point leave."""
     picture = out / "figure-5.png"
-    sets = angle_sets()
-    rows = [_row(s, mu_c) for s, mu_c in zip(sets, critical_ratio_against_angle()[0], strict=True)]
+    sets = experiments.angle_sets()
+    rows = [
+        _row(s, mu_c) for s, mu_c in zip(sets, experiments.critical_ratio_against_angle()[0], strict=True)
+    ]
     write_data(picture, COLUMNS_5, rows)
     table = np.array(rows)
     sentence = _sentence_5(table)
@@ -122,7 +113,7 @@ def figure_5(out: Path) -> Drawn:
         # draw mu_c between the measured angles, with interpolated e and arms
         degrees = np.linspace(17, 60, 173)
         x = np.radians(degrees)
-        at = at_angle(x)
+        at = experiments.at_angle(x)
         mu_c = critical_ratio(-np.cos(x), -np.sin(x), e=at.e, d_c=at.d_c, d_d=at.d_d, k2=sets[0].k2)
         between = "between them, e and arms interpolated"
         axes.plot(degrees, mu_c, color=PALETTE["orange"], linewidth=1.3, label=between)
@@ -142,7 +133,7 @@ def figure_5(out: Path) -> Drawn:
     return Drawn(5, picture, sentence, _statements(table))
 
 
-def _row(s: MeasuredSet, mu_c: float) -> list[float]:
+def _row(s: experiments.MeasuredSet, mu_c: float) -> list[float]:
     """Return one row of `COLUMNS_5`."""
     mean = s.statistics()
     mu, e = mean["mu"], np.array([mean["e"].low, mean["e"].high])[:, None, None]

@@ -9,17 +9,8 @@ import numpy as np
 
 from fem_impact.evidence.paper.drawn import Drawn, Statement, canvas
 from fem_impact.figures.style import PALETTE, QUIET, write_data
-from rigid import critical_ratio, predicted_losses
+from rigid import critical_ratio, experiments, predicted_losses
 from rigid.arrays import Floats
-from rigid.experiments import (
-    MeasuredSet,
-    Statistic,
-    angle_sets,
-    drawn_losses,
-    loss_against_angle,
-    measured_set,
-    statistic,
-)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -47,7 +38,7 @@ COLUMNS_7 = ("kind", "alpha_deg", *(f"{name}_{end}_over_E_0" for name in LOOKS f
 def figure_6(out: Path) -> Drawn:
     """Draw the total loss against mu at the five angles, with the measured e and e_m of each."""
     picture = out / "figure-6.png"
-    curves = [_curve(s) for s in angle_sets()]
+    curves = [_curve(s) for s in experiments.angle_sets()]
     rows = []
     for curve in curves:
         total = curve["total"]
@@ -62,7 +53,7 @@ def figure_6(out: Path) -> Drawn:
     )
     with canvas(picture, 4.6, sentence) as drawn:
         axes = drawn.add_subplot()
-        for curve, s, colour in zip(curves, angle_sets(), COLOURS, strict=True):
+        for curve, s, colour in zip(curves, experiments.angle_sets(), COLOURS, strict=True):
             _draw_6(axes, curve, s, PALETTE[colour])
         # set axes, grid and legend
         axes.axhline(0.0, color=QUIET, linewidth=0.7)
@@ -85,7 +76,7 @@ def figure_6(out: Path) -> Drawn:
     return Drawn(6, picture, sentence, _statements_6(share, curves))
 
 
-def _curve(s: MeasuredSet) -> dict[str, Any]:
+def _curve(s: experiments.MeasuredSet) -> dict[str, Any]:
     """Return loss against mu of one set, with the band of the 95 % interval of its mean e.
 
     ``share`` is the loss at mu_c over the largest loss at mu <= mu_c.
@@ -104,7 +95,7 @@ def _curve(s: MeasuredSet) -> dict[str, Any]:
     return {"alpha": angle, "total": total, "tangential": lost.E_lt[0], "mu_c": mu_c, "share": share}
 
 
-def _draw_6(axes: Axes, curve: dict[str, Any], s: MeasuredSet, colour: str) -> None:
+def _draw_6(axes: Axes, curve: dict[str, Any], s: experiments.MeasuredSet, colour: str) -> None:
     total: Floats = curve["total"]
     possible, beyond = curve["mu_c"] >= MU, (curve["mu_c"] <= MU + 0.005) & (total[0] > -0.3)
     axes.fill_between(
@@ -121,8 +112,8 @@ def _draw_6(axes: Axes, curve: dict[str, Any], s: MeasuredSet, colour: str) -> N
 def _statements_6(share: list[float], curves: list[dict[str, Any]]) -> tuple[Statement, ...]:
     """Check the loss at mu_c, the gain of energy beyond it, and the loss over mu of Table 3's surfaces."""
     gains = [f"{c['alpha']:.0f}" for c in curves if (c["tangential"][c["mu_c"] < MU] < 0).any()]
-    low = _loss_of(measured_set("t3-contaminated"), 0.32)
-    high = _loss_of(measured_set("t3-machined"), 0.72)
+    low = _loss_of(experiments.measured_set("t3-contaminated"), 0.32)
+    high = _loss_of(experiments.measured_set("t3-machined"), 0.72)
     return (
         Statement(
             "the loss at the critical ratio is close to the largest",
@@ -142,7 +133,7 @@ def _statements_6(share: list[float], curves: list[dict[str, Any]]) -> tuple[Sta
     )
 
 
-def _loss_of(s: MeasuredSet, mu: float) -> float:
+def _loss_of(s: experiments.MeasuredSet, mu: float) -> float:
     """Return the loss fraction at `mu` with the mean e and e_m of a set."""
     mean = s.statistics()
     lost = predicted_losses(-1.0, -1.0, e=mean["e"].mean, mu=mu, e_m=mean["e_m"].mean, mass=1.0, **s.body)
@@ -156,21 +147,21 @@ def figure_7(out: Path) -> Drawn:
     # of the measured means (173,), and of resampled tests (draws, 173)
     curves, resampled = (
         {"total": p.E_ln + p.E_lt, "E_lt": p.E_lt, "E_ln": p.E_ln}
-        for p in (loss_against_angle(x), drawn_losses(x))
+        for p in (experiments.loss_against_angle(x), experiments.drawn_losses(x))
     )
     bands = {name: np.percentile(many, [2.5, 97.5], axis=0) for name, many in resampled.items()}
-    measured: list[dict[str, Statistic]] = []
-    for rows_of in (s.recomputed() for s in angle_sets()):
+    measured: list[dict[str, experiments.Statistic]] = []
+    for rows_of in (s.recomputed() for s in experiments.angle_sets()):
         # the total is 1 - E_r/E_0, independent of e_m
         lost = {"total": 1.0 - rows_of["E_r_over_E_0"]}
         lost |= {name: rows_of[f"{name}_over_E_0"] for name in ("E_lt", "E_ln")}
-        measured.append({name: statistic(values) for name, values in lost.items()})
+        measured.append({name: experiments.statistic(values) for name, values in lost.items()})
     # the rows of `COLUMNS_7`: the calculated ones, then the measured ones
     columns = [column for name in LOOKS for column in (curves[name], *bands[name])]
     rows: list[list[float | str]] = [
         ["curve", *map(float, row)] for row in zip(DEGREES, *columns, strict=True)
     ]
-    for s, losses in zip(angle_sets(), measured, strict=True):
+    for s, losses in zip(experiments.angle_sets(), measured, strict=True):
         ends = [x for name in LOOKS for x in (losses[name].mean, losses[name].low, losses[name].high)]
         rows.append(["measured", round(float(np.degrees(s.alpha)), 6), *ends])
     write_data(picture, COLUMNS_7, rows)
@@ -198,11 +189,13 @@ def figure_7(out: Path) -> Drawn:
     return Drawn(7, picture, sentence, _statements(peaks))
 
 
-def _draw_7(axes: Axes, name: str, curve: Floats, band: Floats, measured: list[Statistic]) -> None:
+def _draw_7(
+    axes: Axes, name: str, curve: Floats, band: Floats, measured: list[experiments.Statistic]
+) -> None:
     colour, mark = PALETTE[LOOKS[name][0]], LOOKS[name][1]
     axes.fill_between(DEGREES, *band, color=colour, alpha=0.18, lw=0)
     axes.plot(DEGREES, curve, color=colour, lw=1.5, label=f"{LABELS[name]} by Eq 23-25, 95 % band")
-    angles = [float(np.degrees(s.alpha)) for s in angle_sets()]
+    angles = [float(np.degrees(s.alpha)) for s in experiments.angle_sets()]
     means, half = [m.mean for m in measured], [m.high - m.mean for m in measured]
     axes.errorbar(
         angles, means, yerr=half, fmt=mark, color=colour, mec="black", mew=0.5, capsize=3,

@@ -10,19 +10,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from math import exp, log, sqrt
 
-from fem_impact.evidence.problems import setups
+from fem_impact.evidence.problems import setups, spheres
 from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values, within
-from fem_impact.evidence.problems.spheres import (
-    MARGIN,
-    StruckPlate,
-    ball_mass,
-    modulus,
-    parameters,
-    plain_hertz,
-    small_contact,
-    sphere_model,
-)
-from fem_impact.evidence.references.zener import PlateImpact, zener_impact
+from fem_impact.evidence.references.hertz import PlateImpact, zener_impact
 from fem_impact.physics.plate import plate_impedance, pulse_wave
 from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.parameter import Parameter
@@ -40,13 +30,13 @@ LOCAL = "Zener's plate is a half-space under the contact, and gives way as a who
 
 def unit_of_time(p: Values) -> float:
     """Return T = (m / (k sqrt(v)))^(2/5), s, with k = 4/3 E* sqrt(R)."""
-    stiffness = 4 / 3 * modulus(p) * p["radius"] ** 0.5
-    return float((ball_mass(p) / (stiffness * p["speed"] ** 0.5)) ** 0.4)
+    stiffness = 4 / 3 * spheres.modulus(p) * p["radius"] ** 0.5
+    return float((spheres.ball_mass(p) / (stiffness * p["speed"] ** 0.5)) ** 0.4)
 
 
 def _thickness(p: Values, number: float) -> float:
     """Return the thickness, m, of the plate of a number of Zener's; the impedance grows as its square."""
-    impedance = ball_mass(p) / (number * unit_of_time(p))
+    impedance = spheres.ball_mass(p) / (number * unit_of_time(p))
     return sqrt(impedance / plate_impedance(p["E"], p["nu"], p["rho"], 1.0))
 
 
@@ -71,8 +61,11 @@ class PlateStrike:
     @classmethod
     def of(cls, p: Values, model: Model, end: float) -> PlateStrike:
         """Run a model until ``end``, s."""
-        E_0 = 0.5 * ball_mass(p) * p["speed"] ** 2
-        impact, ledger = setups.run_strike(model, end, plain_hertz(p, p["speed"]).duration), model.ledger()
+        E_0 = 0.5 * spheres.ball_mass(p) * p["speed"] ** 2
+        impact, ledger = (
+            setups.run_strike(model, end, spheres.plain_hertz(p, p["speed"]).duration),
+            model.ledger(),
+        )
         ledger.start = E_0
         spent = ledger.sample(impact.state)
         held = sum(spent.get(name, 0.0) for name in ("kinetic_barrier", "strain_barrier"))
@@ -83,7 +76,7 @@ class PlateStrike:
     def beside_zener(self, p: Values, exact: PlateImpact, at: str, energy: float) -> tuple[Check, ...]:
         """Return restitution, force and contact time beside Zener's equation, and the balance of energy."""
         T = unit_of_time(p)
-        force = ball_mass(p) * p["speed"] / T * exact.peak
+        force = spheres.ball_mass(p) * p["speed"] / T * exact.peak
         return (
             Check(f"e, {at}", "1", self.e, exact.restitution, RESTITUTION, "absolute"),
             Check(f"largest force, {at}", "N", self.impact.force, force, FORCE),
@@ -94,7 +87,7 @@ class PlateStrike:
 
 def _scene_strike(p: Values, number: float, exact: PlateImpact) -> PlateStrike:
     """Return the impact of a scene's ball on its plate of a number of Zener's."""
-    metal, touch = setups.steel(p), plain_hertz(p, p["speed"]).radius
+    metal, touch = setups.steel(p), spheres.plain_hertz(p, p["speed"]).radius
     model = setups.falling(
         setups.ball(p, metal),
         Barrier(metal, thickness=_thickness(p, number), support="infinite"),
@@ -102,7 +95,7 @@ def _scene_strike(p: Values, number: float, exact: PlateImpact) -> PlateStrike:
         p["speed"],
         tip_size=setups.fine_tip(touch, p["cells"]),
         across=int(p["across"]),
-        block_margin=max(MARGIN * touch, 4 * p["radius"] / p["across"]),
+        block_margin=max(spheres.MARGIN * touch, 4 * p["radius"] / p["across"]),
     )
     return PlateStrike.of(p, model, AFTER * exact.duration * unit_of_time(p))
 
@@ -115,7 +108,7 @@ def solve_plate(p: Values) -> Solved:
     SceneError
         If the contact is no spot on the sphere, or the numbers are in no order.
     """
-    small_contact(p)
+    spheres.small_contact(p)
     within(p, "most", 1.01 * p["least"], 2.0, "", "above the least, and the sphere leaves the plate soon.")
     low, high = log(p["least"]), log(p["most"])
     numbers = [exp(low + (high - low) * i / (STRIKES - 1)) for i in range(STRIKES)]
@@ -129,18 +122,18 @@ def solve_plate(p: Values) -> Solved:
     return Solved(tuple(checks), max(run.impact.state.step for run in runs), runs[0].cells)
 
 
-def _through(p: Values, plate: StruckPlate, end: float) -> PlateStrike:
+def _through(p: Values, plate: spheres.StruckPlate, end: float) -> PlateStrike:
     """Return an impact on a plate that is meshed through its thickness, until ``end``, s."""
-    model = sphere_model(p, plain_hertz(p, p["speed"]), p["speed"], plate=plate)
+    model = spheres.sphere_model(p, spheres.plain_hertz(p, p["speed"]), p["speed"], plate=plate)
     return PlateStrike.of(p, model, end)
 
 
-def _plate(p: Values, time: float) -> tuple[StruckPlate, str]:
+def _plate(p: Values, time: float) -> tuple[spheres.StruckPlate, str]:
     """Return the plate for a contact of ``time``, s, and how wide the contact is."""
     thickness = _thickness(p, p["number"])
     speed, edges = pulse_wave(p["E"], p["nu"], p["rho"], thickness, time)
-    width = 2 * plain_hertz(p, p["speed"]).radius / thickness
-    return StruckPlate(thickness, edges, speed), f"contact {width:.2g} of the thickness wide"
+    width = 2 * spheres.plain_hertz(p, p["speed"]).radius / thickness
+    return spheres.StruckPlate(thickness, edges, speed), f"contact {width:.2g} of the thickness wide"
 
 
 def _wide(p: Values, exact: PlateImpact) -> tuple[Check, ...]:
@@ -166,7 +159,7 @@ def solve_thin_plate(p: Values) -> Solved:
     SceneError
         If the slow contact is no spot on the sphere, or the speeds are in no order.
     """
-    small_contact(p)
+    spheres.small_contact(p)
     within(p, "fast", 1.01 * p["speed"], 1e3, "m/s", "above the slow speed.")
     exact = zener_impact(p["number"])
     time = exact.duration * unit_of_time(p)
@@ -179,7 +172,7 @@ def solve_thin_plate(p: Values) -> Solved:
 PLATE = Problem(
     "plate",
     "an elastic sphere strikes infinite thin plates: bending waves lower e as Zener's equation says",
-    parameters(
+    spheres.parameters(
         9.5e-3,
         setups.speed("speed", "approach speed", 1.0),
         Parameter("least", "Zener's lambda of the thickest plate", "", 1e-3, 1.0, default=0.05),
@@ -193,7 +186,7 @@ PLATE = Problem(
 THIN_PLATE = Problem(
     "thin-plate",
     "an elastic sphere strikes infinite plates meshed through: Zener's equation, and edges twice as far",
-    parameters(
+    spheres.parameters(
         9.5e-3,
         setups.speed("speed", "approach speed, slow: the plate is thick beside its contact", 0.3),
         setups.speed("fast", "approach speed, fast: the plate is thin beside its contact", 30.0),

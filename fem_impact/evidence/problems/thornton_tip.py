@@ -14,15 +14,7 @@ import numpy as np
 from fem_impact.evidence.problems import setups
 from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values, within
 from fem_impact.evidence.problems.spheres import ball_mass
-from fem_impact.evidence.references.hertz import (
-    MEAN,
-    contact_modulus,
-    fitted_restitution,
-    plastic_radius,
-    plastic_speeds,
-    thornton_restitution,
-    yield_speed,
-)
+from fem_impact.evidence.references import hertz
 from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.material import Material
 from fem_impact.scene.parameter import Parameter
@@ -40,8 +32,8 @@ LONGEST, APART = 6.0, 0.1  # over the time of the indentation: when a run ends, 
 
 def _indentation(p: Values, v: float) -> tuple[float, float]:
     """Return contact radius, m, and duration, s, of a rigid plane pressed in by a constant pressure."""
-    mass, pressure = ball_mass(p), MEAN * p["yield_stress"]
-    radius = plastic_radius(p["yield_stress"], p["radius"], mass, v)
+    mass, pressure = ball_mass(p), hertz.MEAN * p["yield_stress"]
+    radius = hertz.plastic_radius(p["yield_stress"], p["radius"], mass, v)
     return radius, pi / 2 * sqrt(mass / (2 * pi * p["radius"] * pressure))
 
 
@@ -73,8 +65,8 @@ def judged_slope(p: Values, slope: float) -> Check:
     """Judge the slope where the contact is fully plastic and small at all speeds, else show it."""
     if p["hardening"] > 0:
         return Check.shown(NAME, "1", slope, SLOPE, "the law is that of a material that does not harden")
-    E_star = contact_modulus(p["E"], p["nu"])
-    low, high = plastic_speeds(p["yield_stress"], E_star, p["radius"], ball_mass(p))
+    E_star = hertz.contact_modulus(p["E"], p["nu"])
+    low, high = hertz.plastic_speeds(p["yield_stress"], E_star, p["radius"], ball_mass(p))
     if low <= p["slowest"] and p["fastest"] <= high:
         return Check(NAME, "1", slope, SLOPE, SLOPE_TOLERANCE, "absolute")
     if low > high:
@@ -92,9 +84,9 @@ def solve(p: Values) -> Solved:
         If a speed is too low or too high for a plastic contact.
     """
     # refuse speeds whose contact is elastic, no spot on the sphere, or in no order
-    mass, E_star = ball_mass(p), contact_modulus(p["E"], p["nu"])
-    first = yield_speed(FIRST * p["yield_stress"], E_star, p["radius"], mass)
-    unit = plastic_radius(p["yield_stress"], p["radius"], mass, 1.0) / p["radius"]
+    mass, E_star = ball_mass(p), hertz.contact_modulus(p["E"], p["nu"])
+    first = hertz.yield_speed(FIRST * p["yield_stress"], E_star, p["radius"], mass)
+    unit = hertz.plastic_radius(p["yield_stress"], p["radius"], mass, 1.0) / p["radius"]
     most = (LARGE / unit) ** 2
     within(p, "slowest", first, most, "m/s", "slower nothing yields, faster the sphere is crushed.")
     within(p, "fastest", 1.1 * p["slowest"], most, "m/s", "above the slowest, and the sphere not crushed.")
@@ -104,9 +96,11 @@ def solve(p: Values) -> Solved:
     slope = float(np.polyfit(np.log(speeds), np.log([run[0] for run in runs]), 1)[0])
     middle = speeds[SPEEDS // 2]
     fine = _restitution(p, middle, FINER * p["cells"])
-    E_star, mass = contact_modulus(p["E"], p["nu"]), ball_mass(p)
-    full, first = (yield_speed(c * p["yield_stress"], E_star, p["radius"], mass) for c in (MEAN, FIRST))
-    law, fit = thornton_restitution(middle, full), fitted_restitution(middle, first)
+    E_star, mass = hertz.contact_modulus(p["E"], p["nu"]), ball_mass(p)
+    full, first = (
+        hertz.yield_speed(c * p["yield_stress"], E_star, p["radius"], mass) for c in (hertz.MEAN, FIRST)
+    )
+    law, fit = hertz.thornton_restitution(middle, full), hertz.fitted_restitution(middle, first)
     checks = (
         judged_slope(p, slope),
         Check("e, and with finer cells", "1", runs[SPEEDS // 2][0], fine[0], CONVERGED),

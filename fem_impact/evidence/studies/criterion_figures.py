@@ -7,13 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fem_impact.arrays import Array
-from fem_impact.evidence.studies.criterion_findings import (
-    INDEPENDENT,
-    LEVELS,
-    by_contact,
-    nearest,
-    over_friction,
-)
+from fem_impact.evidence.studies import criterion_findings
 from fem_impact.evidence.studies.rod_theory import blind_ratio
 from fem_impact.evidence.studies.rods import BODY, PAPER_RODS, DroppedRod
 from fem_impact.figures.panels import Mark, Panel, Picture, Series
@@ -30,10 +24,10 @@ def onset(body: DataFrame) -> Picture:
     """Return the largest error of e against gamma, 19 mm, one line per family."""
     series = tuple(
         Series(name, rods.gamma.tolist(), rods.error_of_e.tolist(), "joined", at, _bands(rods))
-        for at, (name, rods) in enumerate(by_contact(body).items())
+        for at, (name, rods) in enumerate(criterion_findings.by_contact(body).items())
     )
     label = "largest error of e by rigid theory"
-    panel = Panel("19 mm", GAMMA, label, series, LIMIT_MARK, tuple(map(Mark, LEVELS)))
+    panel = Panel("19 mm", GAMMA, label, series, LIMIT_MARK, tuple(map(Mark, criterion_findings.LEVELS)))
     caption = "Where vibration changes the rebound; horizontal lines: the stated levels."
     return Picture("onset", caption, (panel,), 1)
 
@@ -65,7 +59,7 @@ def angles(angles: DataFrame) -> Picture:
 def static_give(upright: DataFrame) -> Picture:
     """Return e of the vibrating rod, by quasi-static bending alone, and of the rigid rod, at three angles."""
     panels = []
-    for near in (nearest(upright, angle) for angle in SHOWN):
+    for near in (criterion_findings.nearest(upright, angle) for angle in SHOWN):
         series = (
             Series("vibrating", near.gamma.tolist(), near.e.tolist(), "points"),
             Series("quasi-static bending alone", near.gamma.tolist(), near.e_static_give.tolist(), "line"),
@@ -89,7 +83,7 @@ def master(rods: DataFrame) -> Picture:
             for at, (name, same) in enumerate(rods.groupby("contact", sort=False))
         ]
         if column == "T1_over_tau_whole":
-            series.append(Series("independent reference", *INDEPENDENT, "rings", 6))
+            series.append(Series("independent reference", *criterion_findings.INDEPENDENT, "rings", 6))
         panels.append(Panel(title, axis, "1 - largest error of e", tuple(series), marks))
     caption = "One group or the other: all diameters, contacts and slendernesses."
     return Picture("master", caption, tuple(panels), 3)
@@ -99,7 +93,7 @@ def blind_direction(blind: DataFrame) -> Picture:
     """Return vibration against friction of the paper's rods, with mu* of each."""
     series, marks = [], []
     for at, (rod, length) in enumerate(PAPER_RODS.items()):
-        f, share = over_friction(blind, length)
+        f, share = criterion_findings.over_friction(blind, length)
         series.append(Series(rod, f, 100 * share, "joined", at))
         marks.append(Mark(blind_ratio(DroppedRod(length)), f"mu* of {rod}"))
     panel = Panel("elastic, 45 degrees", "f", "vibration, % of E_0", tuple(series), tuple(marks))
