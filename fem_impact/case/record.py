@@ -84,7 +84,7 @@ class ContactRecord:
     sites : places of contact in the order of their first touch; none of a record of what may happen
     left : contact or flow reached the end of what the mesh held ready for it
     resolved : enough nodes were pressed at once for coefficients and shares of the run to be given
-    crushed : the run ended because a cell folded or was crushed
+    crushed : the run ended because a cell folded or was crushed; a mesh that follows has no thin cells
     """
 
     rod: BodyRecord

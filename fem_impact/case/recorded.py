@@ -72,7 +72,7 @@ class RecordedZones:
     @property
     def ends(self) -> tuple[float, float] | None:
         """Return the places along t, m, at which a contact that was found ends on a barrier that flows."""
-        if not (self.conforming and self.record.sites):
+        if self.record.crushed or not (self.conforming and self.record.sites):
             return None
         touched = self._of_barrier.touched[:, 0]
         return float(touched.min()), float(touched.max())
@@ -139,6 +139,8 @@ def recorded_zones(bodies: Bodies, record: ContactRecord) -> RecordedZones:
     rod_rows = ROD_ROWS if levels and bodies.contact.rod_yields else 0
     if rod_rows and "machined-skin" in bodies.effects and bodies.contact.rod.skin:
         rod_rows = SKIN_ROWS
+    if record.crushed:
+        rows = rod_rows = 0
     return RecordedZones(base, rod_base, levels, below, record, conforming, rows, rod_rows, edges)
 
 

@@ -15,6 +15,7 @@ from fem_impact.fem.geometry import tail_corners
 from fem_impact.fem.kernels import COMPILING
 from fem_impact.files.fields_write import FieldWriter
 from fem_impact.physics.beam import horizon
+from fem_impact.scene.impact import FIRST
 from fem_impact.solid.checkpoint import Moving
 from fem_impact.solid.contact.surface import SurfaceContact
 from fem_impact.solid.contact_watch import ContactWatch
@@ -25,7 +26,7 @@ from fem_impact.solid.observers import AddedMass, Frames, History, PeakForce, Wa
 from fem_impact.solid.rodview import FieldSampler, RodState
 from fem_impact.solid.separation import Separation
 from fem_impact.solid.state import State
-from fem_impact.solid.stepguard import StepGuard
+from fem_impact.solid.stepguard import SMALLEST, THIN_CRUSHED, StepGuard
 from fem_impact.solid.strain import StrainWatch
 from fem_impact.tables.history import HISTORY, HistoryWriter
 
@@ -134,7 +135,11 @@ class Watchers:
             heat = HeatWatch(model)
         # a flat end that lands flat leaves when the wave is back from the other end, and no contact before
         contact = ContactWatch(model, case.bodies.stretching_period)
-        return cls(StepGuard(model), watch, history, frames, strain, skin, contact, peak, added, heat, stop)
+        # a level is run again without thin cells, a strike of a body that is followed is not
+        again = case.record is not None and not case.record.crushed and scene.impact.until == FIRST
+        rows = case.zones.skin_rows + case.zones.rod_rows
+        guard = StepGuard(model, crushed=THIN_CRUSHED if again and rows else SMALLEST)
+        return cls(guard, watch, history, frames, strain, skin, contact, peak, added, heat, stop)
 
     @property
     def all(self) -> list[Saved]:

@@ -14,6 +14,7 @@ from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.record import Outcome
 from fem_impact.run.program import stamp
 from fem_impact.run.simulate import simulate_recorded
+from fem_impact.solid.stepguard import THIN_CRUSHED
 
 # of nodes across the narrow side of a contact, on levels whose values are extrapolated: a line of contact one
 # cell wide is pressed as hard as its cells are large, and two levels of it may agree and be wrong together
@@ -66,6 +67,17 @@ class LevelRun:
             f"The contact is {rows} node{'s' * (rows > 1)} wide across its narrow side, and {ROWS} resolve "
             f"it: half-widths are {NARROW:g} times the largest change from level to level. A larger "
             "accuracy.levels or budget adds finer levels."
+        )
+
+    @property
+    def without_thin(self) -> str:
+        """Say that its mesh has no thin cells, and why; empty where it has, or needs none."""
+        before = self.cases[0].record
+        if before is None or not before.crushed:
+            return ""
+        return (
+            "The mesh has no thin rows and columns at the contact: with them a cell was squeezed until it "
+            f"folded or lowered the step of the whole run to under {THIN_CRUSHED:g} of the first."
         )
 
     @property

@@ -71,6 +71,17 @@ class LevelMeshes:
         more = max(self._levels - LEVELS, 0) if self.is_sized else self._levels - LEVELS
         return min(max(wanted, least) + more, self.first + JUMP * max(self._levels - 2, 0) + 1)
 
+    def lacking(self, splits: int, found: ContactRecord, finest: int) -> str:
+        """Say how often cells that are split so often would be halved for the contact found; empty: never."""
+        radius = patch_radius(found.rod)
+        wanted = self.wanted(radius) - splits
+        if wanted <= 0 or (self.is_sized and splits >= finest):
+            return ""
+        return (
+            f"The contact, {2e3 * radius:.2g} mm wide, would be resolved as advised by cells halved "
+            f"{wanted} times more: give a larger accuracy.levels or budget."
+        )
+
     @property
     def is_sized(self) -> bool:
         """Whether the scene states the size of the last level's cells."""

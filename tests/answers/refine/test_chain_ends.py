@@ -15,6 +15,10 @@ from fem_impact.outcome.record import Outcome
 from fem_impact.run.resolution import without_end
 from fem_impact.scene.read import read_toml
 from fem_impact.scene.shipped import load, replace_all
+from fem_impact.solid.build import build
+from fem_impact.solid.rodview import RodState
+from fem_impact.solid.stepguard import SMALLEST, THIN_CRUSHED
+from fem_impact.solid.watchers import Watchers
 
 QUICK = replace_all(load("quick"), {"save.frames": 0})
 SHORT = replace_all(QUICK, {"projectile.length": "40 mm", "accuracy.levels": 2})
@@ -79,6 +83,29 @@ def test_each_repeat_has_twice_the_room_of_the_one_before(level, monkeypatch):
     assert rooms == [(k * level.record.rod.reach, k * level.record.barrier.spread) for k in (1.0, 2.0, 4.0)]
 
 
+def test_a_level_whose_thin_rows_are_crushed_runs_again_without_them(level, monkeypatch):
+    rows = []
+
+    def squeezed(scene, fidelity, options, case):
+        rows.append(case.zones.skin_rows)
+        return level.outcome, replace(level.record, crushed=rows[-1] > 0)
+
+    monkeypatch.setattr(level_module, "simulate_recorded", squeezed)
+    levels = LevelChain(Case(QUICK), done=[level])
+    levels._run_level(2)
+    assert rows[0] > 0 and rows[1:] == [0] and not levels.done[-1].record.crushed
+    assert "no thin rows and columns" in levels.done[-1].without_thin and not level.without_thin
+
+
+def test_a_step_falls_less_far_where_a_mesh_has_thin_rows_to_lose(level):
+    (case,), guards = level.cases, []
+    model = build(case)
+    for record in (case.record, replace(case.record, crushed=True)):
+        one = Case(case.scene, "solid", record)
+        guards.append(Watchers.of(one, model, RodState.of(model), None, False).guard.crushed)
+    assert guards == [THIN_CRUSHED, SMALLEST]
+
+
 @pytest.fixture
 def failing(monkeypatch):
     """Let the second level end as a function of its outcome and record says."""
@@ -88,7 +115,7 @@ def failing(monkeypatch):
         def ended(scene, fidelity, options, case):
             ran.append(scene)
             outcome, record = run(scene, fidelity, options, case)
-            return end(outcome, record) if len(ran) == 2 else (outcome, record)
+            return end(outcome, record) if len(ran) > 1 else (outcome, record)
 
         monkeypatch.setattr(level_module, "simulate_recorded", ended)
         return ran
@@ -104,12 +131,13 @@ def crushed(outcome, record):
     return without_end(outcome, "An element was crushed."), replace(record, crushed=True, left=True)
 
 
-@pytest.mark.parametrize(("end", "why"), [(not_finite, "not finite"), (crushed, "finish")])
-def test_what_coarser_levels_found_is_kept_where_a_finer_one_fails(failing, end, why, tmp_path):
+@pytest.mark.parametrize(("end", "runs"), [(not_finite, 2), (crushed, 3)])
+def test_what_coarser_levels_found_is_kept_where_a_finer_one_fails(failing, end, runs, tmp_path):
+    """One that is crushed runs once more, without its thin rows."""
     ran = failing(end)
     accuracy = replace(QUICK.accuracy, unresolved="report")
     outcome = simulate(replace(QUICK, accuracy=accuracy), options=RunOptions(tmp_path))
-    assert len(ran) == 2
+    assert len(ran) == runs
     assert 0 < known(outcome.restitution.edge.e) < 1
     assert isinstance(outcome.validity.mesh_band, Unknown)
     (told,) = [one.text for one in outcome.validity.limitations if "cut off" in one.text]
