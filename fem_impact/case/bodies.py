@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,9 +17,6 @@ from fem_impact.scene.types import Scene
 from meshes import SKIN, HexMesh
 from rigid import Body
 
-if TYPE_CHECKING:
-    from fem_impact.case.recorded import AnyZones
-
 SAME_PLACE = 1e-6  # of the length, as far as nodes of a user's mesh may lie from where they touch
 
 
@@ -33,13 +29,11 @@ class LaterStrike:
     contact : both as they touch; of its tail, of the body turned over
     alpha : angle between its axis and the barrier's normal, rad, of any size
     lowest : (x, z), m, from its tip, of its lowest place
-    zones : fine zones of the strike on whose dent it lands; None: it has its own
     """
 
     contact: ContactPair
     alpha: float
     lowest: tuple[float, float]
-    zones: AnyZones | None = None
 
 
 @dataclass(frozen=True, eq=False)

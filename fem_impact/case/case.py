@@ -45,12 +45,14 @@ class Case:
     record : where the bodies touched and flowed in a coarser run, or may at first; the zones of the meshes
         follow it. Without one they follow the estimate of one contact
     later : how the bodies touch in a strike after the first, None in the first
+    dent : fine zones of the strike on whose dent a later one lands; None: it has its own
     """
 
     scene: Scene
     fidelity: str = "solid"
     record: ContactRecord | None = None
     later: LaterStrike | None = None
+    dent: AnyZones | None = None
 
     @classmethod
     def of(cls, scene: Scene, fidelity: str = "solid", record: ContactRecord | None = None) -> Case:
@@ -167,8 +169,8 @@ class Case:
     @cached_property
     def zones(self) -> AnyZones:
         """The fine zones of the meshes (solid)."""
-        if self.later is not None and self.later.zones is not None:
-            return self.later.zones
+        if self.dent is not None:
+            return self.dent
         return self._estimated if self.record is None else recorded_zones(self.bodies, self.record)
 
     @cached_property

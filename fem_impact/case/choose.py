@@ -5,17 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import inf, isfinite
-from typing import TYPE_CHECKING
 
+from fem_impact.case.bodies import Bodies
 from fem_impact.case.effects.registry import ADDED, AUTO, BARRIERS, EFFECTS, NAMES, with_prerequisites
 from fem_impact.case.measured import expected_shares
 from fem_impact.errors import SceneError
 from fem_impact.outcome.groups import EffectChoice
-
-if TYPE_CHECKING:
-    from fem_impact.case.bodies import Bodies
-    from fem_impact.scene.types import Scene
-
+from fem_impact.scene.types import Scene
 
 SLOWEST = 1e-6  # m/s, of the contact point: below it nothing is computed
 UNFELT = ("contact-heating",)  # what the motion does not feel is watched or not, never missed

@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from fem_impact.case.effects.registry import AUTO
 from fem_impact.errors import SceneError
 from fem_impact.scene.family import kind_of
 from fem_impact.scene.library import family_of
-
-if TYPE_CHECKING:
-    from fem_impact.scene.material import Material
-    from fem_impact.scene.types import Scene
-
+from fem_impact.scene.material import Material
+from fem_impact.scene.types import Scene
 
 UPPER = "so that e is an upper bound"
 LEFT_OUT = {

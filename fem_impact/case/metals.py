@@ -2,23 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from fem_impact.case.bodies import Bodies
 from fem_impact.case.effects.heating import thermal
 from fem_impact.case.effects.plasticity import hardening_of
 from fem_impact.case.elastic_only import left_out
 from fem_impact.physics.hardening import TABOR_STRAIN, rate_gain, rate_law
-from fem_impact.scene.flow import JohnsonCookFlow, RambergOsgoodFlow, TableFlow
+from fem_impact.scene.flow import Flow, JohnsonCookFlow, RambergOsgoodFlow, TableFlow
 from fem_impact.scene.inputs import materials_of
 from fem_impact.scene.library import family_of
-from fem_impact.scene.material import JohnsonCookRate
+from fem_impact.scene.material import JohnsonCookRate, Material, Rate
 from fem_impact.scene.pairs import known_pair
-
-if TYPE_CHECKING:
-    from fem_impact.case.bodies import Bodies
-    from fem_impact.scene.flow import Flow
-    from fem_impact.scene.material import Material, Rate
-
 
 RATES = (1e2, 1e3, 1e4)  # 1/s, at which flow stresses are told
 YIELDS = {"rod": "rod-plasticity", "barrier": "barrier-elastoplastic"}

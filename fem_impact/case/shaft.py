@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from math import cos, pi, sqrt
-from typing import TYPE_CHECKING
 
+from fem_impact.case.bodies import Bodies
 from fem_impact.physics.stepped_beam import sections
 from meshes import shoulders
 from rigid import Turned
-
-if TYPE_CHECKING:
-    from fem_impact.case.bodies import Bodies
 
 
 def shaft_flows(bodies: Bodies) -> str:

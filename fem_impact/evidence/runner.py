@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from concurrent.futures import Executor
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from fem_impact.answers.report import Request, StudyResult, publish
 from fem_impact.files.lock import directory_lock
 from fem_impact.jobs.run import JobResults, WorkForecast, estimate, run_jobs
 from fem_impact.jobs.store import STORE
-
-if TYPE_CHECKING:
-    from fem_impact.progress import ProgressMeter
+from fem_impact.progress import ProgressMeter
 
 
 def run_study(

@@ -8,20 +8,17 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+from typing import Any, Protocol, TypeVar
 
 from fem_impact.case.case import Case
 from fem_impact.errors import FemImpactError, ResultError, SceneError
 from fem_impact.options import RunOptions
+from fem_impact.outcome.record import Outcome
 from fem_impact.progress import silent
 from fem_impact.run import simulate as run
 from fem_impact.run.program import source_digest
+from fem_impact.scene.types import Scene
 from fem_impact.scene.write import digest
-
-if TYPE_CHECKING:
-    from fem_impact.outcome.record import Outcome
-    from fem_impact.scene.types import Scene
-
 
 JobKind = tuple[str, float]
 GUESS = {"rigid": 1e-3, "modal": 0.05}

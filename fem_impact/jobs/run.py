@@ -10,20 +10,15 @@ from contextlib import nullcontext
 from dataclasses import dataclass, field
 from pathlib import Path
 from statistics import median
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from fem_impact.errors import ResultError, RunError
 from fem_impact.jobs.executors import LocalProcesses
-from fem_impact.jobs.job import Answer, Failure, Result, Work, compute
+from fem_impact.jobs.job import Answer, Failure, JobKind, Result, Work, compute
 from fem_impact.jobs.store import Store
-from fem_impact.progress import CaseProgress, Notice
+from fem_impact.outcome.record import Outcome
+from fem_impact.progress import CaseProgress, Notice, ProgressMeter
 from fem_impact.run.program import source_digest
-
-if TYPE_CHECKING:
-    from fem_impact.jobs.job import JobKind
-    from fem_impact.outcome.record import Outcome
-    from fem_impact.progress import ProgressMeter
-
 
 JobResults = dict[str, "Outcome | Failure"]
 

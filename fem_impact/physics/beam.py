@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 from math import pi, sqrt
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fem_impact.arrays import Array
 from fem_impact.physics import stepped_beam
 from fem_impact.physics.disc import disc_period
-
-if TYPE_CHECKING:
-    from fem_impact.scene.material import Material
-    from fem_impact.scene.projectile import ProjectileSpec
-
+from fem_impact.scene.material import Material
+from fem_impact.scene.projectile import ProjectileSpec
 
 ROOTS = np.array([4.730041, 7.853205, *((2 * np.arange(3, 31) + 1) * pi / 2)])  # cos cosh = 1
 SHEAR = 0.9  # shear coefficient of a round section, about 6 (1 + nu) / (7 + 6 nu) (Cowper 1966)

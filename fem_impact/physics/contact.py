@@ -15,14 +15,11 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import copysign, cos, inf, pi, sin, sqrt
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
+from fem_impact.arrays import Array
+from fem_impact.scene.material import Material
 from rigid import Body, Faceted, Touch, point_arms
-
-if TYPE_CHECKING:
-    from fem_impact.arrays import Array
-    from fem_impact.scene.material import Material
-
 
 LIMIT_PRESSURE = 2.8  # mean pressure of a fully plastic indentation over the yield stress
 SECTION = 1.8412  # first zero of J1': cut-off k R of shear modes within the round section

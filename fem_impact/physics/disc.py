@@ -9,15 +9,12 @@ chapter 2). Shear and rotary inertia, which the thin plate leaves out, lengthen 
 from __future__ import annotations
 
 from math import pi, sqrt
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fem_impact.arrays import Array
 from fem_impact.physics.plate import bending_stiffness
-
-if TYPE_CHECKING:
-    from fem_impact.scene.projectile import ProjectileSpec
+from fem_impact.scene.projectile import ProjectileSpec
 
 SADDLE = 2  # nodal diameters of the lowest mode
 LOWEST, HIGHEST, STEPS = 0.3, 6.0, 200  # of k a, in which the first root lies, and places looked at

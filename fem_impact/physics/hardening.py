@@ -5,19 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from itertools import pairwise
 from math import log, log1p, sqrt
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fem_impact.arrays import Array
 from fem_impact.physics.contact import ContactEstimate
-from fem_impact.scene.material import JohnsonCookRate
-
-if TYPE_CHECKING:
-    from fem_impact.scene.fields import SkinShape
-    from fem_impact.scene.material import Material
-
+from fem_impact.scene.fields import SkinShape
+from fem_impact.scene.material import JohnsonCookRate, Material
 
 TABOR, TABOR_STRAIN = 3.0, 0.08  # hardness over the flow stress at this plastic strain
 KGF_PER_MM2 = 9.80665e6  # Pa

@@ -15,14 +15,12 @@ again). No constant comes from an impact or from a measured hardness.
 from __future__ import annotations
 
 from math import exp, log, log1p, pi, sqrt
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from fem_impact.physics.hardening import KGF_PER_MM2, TABOR_STRAIN, HardeningLaw, Skin
-
-if TYPE_CHECKING:
-    from fem_impact.scene.fields import SkinShape
+from fem_impact.scene.fields import SkinShape
 
 FACES = 0.927  # projected area over that of the faces of Vickers' pyramid
 REACH, SPREADS = 0.3, 1.3

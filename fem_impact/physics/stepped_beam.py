@@ -7,17 +7,14 @@ the first frequencies of uniform beams within 2e-4.
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from fem_impact.arrays import Array, Ints
-
-if TYPE_CHECKING:
-    from fem_impact.scene.material import Material
-    from fem_impact.scene.projectile import ProjectileSpec
-    from rigid import Faceted
-
+from fem_impact.scene.material import Material
+from fem_impact.scene.projectile import ProjectileSpec
+from rigid import Faceted
 
 ELEMENTS = 120
 MODES = 20  # largest number of bending and of stretching modes

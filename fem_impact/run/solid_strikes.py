@@ -239,9 +239,8 @@ class SolidCourse:
         here = expected_record(_bodies(self.case, later), zones.tip_size, zones.barrier_size)
         assert self.case.record is not None, "a rod that strikes again has its zones from a record"
         dent = self._dent(before, here)
-        if dent is not None:
-            later = replace(later, zones=dent.case.zones)
-        case = Case(scene, "solid", replace(here, rod=self.case.record.rod), later)
+        record = replace(here, rod=self.case.record.rod)
+        case = Case(scene, "solid", record, later, dent.case.zones if dent else None)
         model = build(case, mesh=self.last.model.geometry.rod)
         view = later_view(model, self.last, before.alpha - self.begun)
         motion = view.rigid(model.initial_state())

@@ -155,12 +155,10 @@ def test_options_named_in_the_text_exist(words):
     assert named <= {name for action in COMMAND_PARSERS[command]._actions for name in action.option_strings}
 
 
-@pytest.mark.parametrize(
-    "place",
-    sorted(set(re.findall(r"`(?:python )?((?:fem_impact|tests|rigid|meshes|docs)/[\w./-]+\.\w+)`", PROSE))),
-)
-def test_every_file_named_is_there(place):
-    assert (ROOT / place).exists() or place.startswith("docs/_build/")
+def test_every_file_named_is_there():
+    named = set(re.findall(r"`(?:python )?((?:fem_impact|tests|rigid|meshes|docs)/[\w./-]+\.\w+)`", PROSE))
+    missing = [one for one in named if not (ROOT / one).exists() and not one.startswith("docs/_build/")]
+    assert len(named) > 50 and not missing
 
 
 def _anchors(path):
@@ -168,23 +166,22 @@ def _anchors(path):
     return {re.sub(r"[^\w -]", "", title.lower()).replace(" ", "-") for title in titles}
 
 
-LINKS = [
-    (page, target)
+LINKS = {
+    page: [one for one in set(re.findall(r"\]\(([^)\s]+)\)", without_code(text))) if "://" not in one]
     for page, text in PAGES.items()
-    for target in sorted(set(re.findall(r"\]\(([^)\s]+)\)", without_code(text))))
-    if "://" not in target
-]
+}
 
 
-@pytest.mark.parametrize(("page", "target"), LINKS)
-def test_every_link_leads_somewhere(page, target):
-    place, _, anchor = target.partition("#")
-    path = (ROOT / page).parent / place if place else ROOT / page
-    if path.parent == ROOT / "docs" / "tutorials" / "notebook":  # made from a script when the pages are built
-        path = ROOT / "docs" / "notebooks" / f"{path.stem}.py"
-    assert path.exists()
-    cited = set() if place else {one.key for one in references()}
-    assert not anchor or anchor in _anchors(path) | cited
+@pytest.mark.parametrize("page", [page for page, targets in LINKS.items() if targets])
+def test_every_link_leads_somewhere(page):
+    for target in LINKS[page]:
+        place, _, anchor = target.partition("#")
+        path = (ROOT / page).parent / place if place else ROOT / page
+        if path.parent == ROOT / "docs" / "tutorials" / "notebook":  # made from a script with the pages
+            path = ROOT / "docs" / "notebooks" / f"{path.stem}.py"
+        assert path.exists(), target
+        cited = set() if place else {one.key for one in references()}
+        assert not anchor or anchor in _anchors(path) | cited, target
 
 
 def test_the_words_that_the_trouble_table_quotes_are_the_programs():

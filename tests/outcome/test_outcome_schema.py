@@ -26,11 +26,14 @@ def test_a_written_outcome_meets_the_published_schema():
         validate({**whole, "mu": "0.5"})
 
 
-@pytest.mark.parametrize("key", [key.name for key in KEYS if key.name not in ("schema_version", "reasons")])
 @pytest.mark.parametrize("wrong", [{}, [{}], "text", [1, None], 1.5, True])
-def test_a_value_of_another_type_is_refused_by_name(key, wrong):
+def test_a_value_of_another_type_is_refused_by_name(wrong):
     """Or it is of the right type: never a traceback."""
-    try:
-        Outcome.from_dict({**values(), key: wrong})
-    except ResultError as error:
-        assert f'"{key}"' in str(error) or '"reasons"' in str(error) or "mesh_" in str(error)
+    refused = 0
+    for key in {key.name for key in KEYS} - {"schema_version", "reasons"}:
+        try:
+            Outcome.from_dict({**values(), key: wrong})
+        except ResultError as error:
+            refused += 1
+            assert f'"{key}"' in str(error) or '"reasons"' in str(error) or "mesh_" in str(error), key
+    assert refused > len(KEYS) / 4

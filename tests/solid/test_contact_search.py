@@ -50,7 +50,7 @@ def _foot(x, patch, start, target):
     return _at(x, patch, found, a, b)
 
 
-@pytest.mark.parametrize("seed", range(40))
+@pytest.mark.parametrize("seed", range(8))
 def test_points_inside_are_found_from_anywhere(seed):
     rng = np.random.default_rng(seed)
     patch, x = patch_of(*sheet(seed))
@@ -60,7 +60,7 @@ def test_points_inside_are_found_from_anywhere(seed):
         assert _foot(x, patch, start, target) == pytest.approx(target, abs=1e-9 * H)
 
 
-@pytest.mark.parametrize("seed", range(40))
+@pytest.mark.parametrize("seed", range(8))
 def test_points_are_found_from_next_door(seed):
     """What a run does: a node moves on by less than a quad."""
     rng = np.random.default_rng(seed)
@@ -71,7 +71,7 @@ def test_points_are_found_from_next_door(seed):
             assert _foot(x, patch, start, target) == pytest.approx(target, abs=1e-9 * H)
 
 
-@pytest.mark.parametrize("seed", range(25))
+@pytest.mark.parametrize("seed", range(8))
 def test_points_on_the_symmetry_plane_are_found(seed):
     rng = np.random.default_rng(seed)
     points, quads = sheet(seed)
@@ -86,7 +86,7 @@ def test_points_on_the_symmetry_plane_are_found(seed):
             assert _at(x, patch, found, a, e)[:2] == pytest.approx([t, 0.0], abs=1e-5 * H)
 
 
-@pytest.mark.parametrize("seed", range(25))
+@pytest.mark.parametrize("seed", range(8))
 def test_points_outside_are_refused(seed):
     rng = np.random.default_rng(seed)
     points, quads = sheet(seed)

@@ -6,14 +6,10 @@ The blocks stand on springs for the rest of a half-space (see `radiation` for th
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
+from fem_impact.case.bodies import Bodies
 from fem_impact.case.effects.plasticity import SOURCE, buried_yield_ratio, first_yield_ratio, hardening_of
 from fem_impact.case.effects.slots import Effect, ModelSpec
-
-if TYPE_CHECKING:
-    from fem_impact.case.bodies import Bodies
-
 
 LEAST_SHARE = 0.02
 COMPLIANCE = (

@@ -3,13 +3,9 @@
 from __future__ import annotations
 
 from math import pi
-from typing import TYPE_CHECKING
 
+from fem_impact.case.bodies import Bodies
 from fem_impact.case.effects.slots import Effect, ModelSpec
-
-if TYPE_CHECKING:
-    from fem_impact.case.bodies import Bodies
-
 
 # where the rod's material states none: upper end of 2e-4 to 6e-4 for iron, Cremer, Heckl & Petersson 2005,
 # doi:10.1007/b137728 (read as quoted in manuals of engineering programs, halved to viscous ratios)

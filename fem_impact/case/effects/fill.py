@@ -5,15 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from copy import copy
 from dataclasses import fields
-from typing import TYPE_CHECKING
 
+from fem_impact.case.bodies import Bodies
 from fem_impact.case.effects.registry import ADDED, EFFECTS
 from fem_impact.case.effects.slots import ModelSpec, no_items
 from fem_impact.errors import SceneError
 from fem_impact.plugins import wrong
-
-if TYPE_CHECKING:
-    from fem_impact.case.bodies import Bodies
 
 READ = {
     "rigid": {"contact_loss", "heat"},

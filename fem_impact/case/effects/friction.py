@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from fem_impact.case.bodies import Bodies
 from fem_impact.case.effects.slots import Effect, ModelSpec
-
-if TYPE_CHECKING:
-    from fem_impact.case.bodies import Bodies
 
 
 def number(bodies: Bodies) -> float:

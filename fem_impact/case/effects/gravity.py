@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 from math import hypot
-from typing import TYPE_CHECKING
 
+from fem_impact.case.bodies import Bodies
 from fem_impact.case.effects.slots import Effect, ModelSpec
 from rigid import GRAVITY
-
-if TYPE_CHECKING:
-    from fem_impact.case.bodies import Bodies
 
 
 def number(bodies: Bodies) -> float:

@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from fem_impact.case.bodies import Bodies
 from fem_impact.case.effects.slots import Effect, ModelSpec
 from fem_impact.errors import SceneError
 from fem_impact.physics.flash import Half, Halves, expected_rise
-
-if TYPE_CHECKING:
-    from fem_impact.case.bodies import Bodies
 
 
 def thermal(bodies: Bodies) -> dict[str, float | None]:

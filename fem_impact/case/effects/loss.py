@@ -7,14 +7,10 @@ rod are a standard linear solid with that loss factor at the pace of the contact
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from fem_impact.case.bodies import Bodies
 from fem_impact.case.effects.slots import Effect, ModelSpec
 from fem_impact.errors import SceneError
 from fem_impact.physics.viscous import viscous_restitution
-
-if TYPE_CHECKING:
-    from fem_impact.case.bodies import Bodies
 
 
 def number(bodies: Bodies) -> float:

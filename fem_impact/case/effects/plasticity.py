@@ -3,20 +3,15 @@
 from __future__ import annotations
 
 from math import atan, inf, sqrt
-from typing import TYPE_CHECKING
 
+from fem_impact.case.bodies import Bodies
 from fem_impact.case.effects.slots import Effect, ModelSpec
 from fem_impact.errors import SceneError
 from fem_impact.physics import hardening
-from fem_impact.physics.contact import LIMIT_PRESSURE
+from fem_impact.physics.contact import LIMIT_PRESSURE, ContactPair
 from fem_impact.physics.hardening import johnson_cook, ramberg_osgood
 from fem_impact.scene.flow import RambergOsgoodFlow, TableFlow
-
-if TYPE_CHECKING:
-    from fem_impact.case.bodies import Bodies
-    from fem_impact.physics.contact import ContactPair
-    from fem_impact.scene.material import Material
-
+from fem_impact.scene.material import Material
 
 DEEP = 1.6  # peak Hertz pressure over yield stress at first yield, below the surface (Johnson 1985, eq 6.9)
 SOURCE = (

@@ -7,15 +7,11 @@ none, and the plan says so; no law of another metal takes its place.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
+from fem_impact.case.bodies import Bodies
 from fem_impact.case.effects.slots import Effect, ModelSpec
-from fem_impact.physics.hardening import rate_gain, rate_law, strain_rate
-
-if TYPE_CHECKING:
-    from fem_impact.case.bodies import Bodies
-    from fem_impact.physics.hardening import HardeningLaw
-    from fem_impact.scene.material import Material
+from fem_impact.physics.hardening import HardeningLaw, rate_gain, rate_law, strain_rate
+from fem_impact.scene.material import Material
 
 
 def number(bodies: Bodies) -> float:

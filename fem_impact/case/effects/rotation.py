@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from fem_impact.case.bodies import Bodies
 from fem_impact.case.effects.slots import Effect, ModelSpec
 from rigid import sliding_path
-
-if TYPE_CHECKING:
-    from fem_impact.case.bodies import Bodies
 
 
 def number(bodies: Bodies) -> float:

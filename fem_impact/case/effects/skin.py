@@ -7,18 +7,14 @@ read, so no shipped material has any; a hardness leaves a curve of them (`fem_im
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from fem_impact.case.bodies import Bodies
 from fem_impact.case.effects.plasticity import hardening_of
 from fem_impact.case.effects.slots import Effect, ModelSpec
 from fem_impact.errors import SceneError
 from fem_impact.physics.hardening import Skin
 from fem_impact.physics.indentation import HardnessTest, skin_depth
 from fem_impact.scene.inputs import materials_of
-
-if TYPE_CHECKING:
-    from fem_impact.case.bodies import Bodies
-    from fem_impact.scene.material import Material
+from fem_impact.scene.material import Material
 
 
 def skin_of(metal: Material) -> Skin | None:

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from fem_impact.case.bodies import Bodies
 from fem_impact.options import FIDELITIES
-
-if TYPE_CHECKING:
-    from fem_impact.case.bodies import Bodies
-    from fem_impact.physics.hardening import HardeningLaw, Skin
-    from fem_impact.scene.sliding import SpeedTable
+from fem_impact.physics.hardening import HardeningLaw, Skin
+from fem_impact.scene.sliding import SpeedTable
 
 
 @dataclass(slots=True)

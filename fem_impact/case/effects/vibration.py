@@ -8,12 +8,9 @@ wide, or a mesh of the user's own no longer than wide, is all nose: it always vi
 from __future__ import annotations
 
 from math import inf
-from typing import TYPE_CHECKING
 
+from fem_impact.case.bodies import Bodies
 from fem_impact.case.effects.slots import Effect, ModelSpec
-
-if TYPE_CHECKING:
-    from fem_impact.case.bodies import Bodies
 
 
 def number(bodies: Bodies) -> float:

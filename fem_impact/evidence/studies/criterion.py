@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from pandas import DataFrame
 
 from fem_impact import Outcome, known
 from fem_impact.answers.refine.work import Levels, LevelsJob
@@ -41,9 +42,6 @@ from fem_impact.evidence.studies.rods import (
 from fem_impact.jobs.job import Failure, Job
 from fem_impact.tables.table import Table
 from rigid import LIMIT
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
 
 GAMMAS, QUICK_GAMMAS = (10, 14, 18, 20, 22, 24, 26.45, 30, 36, 45), (14.0, 26.45, 42.0)
 ANGLES = (1.0, 5.0, 10.0, 20.0, 30.0, 40.0, 45.0, 50.0, 60.0, 70.0, 80.0)  # degrees
@@ -194,8 +192,6 @@ def rods_of(angles: DataFrame) -> DataFrame:
 
 def conclude(request: Request, results: Results) -> StudyReport:
     """Return the study: error of rigid theory per rod, where it passes `LEVELS`, and its governing group."""
-    from pandas import DataFrame
-
     outcomes = {name: run for name, run in results.items() if not isinstance(run, Levels)}
     table, solid = run_table(families(request.quick), outcomes), solid_rods(request.quick)
     blind = table[table.family == BLIND]

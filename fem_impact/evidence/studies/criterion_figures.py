@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from pandas import DataFrame
 
 from fem_impact.arrays import Array
 from fem_impact.evidence.studies import criterion_findings
@@ -12,9 +11,6 @@ from fem_impact.evidence.studies.rod_theory import blind_ratio
 from fem_impact.evidence.studies.rods import BODY, PAPER_RODS, DroppedRod
 from fem_impact.figures.panels import Mark, Panel, Picture, Series
 from rigid import LIMIT
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
 
 SHOWN = (1.0, 5.0, 20.0)  # degrees: angles in the picture of the static give
 GAMMA, LIMIT_MARK = "gamma, m^-0.3815", (Mark(LIMIT, "limit of Eq 29"),)

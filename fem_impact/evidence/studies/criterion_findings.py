@@ -4,18 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
+from pandas import DataFrame
 
 from fem_impact.arrays import Array
 from fem_impact.evidence.studies.rod_theory import blind_ratio
 from fem_impact.evidence.studies.rods import BODY, PAPER_RODS, VIBRATION, DroppedRod, length_of
 from rigid import LIMIT
 from rigid.slenderness import EXPONENT
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
 
 LEVELS = (0.02, 0.05, 0.10)
 """Errors of e beyond which a rod does not count as rigid."""

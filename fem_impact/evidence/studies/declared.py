@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import pandas
 
 from fem_impact import Outcome, Scene
 from fem_impact.answers.report import Request, StudyReport
 from fem_impact.jobs.job import Job
 from fem_impact.jobs.run import JobResults
-
-if TYPE_CHECKING:
-    import pandas
-
 
 Runs = Mapping[str, Mapping[str, Outcome]]
 """Outcomes by scene and variant; failed runs are left out."""
@@ -67,8 +65,6 @@ def table_of(
 
     ``columns`` are functions of an outcome to a number, by the name of the column.
     """
-    import pandas
-
     named = [*variants]
     rows = {
         scene: {(name, variant): of(finished[variant]) for name, of in columns.items() for variant in named}

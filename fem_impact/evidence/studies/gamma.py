@@ -6,9 +6,10 @@ from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise, product
 from math import degrees, hypot
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from pandas import DataFrame
 
 from fem_impact import Scene, load
 from fem_impact.answers.report import Request, Sheet, StudyReport
@@ -39,10 +40,6 @@ from fem_impact.jobs.run import JobResults
 from fem_impact.tables.table import Table
 from fem_impact.tables.text import rounded_up
 from rigid import LIMIT
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
-
 
 SETS = ("t3-machined", "t4", "t5b")  # tip B at 45 degrees, one of each rod
 BETWEEN = (10.0, 14.0, 23.0, LIMIT, 35.0, 45.0, 70.0, 85.0, 100.0, 120.0)  # beside the paper's rods

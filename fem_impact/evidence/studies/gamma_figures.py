@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from pandas import DataFrame
 
 from fem_impact.arrays import Array
 from fem_impact.evidence.studies.rods import BODY, KINDS, PAPER_RODS, PLAIN, STATES, VIBRATION, among
 from fem_impact.figures.panels import Look, Mark, Panel, Picture, Series
 from fem_impact.outcome.shares import shares
 from rigid import LIMIT, slenderness
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
 
 GAMMA, SHARE = "gamma, m^-0.3815", "vibration, % of E_0"
 MARKS = (

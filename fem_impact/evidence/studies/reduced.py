@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from math import cos, radians, sin
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas
 from scipy.stats import qmc
 
 from fem_impact import Outcome, Scene, Unknown, load, replace_all
@@ -21,10 +21,6 @@ from fem_impact.outcome.record import KEY_TABLE
 from fem_impact.scene.types import MEASURED_SETS
 from fem_impact.tables.table import Table
 from rigid.slenderness import EXPONENT
-
-if TYPE_CHECKING:
-    import pandas
-
 
 SEED = 20260301  # of the hypercube
 COUNT, QUICK_COUNT = 24, 4

@@ -10,7 +10,9 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from itertools import chain
 from math import cos, radians, sin
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+from pandas import DataFrame
 
 from fem_impact import Outcome, Scene, load, replace_all, simulate
 from fem_impact.answers.refine.extrapolate import vibration_floor
@@ -28,10 +30,6 @@ from fem_impact.scene.surface import Surface
 from fem_impact.scene.types import Save
 from fem_impact.tables.table import Table
 from rigid.slenderness import EXPONENT
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
-
 
 PAPER_RODS = {"0.24 m": 0.24, "0.12 m": 0.12, "0.08 m": 0.08}
 """Lengths, m, of the three rods of 19 mm."""
@@ -222,8 +220,6 @@ def run_table(families: Mapping[str, Iterable[RodRun]], results: JobResults) -> 
     vibrate and ``tau_s``, the duration of its first contact, s; ``family``, ``fidelity``, ``rod_run`` and
     ``result``. None where not known.
     """
-    from pandas import DataFrame
-
     rows = []
     for family, run in ((family, run) for family, runs in families.items() for run in runs):
         result = results.get(run.name, Failure(run.name, "was not computed"))
@@ -301,8 +297,6 @@ def points_of(table: DataFrame, results: JobResults) -> DataFrame:
     vibration differ by more than the band that is wanted, and ``by_modes``, E_vib/E_0 of the same rod by the
     modal fidelity.
     """
-    from pandas import DataFrame
-
     modal = table[table.fidelity == "modal"]
     by_modes = dict(zip(modal.point, modal[VIBRATION], strict=True))
     return DataFrame(

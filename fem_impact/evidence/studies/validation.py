@@ -43,7 +43,7 @@ from fem_impact.jobs.job import Job
 from fem_impact.jobs.run import JobResults
 from fem_impact.outcome.keys import or_none
 from fem_impact.tables.table import Cell, Table
-from rigid.experiments import correlations, measured_set
+from rigid.experiments import measured_set
 
 SIZE, QUICK_SIZE = 64, 16  # runs of a set's sample
 FEWEST = 2 * len(UNCERTAIN_INPUTS)  # finished runs of a sample
@@ -117,7 +117,6 @@ def study_report(sets: Sequence[ValidatedSet]) -> StudyReport:
             ),
             _cause_sheet(sets),
             _spread_sheet(sets),
-            _correlation_sheet(sets),
             _surface_sheet(sets),
         ],
         [
@@ -248,19 +247,6 @@ def _spread_sheet(sets: Sequence[ValidatedSet]) -> Sheet:
         "area between computed and measured distributions (area metric, in the unit of the quantity)"
     )
     return Sheet("spread", caption, Table.of(head, rows))
-
-
-def _correlation_sheet(sets: Sequence[ValidatedSet]) -> Sheet:
-    rows = []
-    for study_set in sets:
-        tests = {name: study_set.tests[:, NAMES.index(name)] for name in SHOWN}
-        measured = {name: study_set.measured.recomputed()[name] for name in SHOWN}
-        model = correlations(tests)
-        for pair, seen in correlations(measured).items():
-            rows.append((study_set.name, ", ".join(pair), model[pair].r, seen.r, seen.low, seen.high, seen.n))
-    head = ("set", "pair", "model_r", "measured_r", "measured_low", "measured_high", "tests")
-    caption = "Correlation within a set, with Fisher's 95 % interval of the measured one"
-    return Sheet("correlations", caption, Table.of(head, rows))
 
 
 def _surface_sheet(sets: Sequence[ValidatedSet]) -> Sheet:
