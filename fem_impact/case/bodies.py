@@ -1,7 +1,5 @@
 """Projectile and barrier of a scene under a list of effects: what follows from both, worked out once."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 

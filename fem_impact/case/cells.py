@@ -23,8 +23,6 @@ of the elastic rods by 8 % over n. With fewer cells than `LEAST` a single node m
 facet: e was 1.4 instead of .8, and mu three times f.
 """
 
-from __future__ import annotations
-
 from functools import lru_cache
 from math import ceil, log2, sqrt
 

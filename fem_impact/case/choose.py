@@ -1,7 +1,5 @@
 """Which effects a scene calls for: each number against its threshold, and what the scene forces."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import inf, isfinite

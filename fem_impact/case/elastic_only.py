@@ -1,7 +1,5 @@
 """What an elastic answer leaves out of a material that states no yield stress, and when it must be named."""
 
-from __future__ import annotations
-
 from fem_impact.case.effects.registry import AUTO
 from fem_impact.errors import SceneError
 from fem_impact.scene.family import kind_of

@@ -1,7 +1,5 @@
 """Layers of a barrier: which rows of its mesh end at their interfaces, and what is refused."""
 
-from __future__ import annotations
-
 from math import ceil, inf
 
 import numpy as np

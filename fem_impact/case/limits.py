@@ -1,7 +1,5 @@
 """Say where a scene leaves what was measured, so that nobody reads a prediction as a comparison."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Collection
 from dataclasses import replace

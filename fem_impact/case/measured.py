@@ -1,7 +1,5 @@
 """What was measured before and ships with the package: costs, shares of the effects; this machine's pace."""
 
-from __future__ import annotations
-
 import csv
 import json
 import time

@@ -1,7 +1,5 @@
 """Whether a turned projectile can be meshed: found before any work, on a mesh without its fine zone."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import lru_cache
 from math import ceil, floor, isclose

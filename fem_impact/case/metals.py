@@ -1,7 +1,5 @@
 """What a scene's materials say of their flow stress, what they do not say, and what that leaves out."""
 
-from __future__ import annotations
-
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.effects.heating import thermal
 from fem_impact.case.effects.plasticity import hardening_of

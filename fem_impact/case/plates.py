@@ -1,7 +1,5 @@
 """Plates that are free underneath: which are meshed through their thickness, and what is refused."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

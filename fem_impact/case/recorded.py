@@ -1,7 +1,5 @@
 """Fine zones of the meshes from the record of a coarser run, or from what may touch at first."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from math import log2, sqrt
 

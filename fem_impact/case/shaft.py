@@ -1,7 +1,5 @@
 """What models leave out of a projectile's shaft: that it flows along its length, and sharp shoulders."""
 
-from __future__ import annotations
-
 from math import cos, pi, sqrt
 
 from fem_impact.case.bodies import Bodies

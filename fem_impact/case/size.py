@@ -6,8 +6,6 @@ estimated contact. ``tests/case/test_size.py`` holds elements and memory to thei
 with the package (``case/data/summary.json``).
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterator
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Where the mesh of a scene is fine, and how fine: from the estimated contact, before any mesh is made."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from math import ceil, copysign, cos, floor, log2
 

@@ -1,7 +1,5 @@
 """The command ``audit``: the printed columns of the paper's tables, recomputed."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from fem_impact.cli.options import Options

@@ -1,7 +1,5 @@
 """The command ``cite``: what a paper that uses a run should cite, as BibTeX."""
 
-from __future__ import annotations
-
 from fem_impact.cli.options import Options
 from fem_impact.cli.parser import CommandParser
 from fem_impact.cli.scene_options import add_scene, changed_scene

@@ -1,7 +1,5 @@
 """The command ``completion``: a script by which the shell completes the command line."""
 
-from __future__ import annotations
-
 from fem_impact.cli.options import Options
 from fem_impact.cli.parser import CommandParser, build_parser
 from fem_impact.cli.terminal import print_answer

@@ -1,7 +1,5 @@
 """The command ``figure``: a figure of the paper, drawn anew."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from fem_impact.cli.options import Options, add_out

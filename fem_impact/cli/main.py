@@ -3,8 +3,6 @@
 A command's module is imported when the line names it, so that ``--help`` loads no numerical library.
 """
 
-from __future__ import annotations
-
 import errno
 import os
 import signal

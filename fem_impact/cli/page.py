@@ -1,7 +1,5 @@
 """Pages of evidence: what a command found, with its day, machine and commit."""
 
-from __future__ import annotations
-
 import os
 import platform
 import re

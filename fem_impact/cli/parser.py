@@ -1,7 +1,5 @@
 """The command line: its parser, the list of all commands, and how a line is read."""
 
-from __future__ import annotations
-
 import argparse
 import sys
 from collections.abc import Callable, Collection, Iterator, Sequence

@@ -1,7 +1,5 @@
 """Paths on the command line: checked before any work, and shown from the working directory."""
 
-from __future__ import annotations
-
 import sys
 import tempfile
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """The command ``render``: a film of the stress waves."""
 
-from __future__ import annotations
-
 import argparse
 import sys
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The command ``report``: the HTML report of a result."""
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 

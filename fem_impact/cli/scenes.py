@@ -1,7 +1,5 @@
 """The command ``scenes``: shipped scenes and materials, known pairs of friction, what packages add."""
 
-from __future__ import annotations
-
 import math
 import sys
 from collections.abc import Iterator

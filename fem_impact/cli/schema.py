@@ -1,7 +1,5 @@
 """The command ``schema``: the JSON Schema of an outcome."""
 
-from __future__ import annotations
-
 from fem_impact.cli.options import Options
 from fem_impact.cli.parser import CommandParser
 from fem_impact.cli.terminal import print_json

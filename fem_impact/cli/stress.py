@@ -1,7 +1,5 @@
 """The command ``stress``: scenes that are hard on the solver."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from fem_impact.cli.options import Options, add_out, add_page, add_text, add_workers

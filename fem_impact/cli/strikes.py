@@ -1,7 +1,5 @@
 """What `run` prints of a body that is followed beyond its first impact."""
 
-from __future__ import annotations
-
 import sys
 
 from fem_impact.cli.options import Options

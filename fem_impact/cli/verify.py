@@ -1,7 +1,5 @@
 """The command ``verify``: problems with known answers, run through the solver."""
 
-from __future__ import annotations
-
 import sys
 
 from fem_impact.cli.options import Options, add_page

@@ -1,7 +1,5 @@
 """Data files of the evidence: tables, texts, and scenes stated as changes of a shipped one."""
 
-from __future__ import annotations
-
 import csv
 import tomllib
 from collections.abc import Mapping

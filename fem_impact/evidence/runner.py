@@ -1,7 +1,5 @@
 """The one way that evidence runs: jobs with a store, a report of their results, and its files."""
 
-from __future__ import annotations
-
 from concurrent.futures import Executor
 from importlib import import_module
 from typing import Any

@@ -1,7 +1,5 @@
 """Atomic files: written beside the target, synced, then renamed to it in one step."""
 
-from __future__ import annotations
-
 import errno
 import os
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """Checksums of a run's files and of JSON records: none is read that was changed or mixed in."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 from collections.abc import Iterable, Mapping

@@ -1,7 +1,5 @@
 """A lock on a result directory: one thread of one process writes there at a time."""
 
-from __future__ import annotations
-
 import errno
 import os
 import socket

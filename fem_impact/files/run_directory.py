@@ -1,7 +1,5 @@
 """The directory of a run or study: names of its files, whose it is, older results, drafts."""
 
-from __future__ import annotations
-
 from datetime import UTC, datetime
 from pathlib import Path
 

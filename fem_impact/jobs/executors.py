@@ -1,7 +1,5 @@
 """Where jobs run: processes on this machine, or the workers of a dask scheduler."""
 
-from __future__ import annotations
-
 import os
 import signal
 import threading

@@ -1,7 +1,5 @@
 """What a worker computes, such as a scene with a fidelity, and the answer that it returns."""
 
-from __future__ import annotations
-
 import hashlib
 import time
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """Jobs on an executor, their answers stored, and the forecast of the time that they take."""
 
-from __future__ import annotations
-
 import heapq
 import time
 from collections.abc import Iterable, Mapping, Sequence

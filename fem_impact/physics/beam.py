@@ -1,7 +1,5 @@
 """Periods and wave speeds of the projectile as a free beam: Timoshenko's bending, stretching of a bar."""
 
-from __future__ import annotations
-
 from math import pi, sqrt
 
 import numpy as np

@@ -6,8 +6,6 @@ and it unloads by Hertz with the flatter radius R_p that the indentation leaves 
 stands for the elliptic one of principal radii R1, R2 by R = sqrt(R1 R2).
 """
 
-from __future__ import annotations
-
 from math import inf, pi, sqrt
 from typing import NamedTuple
 

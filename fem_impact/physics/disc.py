@@ -6,8 +6,6 @@ bending moment and Kirchhoff's edge force vanish (A. W. Leissa, Vibration of Pla
 chapter 2). Shear and rotary inertia, which the thin plate leaves out, lengthen the period.
 """
 
-from __future__ import annotations
-
 from math import pi, sqrt
 
 import numpy as np

@@ -13,8 +13,6 @@ heat is divided so that both surfaces have the same temperature (Blok), 1/T = 1/
 for all heat in body i. The motion does not depend on the heat.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from math import inf, isinf, pi, sqrt
 

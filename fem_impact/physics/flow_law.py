@@ -16,8 +16,6 @@ lengths, tips, angles, speeds, frictions and flow curves than the measured ones
 and .05 do as well.
 """
 
-from __future__ import annotations
-
 from math import inf, sqrt
 from typing import NamedTuple
 

@@ -12,8 +12,6 @@ again). No constant comes from an impact or from a measured hardness.
   same weights give an exponential layer d / (d + c a), with the mean of its factor and 1 in c.
 """
 
-from __future__ import annotations
-
 from math import exp, log, log1p, pi, sqrt
 from typing import NamedTuple
 

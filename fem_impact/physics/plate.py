@@ -8,8 +8,6 @@ its energy goes that way (Zener 1941, doi:10.1103/PhysRev.59.669; derived in the
 2222).
 """
 
-from __future__ import annotations
-
 from math import pi, sqrt
 
 from fem_impact.physics.contact import ContactPair

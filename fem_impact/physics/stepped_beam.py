@@ -4,8 +4,6 @@ Shear is integrated at the middle of each element, so that slender bodies do not
 the first frequencies of uniform beams within 2e-4.
 """
 
-from __future__ import annotations
-
 from functools import lru_cache
 from typing import NamedTuple
 

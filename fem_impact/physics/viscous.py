@@ -6,8 +6,6 @@ function of that ratio, whatever the form of the tip and the rheology. The bodie
 vanishes, before the dent is gone; what it still holds is lost.
 """
 
-from __future__ import annotations
-
 from functools import lru_cache
 from math import pi, sqrt
 from typing import NamedTuple

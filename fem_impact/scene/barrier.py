@@ -1,7 +1,5 @@
 """What the rod strikes: a massive body, a plate that bends, or a body that is free to move."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from itertools import accumulate
 from math import inf

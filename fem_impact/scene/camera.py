@@ -1,7 +1,5 @@
 """A user's own camera data: a CSV file with one test a row and the units in the header."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path

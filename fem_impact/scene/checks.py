@@ -1,7 +1,5 @@
 """Physical checks that every scene passes, however it was made: from a file or from Python."""
 
-from __future__ import annotations
-
 import re
 from typing import Any
 

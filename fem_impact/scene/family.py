@@ -1,7 +1,5 @@
 """Families of materials: by them friction is looked up, and what an elastic body leaves out is told."""
 
-from __future__ import annotations
-
 import re
 import tomllib
 from importlib.resources import files

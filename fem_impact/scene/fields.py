@@ -1,7 +1,5 @@
 """All numbers of a scene, which data/numbers.toml states: meaning, dimension, bounds, default and source."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Flow curves that a material may state in place of its ultimate stress, each by the numbers of its law."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import ClassVar

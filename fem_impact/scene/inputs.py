@@ -1,7 +1,5 @@
 """The inputs of a scene: every value that enters a model, with where it comes from."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from fem_impact.scene.library import CHANGED, materials, melting_of, source_of

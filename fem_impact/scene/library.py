@@ -1,7 +1,5 @@
 """What is shipped with the package: materials and surfaces with their sources, and tables of scenes."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Collection
 from dataclasses import replace

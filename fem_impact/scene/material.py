@@ -1,7 +1,5 @@
 """What a body is made of: elastic constants, strengths, hardness and the law of its strain rate."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from math import inf
 from typing import ClassVar, get_args

@@ -1,7 +1,5 @@
 """From a table of a material's values, shipped or stated in a scene, to a checked `Material`."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Any
 

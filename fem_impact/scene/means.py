@@ -1,7 +1,5 @@
 """A user's own tests as mean values with their scatter: a CSV file with one quantity a row."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Friction of a pair of materials whose surface no scene states: intervals of tables, by family."""
 
-from __future__ import annotations
-
 from itertools import product
 
 from fem_impact.errors import SceneError

@@ -1,7 +1,5 @@
 """What a stated number is: its meaning, dimension, bounds, default and source; how it is read and written."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """From a scene file, or the same tables in Python, to a checked `Scene`."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Callable, Mapping
 from dataclasses import replace

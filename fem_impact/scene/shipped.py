@@ -1,7 +1,5 @@
 """Scenes by id or from a file, and copies of them with changed values."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterable, Mapping
 from contextlib import suppress

@@ -1,7 +1,5 @@
 """How a body is followed: the models of its strikes, and what is not known of how it comes."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """The state of surfaces that touch: Coulomb friction, its interval and source."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Literal
 

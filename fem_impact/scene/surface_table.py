@@ -1,7 +1,5 @@
 """From the table of a surface to the surface: a known state, one of the user's own, or that of the pair."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial

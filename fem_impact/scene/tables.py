@@ -1,7 +1,5 @@
 """Tables of a scene as stated: their numbers, inner tables and keys, with complaints that name the place."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, NoReturn, TypeVar
 

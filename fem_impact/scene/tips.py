@@ -1,7 +1,5 @@
 """The shapes of tips by name: those of `rigid`, and those that other packages add."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from functools import cache
 

@@ -1,7 +1,5 @@
 """Quantities with units: read ``"240 mm"`` exactly, write it back exactly, refuse what is ambiguous."""
 
-from __future__ import annotations
-
 import math
 import re
 import tomllib

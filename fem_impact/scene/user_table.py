@@ -1,7 +1,5 @@
 """A table that a user wrote: CSV text with units in its header; complaints name file, line and column."""
 
-from __future__ import annotations
-
 import csv
 import io
 import math

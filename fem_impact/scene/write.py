@@ -1,7 +1,5 @@
 """From a `Scene` to its complete written form: tables, TOML text and digest."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import os

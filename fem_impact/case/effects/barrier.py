@@ -3,8 +3,6 @@
 The blocks stand on springs for the rest of a half-space (see `radiation` for the waves that leave).
 """
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 from fem_impact.case.bodies import Bodies

@@ -1,7 +1,5 @@
 """Material damping of the rod's vibration, mode by mode."""
 
-from __future__ import annotations
-
 from math import pi
 
 from fem_impact.case.bodies import Bodies

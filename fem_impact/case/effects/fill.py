@@ -1,7 +1,5 @@
 """What the effects in force fill, and the refusal of what a fidelity would ignore of another package's."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from copy import copy
 from dataclasses import fields

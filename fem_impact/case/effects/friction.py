@@ -1,7 +1,5 @@
 """Coulomb friction between rod and barrier."""
 
-from __future__ import annotations
-
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.effects.slots import Effect, ModelSpec
 

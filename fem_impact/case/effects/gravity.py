@@ -1,7 +1,5 @@
 """Gravity on the rod during the impact."""
 
-from __future__ import annotations
-
 from math import hypot
 
 from fem_impact.case.bodies import Bodies

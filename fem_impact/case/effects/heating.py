@@ -1,7 +1,5 @@
 """Heating of the contact by friction, computed from the motion without acting on it."""
 
-from __future__ import annotations
-
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.effects.slots import Effect, ModelSpec
 from fem_impact.errors import SceneError

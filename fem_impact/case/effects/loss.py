@@ -5,8 +5,6 @@ takes, which the closed forms of the rigid and the reduced model know. In finite
 rod are a standard linear solid with that loss factor at the pace of the contact, which damps its modes, too.
 """
 
-from __future__ import annotations
-
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.effects.slots import Effect, ModelSpec
 from fem_impact.errors import SceneError

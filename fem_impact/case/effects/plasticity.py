@@ -1,7 +1,5 @@
 """Yielding of the rod's tip (J2, isotropic hardening)."""
 
-from __future__ import annotations
-
 from math import atan, inf, sqrt
 
 from fem_impact.case.bodies import Bodies

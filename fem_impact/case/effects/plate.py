@@ -1,7 +1,5 @@
 """Bending waves in a plate that is free underneath: they take energy from the blow and do not come back."""
 
-from __future__ import annotations
-
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.effects.slots import Effect, ModelSpec
 from fem_impact.errors import SceneError

@@ -1,7 +1,5 @@
 """Waves that leave through the outer boundary of a meshed barrier, by dashpots beside its springs."""
 
-from __future__ import annotations
-
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.effects.slots import Effect, ModelSpec
 from fem_impact.errors import SceneError

@@ -4,8 +4,6 @@ The law is Johnson and Cook's or Cowper and Symonds' (`fem_impact.scene.material
 none, and the plan says so; no law of another metal takes its place.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from fem_impact.case.bodies import Bodies

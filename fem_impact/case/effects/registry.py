@@ -1,7 +1,5 @@
 """All effects, in the order in which a scene names them and in which they fill a model."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from fem_impact.case.effects import (

@@ -1,7 +1,5 @@
 """Large rotation: the linear part of the rod is linear in a frame that turns with it."""
 
-from __future__ import annotations
-
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.effects.slots import Effect, ModelSpec
 from rigid import sliding_path

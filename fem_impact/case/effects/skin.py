@@ -5,8 +5,6 @@ and depth belong to the material that touches (``skin``). No source with numbers
 read, so no shipped material has any; a hardness leaves a curve of them (`fem_impact.physics.indentation`).
 """
 
-from __future__ import annotations
-
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.effects.plasticity import hardening_of
 from fem_impact.case.effects.slots import Effect, ModelSpec

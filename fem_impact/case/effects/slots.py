@@ -1,7 +1,5 @@
 """The parts of a model that effects switch on (its slots), and what defines an effect."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any

@@ -5,8 +5,6 @@ contact in it, still deforms (and yields), and the slices behind it are one rigi
 wide, or a mesh of the user's own no longer than wide, is all nose: it always vibrates.
 """
 
-from __future__ import annotations
-
 from math import inf
 
 from fem_impact.case.bodies import Bodies

@@ -1,7 +1,5 @@
 """The hard cases, each a scene on a coarse mesh, some with a start that no scene file can state."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal

@@ -3,8 +3,6 @@
 Judged are balances of energy and momentum, and the sign of friction work, which every run must obey.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 import time

@@ -1,7 +1,5 @@
 """Audit of the paper's tables: every printed number recomputed, as a plain document and as text."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any

@@ -1,7 +1,5 @@
 """The paper's figures by number."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Coefficients of a user's own tests with their uncertainty."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

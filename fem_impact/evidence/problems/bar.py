@@ -1,7 +1,5 @@
 """``bar``: a bar without lateral strain strikes a rigid wall, and bounces between two walls."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from math import pi
 from typing import ClassVar

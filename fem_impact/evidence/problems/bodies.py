@@ -8,8 +8,6 @@ across) and 1.3 % (16) too large, and so is its spin too small; a block under it
 3.0 % are allowed. Operators, contact, ledger and the march are the solver's.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field, replace
 
 import numpy as np

@@ -4,8 +4,6 @@ Tolerances of the problems are made of these errors at the problem's own paramet
 the runs named with it.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from math import pi
 

@@ -5,8 +5,6 @@ one the strain is rho w^2 (L^2 / 4 - x^2) / (2 E), so with s = w L / c0 its ener
 the kinetic one, and length and moment of inertia grow by at most s^2 / 6 and 2 s^2 / 5.
 """
 
-from __future__ import annotations
-
 from math import pi
 
 import numpy as np

@@ -10,8 +10,6 @@ size, with an error of first order in the cell: pressure acts at nodes and ends 
 form of Vickers' number (`fem_impact.physics.indentation`) is held to the reference, bare and under a layer.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from functools import cache
 from math import ceil, radians, sqrt, tan

@@ -24,8 +24,6 @@ with cells of 0.5 mm on the block, has a softer contact that lasts twice as long
 165 and 179 at f = 0.34 and 0.55), and e of 0.590 and 0.769.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from math import inf, pi, sin, sqrt

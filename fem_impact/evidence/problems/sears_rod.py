@@ -22,8 +22,6 @@ lateral inertia (Love), which neither has, takes 0.0001 from it and 1 % from the
 rod.
 """
 
-from __future__ import annotations
-
 from math import inf
 
 import numpy as np

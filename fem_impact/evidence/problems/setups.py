@@ -1,7 +1,5 @@
 """What many problems share: parameters (the study's rod steel by default), scenes, runs, their observers."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import inf

@@ -27,8 +27,6 @@ hard                            1.329, 2.037        1.358, 2.011        1.373, 1
 ==============================  ==================  ==================  ==================
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field, replace
 from math import cos, radians, sin, sqrt
 from typing import ClassVar

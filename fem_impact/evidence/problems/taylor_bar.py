@@ -24,8 +24,6 @@ are of first order. Of the printed bar the slices' error of the length is (20, 4
 beside the reference), the reference's is of second (2, 3, 4, 6 cells: 21.506, 21.470, 21.465, 21.460 mm).
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

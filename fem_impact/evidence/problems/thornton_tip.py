@@ -5,8 +5,6 @@ of the contact is elastic and e falls more slowly; above, the tip is flattened a
 The slope is judged only if all speeds lie between; otherwise it is shown with the reason.
 """
 
-from __future__ import annotations
-
 from math import exp, floor, log, log2, pi, sqrt
 
 import numpy as np

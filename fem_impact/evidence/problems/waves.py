@@ -1,7 +1,5 @@
 """``modes``: natural frequencies of a free round bar, from the eigenproblem and from ringing down."""
 
-from __future__ import annotations
-
 from math import ceil, inf, pi
 
 import numpy as np

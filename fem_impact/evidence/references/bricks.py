@@ -5,8 +5,6 @@ bounces turns, and its stiffness with it. The contact is that of public codes: a
 node, and a tangential one that slips at Coulomb's limit.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from itertools import product
 from math import atan2, cos, sin, sqrt

@@ -4,8 +4,6 @@ Nodes of the face stop at the cone, with Coulomb's friction. The cone has no len
 cells, force over depth squared, contact radius over depth and the mean pressure do not change with the depth.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from math import cos, pi, sin, sqrt, tan

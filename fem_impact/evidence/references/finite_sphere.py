@@ -22,8 +22,6 @@ largest force that is 0.25 % lower than without and a time that is 0.18 % longer
 (a / R)^2 and turn with the phase of the ringing.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import cache
 from math import ceil, log, pi, sqrt

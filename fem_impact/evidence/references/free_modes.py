@@ -4,8 +4,6 @@ Deflection w and section angle theta minimise the energy E I theta'^2 + kappa G 
 rho A w^2 + rho I theta^2; kappa of a round section from Hutchinson (2001), doi:10.1115/1.1349417.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cache
 from itertools import product

@@ -1,7 +1,5 @@
 """Hertz impact of a sphere on a half-space (Johnson, Contact Mechanics, 1985, 11.4), and on a thin plate."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from math import pi, sqrt
 

@@ -8,8 +8,6 @@ leave out of the rod's static flexibility (`rod_edge`) lies in series with the c
 The rod turns meanwhile, and its rounded edge rolls: the force acts under the edge's centre of curvature.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from math import cos, pi, sin, sqrt
 

@@ -14,8 +14,6 @@ is then
 Inertia of the nose is neglected, a share of about R / (c0 t_c) of the force.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache

@@ -1,7 +1,5 @@
 """Oblique impact of an elastic sphere with friction: Maw, Barber & Fawcett (1976), and of a finite ball."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import sqrt

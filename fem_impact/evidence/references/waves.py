@@ -6,8 +6,6 @@ potential and the two parts of a solenoidal field, each a Bessel function times 
 in units of c0.
 """
 
-from __future__ import annotations
-
 from functools import cache
 from math import pi, sqrt
 

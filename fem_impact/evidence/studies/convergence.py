@@ -3,8 +3,6 @@
 Limit and order of a quantity come from three meshes or more by least squares (`limit`).
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import astuple, dataclass
 from operator import itemgetter

@@ -1,7 +1,5 @@
 """What accuracy costs as a study report: the answer, error against time, tables; of a scene or the paper."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from statistics import median
 

@@ -1,7 +1,5 @@
 """The slenderness criterion: restitution against inclination, per rod, and what rigid theory gets wrong."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any

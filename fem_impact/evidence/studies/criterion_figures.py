@@ -1,7 +1,5 @@
 """Figures of the criterion study."""
 
-from __future__ import annotations
-
 import numpy as np
 from pandas import DataFrame
 

@@ -1,7 +1,5 @@
 """What the criterion study says: where vibration changes e, by which group, and what the limit is worth."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
 

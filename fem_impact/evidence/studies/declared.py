@@ -1,7 +1,5 @@
 """A study that is declared: scenes, variants of each, columns of their outcomes, and what is told of them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any

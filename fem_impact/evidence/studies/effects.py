@@ -4,8 +4,6 @@ The thirteen measured sets and a designed set of others (short and long, slow an
 hard and soft) run twice, with ``auto`` and with all effects; a few run again with one effect changed.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from fem_impact import Case, Outcome, Scene, known, load, replace_all

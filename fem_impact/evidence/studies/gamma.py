@@ -1,7 +1,5 @@
 """Vibration against slenderness by finite elements, beside the measured sets and the modal fidelity."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise, product

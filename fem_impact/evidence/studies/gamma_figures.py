@@ -1,7 +1,5 @@
 """Figures of the gamma study: vibration over slenderness, over T1/tau and over other inputs."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Uncertain inputs of a measured set, sampled over their ranges all at once, and the mesh they vary on."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from math import degrees, hypot, log, radians

@@ -11,8 +11,6 @@ that name (a copy stands in ``data/validation.csv``); the reduced model, over th
 how their changes belong together, and the tests of a set, how their means do.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache

@@ -4,8 +4,6 @@ Rods flatten as in `fem_impact.evidence.problems.taylor_bar`, whose wall is rigi
 sphere is a scene. Nothing is fitted: strengths are those of the library, friction that quoted with the tests.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import cos, exp, radians, sin, sqrt

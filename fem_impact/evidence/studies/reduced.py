@@ -1,7 +1,5 @@
 """The reduced model beside the finite elements: measured sets, calibration, scenes it was not read from."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial

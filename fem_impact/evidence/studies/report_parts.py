@@ -1,7 +1,5 @@
 """What the reports of several studies share: the texts that they rest on, sets, errors side by side."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 from fem_impact.answers.report import Request

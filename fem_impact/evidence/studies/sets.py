@@ -4,8 +4,6 @@ Levels run with the barrier's grid at two places half a cell apart, so that a ba
 place too; the run at the first place of the last level is the one that is kept with its fields.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path

@@ -5,8 +5,6 @@ and depths (`fem_impact.physics.indentation`), of which two points are run at a 
 none is printed. No impact enters. Which point agrees best is shown; to take it would be a calibration.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

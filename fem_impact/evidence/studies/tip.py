@@ -6,8 +6,6 @@ are a second reading: none of the thirteen sets, counted in none of their number
 (docs/explanation/measured-sets.md).
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any

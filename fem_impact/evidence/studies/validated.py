@@ -4,8 +4,6 @@ Response surfaces give its results as polynomials of the uncertain inputs, fitte
 far the inputs reach towards a measurement that the model misses.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations_with_replacement

@@ -5,8 +5,6 @@ uncertain inputs at once (`.inputs`). Response surfaces through that sample give
 inputs, the share of each input in it, and the spread from test to test.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np
