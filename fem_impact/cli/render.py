@@ -1,4 +1,4 @@
-"""The command ``render``: a film of the stress waves."""
+"""The command ``render``: a film of the stress waves, or of the strikes of a body that is followed."""
 
 import argparse
 import sys
@@ -11,7 +11,8 @@ from fem_impact.cli.terminal import print_answer
 from fem_impact.errors import MissingLibraryError, ResultError, UsageError
 from fem_impact.files.run_directory import FIELDS
 
-FILMED = ("strain", "stress", "velocity", "plastic")  # what a film can show, the default first
+PATH = "path"  # the body from strike to strike, of any fidelity
+FILMED = ("strain", "stress", "velocity", "plastic", PATH)  # what a film can show, the default first
 
 
 def add_options(parser: CommandParser) -> None:
@@ -22,7 +23,7 @@ def add_options(parser: CommandParser) -> None:
     film = "film: .mp4, .webp, .gif, .png for a folder, or .html to turn it (default: beside the fields)"
     parser.add_argument("results", nargs="+", type=Path, metavar="RESULT", help=several)
     parser.add_argument("--out", type=Path, metavar="FILE", help=film)
-    colours = "colours of the film (default: strain along the axis)"
+    colours = "colours of the film (default: strain along the axis), or the body's path through its strikes"
     parser.add_argument("--field", choices=FILMED, default=FILMED[0], help=colours)
     parser.add_argument("--frames", type=int, metavar="N", help="number of frames (default: 144)")
     for option, name, text in (
@@ -47,6 +48,8 @@ def render(options: Options) -> int:
     """Make a film of the waves of a result, or of several side by side, or a page to turn the rod on."""
     results = [checked_result(result) for result in options.results]
     out = checked_file(options.out) if options.out else None
+    if options.field == PATH:
+        return _path(results, out, options)
     for result in results:
         _check_fields(result)
     from fem_impact.films import film as films
@@ -78,6 +81,19 @@ def render(options: Options) -> int:
     return 0 if film.path else MissingLibraryError.exit_code
 
 
+def _path(results: list[Path], out: Path | None, options: Options) -> int:
+    """Make a film of the strikes of a result."""
+    if len(results) > 1 or options.first or options.last or options.speed or options.frames:
+        raise UsageError("shows all strikes of one result.", key="--field", value=PATH)
+    from fem_impact.films.path import render_path
+
+    film = render_path(results[0], out, options.size)
+    print_answer(
+        options, {"path": str(film.path), "notes": list(film.notes)}, f"film: {film.path}\n", film.notes
+    )
+    return 0
+
+
 def _check_fields(result: Path) -> None:
     """Refuse a result without fields, with the reason why it has none and what to do."""
     if (result / FIELDS).is_file():
@@ -89,10 +105,13 @@ def _check_fields(result: Path) -> None:
         raise ResultError(f"{result}: is a study of which no run has kept its fields. Run one scene itself.")
     from fem_impact.outcome.record import Outcome
 
-    fidelity = Outcome.read(result / "outcome.json").provenance.fidelity
+    outcome = Outcome.read(result / "outcome.json")
+    fidelity, strikes = outcome.provenance.fidelity, isinstance(outcome.strikes.each, tuple)
     why, way = (
         ("its scene says save.frames = 0", "Run it with --set save.frames=120.")
         if fidelity == "solid"
         else (f"fidelity {fidelity} has no mesh", "Run its scene with --fidelity solid.")
     )
+    if strikes:
+        way += f" Its strikes are filmed with --field {PATH}."
     raise ResultError(f"{result}: holds no {FIELDS}, the fields that a film shows: {why}. {way}")

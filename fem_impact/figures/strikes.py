@@ -30,15 +30,15 @@ def path_picture(each: Sequence[StrikeRecord], shape: Outline, gravity: tuple[fl
     shape : outline of the body about its mass centre
     gravity : accelerations out of -n and -t, m/s2
     """
-    shown, line = each[:SHOWN], _line(shape)
-    states = [_state(one, shape) for one in shown]
+    shown, line = each[:SHOWN], body_line(shape)
+    states = [state_at(one, shape) for one in shown]
     flights = [
         before.flown(share * (after.time - before.time), *gravity)
         for before, after in pairwise(
             state._replace(V_n=one.V_n, V_t=one.V_t, Omega=one.Omega)
             for state, one in zip(states, shown, strict=True)
         )
-        if _flies(before, after, gravity, shape)
+        if flies(before, after, gravity, shape)
         for share in np.linspace(0.0, 1.0, FRAMES + 2)[1:-1].tolist()
     ]
     struck, flown = _bodies(line, states), _bodies(line, flights)
@@ -94,20 +94,20 @@ def accounts_picture(each: Sequence[StrikeRecord]) -> Picture:
     return Picture("strikes", caption, (panel,), 1)
 
 
-def _state(one: StrikeRecord, shape: Outline) -> State:
+def state_at(one: StrikeRecord, shape: Outline) -> State:
     """Return the body at a strike; ways count from the first place of contact."""
     d_c, d_d = shape.corners[shape.lowest(one.alpha, one.omega)].arms(one.alpha)
     return State(one.time, d_d, one.along + d_c, one.alpha, one.v_n, one.v_t, one.omega)
 
 
-def _flies(before: State, after: State, gravity: tuple[float, float], shape: Outline) -> bool:
+def flies(before: State, after: State, gravity: tuple[float, float], shape: Outline) -> bool:
     """Return whether a body flew freely from one strike to the next, rather than pivot or slide."""
     end = before.flown(after.time - before.time, *gravity)
     near = FREE * shape.widest
     return abs(end.height - after.height) < near and abs(end.along - after.along) < near
 
 
-def _line(shape: Outline) -> Array:
+def body_line(shape: Outline) -> Array:
     """Return the closed outline (k, 2), (x, z), m, about the mass centre."""
     places = [
         one.place(angle)
@@ -121,11 +121,15 @@ def _line(shape: Outline) -> Array:
     return np.array([*places, places[0]])
 
 
+def placed(line: Array, state: State) -> Array:
+    """Return an outline (k, 2), (x, z), m, about the mass centre as it lies along and over the barrier, m."""
+    c, s = np.cos(state.alpha), np.sin(state.alpha)
+    return np.column_stack([state.along + line @ (c, s), state.height + line @ (-s, c)])
+
+
 def _bodies(line: Array, states: Sequence[State]) -> tuple[Array, Array]:
     """Return all bodies as one line with gaps, along and over the barrier, mm."""
-    along, over = [], []
-    for state in states:
-        c, s = np.cos(state.alpha), np.sin(state.alpha)
-        along += [*(state.along + line @ (c, s)), np.nan]
-        over += [*(state.height + line @ (-s, c)), np.nan]
-    return 1e3 * np.array(along), 1e3 * np.array(over)
+    gap = np.full((1, 2), np.nan)
+    rows = [part for state in states for part in (1e3 * placed(line, state), gap)]
+    along, over = np.concatenate(rows or [gap[:0]]).T
+    return along, over

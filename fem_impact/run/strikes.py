@@ -14,6 +14,7 @@ from fem_impact.outcome.keys import Num, Unknown, known
 from fem_impact.outcome.record import Outcome
 from fem_impact.outcome.strikes import StrikeRecord, Strikes
 from fem_impact.physics.contact import ContactPair
+from fem_impact.run.common import rod_flows
 from fem_impact.run.rigid import NormalLoss, normal_loss
 from rigid import GRAVITY, Body, kinetic_energy
 from rigid.strikes import (
@@ -67,6 +68,11 @@ LEVEL = (
 LOSSLESS = (
     "{} of the strikes lose nothing along the normal: the contact law knows no loss below its yield speed. "
     "The rattle lasts longer than a real one."
+)
+
+AGAIN = (
+    "{} of the strikes not by finite elements land in the dent of an earlier one. They are computed as on an "
+    "undented surface, which loses too much: a hardened dent gives nearly all back."
 )
 
 
@@ -153,8 +159,22 @@ class Followed:
         """Return what is to be told of restitutions that follow from the law of a round contact."""
         if self.case.scene.restitution is not None:
             return ()
-        both = (LEVEL, self.level), (LOSSLESS, self.lossless)
-        return tuple(sentence.format(count) for sentence, count in both if count)
+        counts = (LEVEL, self.level), (LOSSLESS, self.lossless), (AGAIN, self._again())
+        return tuple(sentence.format(count) for sentence, count in counts if count)
+
+    def _again(self) -> int:
+        """Return how many strikes land within half a contact's length of a dent, in the body that yields."""
+        in_body, dents, count = rod_flows(self.case), list[tuple[StrikeRecord, float]](), 0
+        for one in self.each:
+            if one.plastic <= 0.0:
+                continue
+            begin = self.touching(one.alpha, one.v_n, one.v_t, one.omega)
+            count += one.fidelity != "solid" and any(
+                (hypot(one.x - old.x, one.z - old.z) if in_body else abs(one.along - old.along)) < half
+                for old, half in dents
+            )
+            dents.append((one, self.later(begin).contact.estimate.a_t))
+        return count
 
     def kinetic(self, state: State) -> float:
         """Return the kinetic energy of the rigid motion, J."""

@@ -19,6 +19,13 @@ def test_a_run_without_fields(cli, tmp_path, fidelity, words):
     assert f"one: holds no fields.vtkhdf, the fields that a film shows: {words}" in err
 
 
+def test_a_path_needs_strikes_and_is_shown_whole(cli, tmp_path):
+    result_maker.write_result(tmp_path / "one", fidelity="modal")
+    _, _, err = cli("render", "one", "--field", "path")
+    assert "one: holds no strikes to film. Run its scene with --until rest." in err
+    assert "shows all strikes of one result" in cli("render", "one", "--field", "path", "--frames", "9")[2]
+
+
 def test_a_study_names_a_run_that_has_them(cli, tmp_path):
     (tmp_path / "sets" / "t4").mkdir(parents=True)
     (tmp_path / "sets" / "study.json").write_text("{}")
