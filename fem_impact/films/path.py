@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from math import ceil, cos, sin
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -102,7 +102,8 @@ def _drawn(
     low, half = -0.2 * high, 0.6 * high * size[0] / size[1]
     figure = new_figure(size[1] / 100, size[0] / 100)
     figure.set_dpi(100)
-    canvas, axes = FigureCanvasAgg(figure), figure.subplots()
+    canvas: Any = FigureCanvasAgg(figure)
+    axes = figure.subplots()
     axes.set(aspect="equal", xlim=(-half, half), ylim=(low, high))
     axes.set(xlabel="along the barrier, mm", ylabel="over the barrier, mm")
     axes.set_title(title, fontsize=9, parse_math=False)

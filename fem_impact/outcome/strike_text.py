@@ -17,6 +17,7 @@ ROW = {
     if key.path[-1] in ("time", "alpha", "approach", "e", "mu", "after", "friction")
 }
 """Numbers of a row, and what they are multiplied by."""
+ROUND_OFF = 1e-9  # of the energy before the first strike, below which nothing is told
 SPREAD = ("strike", "tip", "tail", "other", "none", "time, ms", "approach, m/s")
 
 
@@ -93,9 +94,11 @@ def _certain(strikes: Strikes) -> list[str]:
         if len(between_ends) == 2
         else ""
     )
+    first = f"first {certain} strikes are" if certain > 1 else "first strike is"
+    table = ": a table tells what strikes how often" if len(known(strikes.spread)) > certain else ""
     return [
-        f"The first {certain} strike the same part of the body in all of 64 sequences; of later ones, one "
-        f"path of many, a table tells what strikes how often. {strikes.holds}{between}"
+        f"The {first} of the same part of the body in all of 64 sequences; later ones are one path of "
+        f"many{table}. {strikes.holds}{between}"
     ]
 
 
@@ -121,8 +124,10 @@ def _totals(strikes: Strikes) -> str:
         ("left", strikes.left),
     )
     sums = ", ".join(f"{name} {v:.3g} J" for name, v in parts if not isinstance(v, Unknown) and v)
-    half = strikes.friction_half
-    rubbed = "" if isinstance(half, Unknown) else f" Friction is known to {half:.2g} J."
+    least = ROUND_OFF * known(strikes.each)[0].before
+    half = or_none(strikes.friction_half) or 0.0
+    rubbed = f" Friction is known to {half:.2g} J." if half > least else ""
     time = "" if isinstance(strikes.time, Unknown) else f" after {strikes.time:.4g} s"
-    gravity = "" if isinstance(strikes.gravity, Unknown) else f" Gravity gave {strikes.gravity:.3g} J."
+    gave = or_none(strikes.gravity) or 0.0
+    gravity = f" Gravity gave {gave:.3g} J." if abs(gave) > least else ""
     return f"The end comes{time}: {sums}.{gravity}{rubbed}"

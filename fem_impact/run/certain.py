@@ -98,7 +98,9 @@ def with_spread(case: Case, strikes: Strikes, coarser: Strikes | None = None) ->
         plain = _run(case.scene, each)
         runs = [_run(scene, each, at) for scene, at in _drawn(case)]
     except SceneError as error:
-        return _without(strikes, Unknown(f"rigid theory does not follow the scene: {error.problem}"))
+        return _without(
+            strikes, Unknown(f"rigid theory does not follow the scene: {error.problem.rstrip('.')}")
+        )
     certain, length = _common([own, plain, *runs]), case.contact.body.length
     ends = [other_end(run, length) for run in runs]
     first, rubbed = other_end(plain, length), sum(one.friction for one in plain)

@@ -55,9 +55,9 @@ SLOWEST = 1e-9  # m/s, of a body that comes down
 LEAST_BY_LAW = 1e-3
 """As `LEAST` where restitutions follow from the contact law, which knows no loss of slow strikes."""
 RULES = (
-    "A strike that brings less than "
-    f"{LEAST_BY_LAW:g} of E_0 along its normal ({LEAST:g} with a stated restitution) does not rebound: its "
-    "contact is held, and the body pivots, rolls or slides on it.",
+    f"A strike that brings along its normal less than {LEAST_BY_LAW:g} ({LEAST:g} with a stated restitution) "
+    "of the most energy with which one began does not rebound: its contact is held, and the body pivots, "
+    "rolls or slides on it.",
     "Two feet at one instant strike one after the other, the one that comes down first; a face or side that "
     "comes down level and without spin strikes in its middle.",
 )
@@ -134,6 +134,7 @@ class Followed:
             until=self.missing,
             least=LEAST_BY_LAW if self.case.scene.restitution is None else LEAST,
             energy=self.each[0].before / mass if self.each else None,
+            most_energy=self._most_energy / mass,
             strong=strong,
             moved=self.moved,
         )
@@ -196,7 +197,12 @@ class Followed:
         """Return whether a strike is hard enough for a model that is finer than a rigid body."""
         comes, d_c = self.comes(state)
         brings = 0.5 * self.case.contact.body.mass * comes**2 / (1.0 + d_c**2 / self.pull.k2)
-        return brings >= LEAST_BY_LAW * self.each[0].before
+        return brings >= LEAST_BY_LAW * max(self._most_energy, self.kinetic(state))
+
+    @property
+    def _most_energy(self) -> float:
+        """The most kinetic energy, J, before a strike so far."""
+        return max((one.before for one in self.each), default=0.0)
 
     def later(self, state: State) -> LaterStrike:
         """Return how the body touches in a state, for a mesh that has it so."""
@@ -392,6 +398,8 @@ def _hardest(values: Iterable[float | None]) -> int | Unknown:
 
 def other_end(each: Sequence[StrikeRecord], length: float) -> Num:
     """Return the largest speed at which the other end strikes over that of the first strike."""
+    if each[0].part == "surface":
+        return Unknown("a ball has no other end")
     first = each[0].z < 0.5 * length
     others = [one.approach for one in each if (one.z < 0.5 * length) != first and one.part in ("tip", "tail")]
     if not others:

@@ -4,7 +4,7 @@ Rules that the theory of impact does not give by itself:
 
 - two feet that touch at the same instant strike one after the other, each with its own restitution; a face
   or a side that comes down level and without spin strikes in its middle;
-- a strike that brings less than a share ``least`` of the energy at first touch along its normal does not
+- a strike that brings along its normal less than a share ``least`` of the most with which one began does not
   rebound: its contact is held, and the body pivots, rolls or slides on it, or flies again;
 - a body on two feet of which neither moves faster than that stands on them; what it moved with is lost;
 - a body that has fallen so far down a slope that it is far faster than at first tumbles on.
@@ -64,6 +64,7 @@ def sequence(
     least: float = LEAST,
     most: int = MOST,
     energy: float | None = None,
+    most_energy: float = 0.0,
     strong: float = math.inf,
     moved: Moved = as_it_is,
 ) -> Sequence:
@@ -76,9 +77,10 @@ def sequence(
     pull : gravity, squared radius of gyration and friction
     restitution : energetic restitution of a strike
     until : number of strikes after which to stop; None: follow it to its rest
-    least : share of the energy at first touch below which a strike does not rebound
+    least : share of the most kinetic energy before any strike below which one does not rebound
     most : strikes at most; a body that loses nothing strikes for ever
     energy : kinetic energy at the first touch of a body that has struck before, per unit mass, m2/s2
+    most_energy : the most that such a body has had before a strike, the same
     strong : share of it along the normal at which to stop before a strike, for another model to take over
     moved : changes a strike that counts, such as by what another model gives of it
 
@@ -98,7 +100,9 @@ def sequence(
     >>> found.finish.value
     'rests'
     """
-    course = _Course(outline, pull, restitution, until, least, most, start, energy, strong, moved)
+    course = _Course(
+        outline, pull, restitution, until, least, most, start, energy, most_energy, strong, moved
+    )
     corner: int | None = None
     for _ in range(EVENTS * most):
         corner = course.fly() if corner is None else course.keep(corner)
@@ -119,6 +123,7 @@ class _Course:
     most: int
     state: State
     energy: float | None
+    most_energy: float
     strong: float
     moved: Moved
     strikes: list[Strike] = field(default_factory=list)
@@ -131,13 +136,18 @@ class _Course:
     lifting: float = 0.0
 
     def __post_init__(self) -> None:
-        state, k2 = self.state, self.pull.k2
-        moving = 0.5 * (state.V_n**2 + state.V_t**2 + k2 * state.Omega**2)
-        self.E_0 = moving if self.energy is None else self.energy
+        self.E_0 = self._moving if self.energy is None else self.energy
+        self.most_energy = max(self.most_energy, self.E_0)
         g = math.hypot(self.pull.g_n, self.pull.g_t)
         self.touching = TOUCHING * math.sqrt(2.0 * self.E_0)
         self.runaway = RUNAWAY * (self.E_0 + 2.0 * g * self.outline.widest)
         self.unit = math.sqrt(self.outline.widest / g) if g else math.inf
+
+    @property
+    def _moving(self) -> float:
+        """Kinetic energy now, per unit mass, m2/s2."""
+        state = self.state
+        return 0.5 * (state.V_n**2 + state.V_t**2 + self.pull.k2 * state.Omega**2)
 
     def fly(self) -> int | None:
         """Fly to the next touch and strike."""
@@ -148,8 +158,7 @@ class _Course:
             return None
         dt, corner = touch
         self._advance(dt)
-        state = self.state
-        if 0.5 * (state.V_n**2 + state.V_t**2 + self.pull.k2 * state.Omega**2) > self.runaway:
+        if self._moving > self.runaway:
             self.finish = Finish.TUMBLES
             return None
         return self._strike(corner)
@@ -252,11 +261,12 @@ class _Course:
             self._settle(self.state._replace(V_n=self.state.V_n - before.normal))
             return corner
         along_normal = 0.5 * before.normal**2 / (1.0 + before.d_c**2 / self.pull.k2)
-        if along_normal >= self.strong * self.E_0:
+        self.most_energy = max(self.most_energy, self._moving)
+        if along_normal >= self.strong * self.most_energy:
             self.finish = Finish.STRONG
             return None
         first = self.energy is None and not self.strikes
-        counts = first or along_normal >= self.least * self.E_0
+        counts = first or along_normal >= self.least * self.most_energy
         e = self.restitution(before) if counts else 0.0
         strike = _resolved(before, e, self.pull)
         strike = self.moved(strike) if counts else strike
@@ -277,7 +287,7 @@ class _Course:
         feet = [self.outline.corners[one].arms(state.alpha)[0] for one in (corner, other)]
         moving = 0.5 * (state.V_n**2 + k2 * state.Omega**2)
         weak = [
-            0.5 * (state.V_n + d_c * state.Omega) ** 2 / (1.0 + d_c**2 / k2) < self.least * self.E_0
+            0.5 * (state.V_n + d_c * state.Omega) ** 2 / (1.0 + d_c**2 / k2) < self.least * self.most_energy
             for d_c in feet
         ]
         if moving > 1e-20 * self.E_0 and not all(weak):
