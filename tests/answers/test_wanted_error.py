@@ -60,7 +60,6 @@ def test_a_run_on_one_mesh_refuses_a_target():
 def test_the_shipped_summary_is_dated_and_about_shipped_scenes():
     held = summary()
     assert held["created_utc"] and held["versions"]["numpy"]
-    assert held["machine"]["triad_GB_per_s"] > 0
     assert held["scenes"]
     for name, cost in held["scenes"].items():
         scene = read_dict(cost["scene"])

@@ -23,8 +23,8 @@ SUMMARY = "fem-impact/cost-summary/6"
 
 
 def summarise(costs: Mapping[str, CostStudy]) -> dict[str, Any]:
-    """Return the stored form of several scenes' costs, with one date and one machine for all."""
-    shared = ("created_utc", "versions", "machine")
+    """Return the stored form of several scenes' costs, with one date and the versions for all."""
+    shared = ("created_utc", "versions")
     whole = {name: cost.to_dict() for name, cost in costs.items()}
     first = next(iter(whole.values()))
     scenes = {

@@ -67,13 +67,10 @@ class CostStudy:
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain data."""
-        from fem_impact.case.measured import yardsticks
-
         return {
             "schema": SCHEMA,
             "created_utc": utc_now(),
             "versions": installed_versions(),
-            "machine": yardsticks(),
             "scene": to_dict(self.scene),
             "quantities": {
                 quantity.name: {"unit": quantity.unit, **asdict(limit)}
