@@ -15,8 +15,6 @@ fem_impact.effects       a `fem_impact.case.effects.slots.Effect` of the same na
 ======================== ======================================================================
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points

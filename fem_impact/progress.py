@@ -1,7 +1,5 @@
 """Progress of a run or a study, and the meters that show it in plain lines or not at all."""
 
-from __future__ import annotations
-
 import sys
 import time
 from collections.abc import Callable, Iterator

@@ -1,7 +1,5 @@
 """Lever arms of the contact point: Eq 6-7 of Averill et al."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

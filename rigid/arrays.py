@@ -1,7 +1,5 @@
 """Arrays of the package: float64 of any shape, broadcast together."""
 
-from __future__ import annotations
-
 from typing import TypeAlias
 
 import numpy as np

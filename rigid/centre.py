@@ -1,7 +1,5 @@
 """The centre of the contact impulse: the contact point for which e_m = -1."""
 
-from __future__ import annotations
-
 from numpy.typing import ArrayLike
 
 from .arms import Arms

@@ -1,7 +1,5 @@
 """How wide an outline is a little above its lowest point."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

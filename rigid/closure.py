@@ -1,7 +1,5 @@
 """The defect of the sum of losses and retained energy: an identity, not a check of the losses."""
 
-from __future__ import annotations
-
 from numpy.typing import ArrayLike
 
 from .arrays import Floats, floats

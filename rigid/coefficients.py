@@ -1,7 +1,5 @@
 """Impact coefficients from velocities: Eq 16-18."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

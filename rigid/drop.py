@@ -1,7 +1,5 @@
 """Velocities of a rod dropped on an inclined barrier: Eq 27-28."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike
 

@@ -1,7 +1,5 @@
 """Errors of the package: what is physically wrong, with the number."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A barrier of finite mass, free to move: Brach's impact of two bodies; a massive barrier is its limit."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from numpy.typing import ArrayLike

@@ -5,8 +5,6 @@ the paper gives their coefficients; its right-hand side is printed with the oppo
 entries of it, so A x = b holds with the b of this module and fails with the printed one.
 """
 
-from __future__ import annotations
-
 from dataclasses import KW_ONLY, dataclass
 
 import numpy as np

@@ -4,8 +4,6 @@ Written per unit mass, with P = V_n - v_n the normal impulse. An initial spin om
 sets to zero, is kept: its terms are those of the general system (Eq 1-3).
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from numpy.typing import ArrayLike

@@ -5,8 +5,6 @@ outward normal from the axis by `sweep`, then the tangent cone up to the rod's r
 (rho, z) in m, z along the axis from the tip end.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Upper bound of the energy that an impulse at the contact point can take, for any contact law."""
 
-from __future__ import annotations
-
 from numpy.typing import ArrayLike
 
 from .arrays import Floats, floats

@@ -1,7 +1,5 @@
 """The projectile: a turned rod, its mass properties and where it touches an inclined barrier."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass

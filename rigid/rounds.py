@@ -5,8 +5,6 @@ an inclination `alpha` is (sin alpha, -cos alpha) in (x, z). Each `Round` is wha
 angle; rounds of one smooth curve follow each other without a straight part or a corner between them.
 """
 
-from __future__ import annotations
-
 import math
 from itertools import accumulate, pairwise
 from typing import NamedTuple

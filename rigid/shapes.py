@@ -1,7 +1,5 @@
 """Outlines of named shapes: vertices (rho, z), m, from the axis at the tip to the tail."""
 
-from __future__ import annotations
-
 import math
 from itertools import pairwise
 

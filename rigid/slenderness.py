@@ -1,7 +1,5 @@
 """Slenderness of a rod and the published limit of rigid-body impact theory (Eq 29)."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike
 

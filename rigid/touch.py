@@ -1,7 +1,5 @@
 """What of a body is lowest over an inclined barrier, on either side of its axis."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

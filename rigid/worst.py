@@ -1,7 +1,5 @@
 """The worst losses that an impulse ratio up to the critical one can bring."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

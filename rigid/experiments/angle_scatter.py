@@ -1,7 +1,5 @@
 """Scatter of the short rod's losses against the angle: the tests of each set drawn with replacement."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

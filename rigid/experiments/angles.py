@@ -3,8 +3,6 @@
 Five sets of the 0.08 m rod dropped at about 2.1 m/s: 17, 25, 37, 60 degrees (Table 6) and 45 (Table 5, b).
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Every printed column against its recomputation from the velocities, row by row."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace

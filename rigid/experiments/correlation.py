@@ -1,7 +1,5 @@
 """Correlation of the coefficients within a set, with its confidence."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import combinations

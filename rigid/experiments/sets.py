@@ -1,7 +1,5 @@
 """The thirteen measured sets: rod, barrier, arms, rows, and the quantities recomputed from the rows."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

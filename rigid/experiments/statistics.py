@@ -1,7 +1,5 @@
 """Mean, scatter and interval of a column of measurements."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """The paper's Tables 2-6 as columns, read from the CSV files beside this module."""
 
-from __future__ import annotations
-
 import csv
 from collections.abc import Mapping
 from functools import cache

@@ -1,7 +1,5 @@
 """The impulse ratio of a part of the contact (Eq 22), and the threshold of the Painleve paradox."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike
 

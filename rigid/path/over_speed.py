@@ -4,8 +4,6 @@ Within a step friction is that of the speed in its middle, so that velocities ar
 exact; the equations are those of `rigid.path.segments`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from math import copysign, inf, sqrt
 

@@ -7,8 +7,6 @@ barrier, yet it stops, sticks and rebounds: the equations in impulses have a sol
 have none.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import IntEnum

@@ -8,8 +8,6 @@ where s = f against the sliding, and s = s_0 = d_c d_d/(k^2 + d_d^2) while the p
 can hold if abs(s_0) <= f. Sliding ends in sticking or in reverse sliding, and neither ends again.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Error bounds of a measurement, and an estimate with its interval."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import isfinite, sqrt

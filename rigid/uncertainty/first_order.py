@@ -1,7 +1,5 @@
 """Uncertainty of e, mu and e_m to first order."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Sensitivity of any formula to its inputs, by central differences."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 
 import numpy as np
