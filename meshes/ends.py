@@ -88,12 +88,6 @@ def end_of(
                 f"a wall of {1.0 - half.bore:.2g} of the outer radius is too thin beside {across} cells "
                 "across"
             )
-        longer = np.array([*line[:-1], line[-1] + np.array([0.0, 2.0 * radius])])
-        if line[-1, 0] > 0.0 and replace(builder, line=longer).best()[0] >= POOR:
-            raise MeshError(
-                f"length {line[-1, 1]:.6g} m is too short for the rounding of its edge: let the flat face "
-                "end in an edge, with a chamfer or without, or make it longer"
-            )
         raise MeshError(
             f"an end is too sharp for hexahedra: round it with a radius of {0.1 * radius:.2g} m or more, or "
             "cut it off flat"

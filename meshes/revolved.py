@@ -7,6 +7,7 @@ import numpy as np
 
 from meshes.arrays import BoolArray, FloatArray
 from meshes.errors import MeshError
+from meshes.rims import without_roundings
 from meshes.section import Section, bored_section, section
 from meshes.shoulders import eased
 from meshes.surface import CORNER, Surface
@@ -27,11 +28,13 @@ class Revolved:
     Attributes
     ----------
     line, bore : (k, 2) outer and inner surface, (rho, z), m; a body without a bore has no rows
+    exact : (j, 2) outer surface, m, where the rims of ``line`` stand for roundings; else ``line``
     half : section; across : cells over the diameter, of a stack no fewer than asked for, see `revolved`
     """
 
     line: FloatArray
     bore: FloatArray
+    exact: FloatArray
     half: Section
     across: int
 
@@ -83,7 +86,7 @@ class Revolved:
 
     def radius(self, z: FloatArray) -> FloatArray:
         """(n,) outer radius at heights z (n,), m."""
-        return np.asarray(np.interp(z, self.line[:, 1], self.line[:, 0]))
+        return np.asarray(np.interp(np.maximum(z, 0.0), self.line[:, 1], self.line[:, 0]))
 
     def pitch(self, z: FloatArray) -> FloatArray:
         """(n,) wanted height of the cells, m."""
@@ -114,7 +117,7 @@ class Revolved:
         first, last = self.bored_from_to
         start = self.bore[:1] if first <= 0.0 else self.line[:1]  # a face begins beside the hole
         end = self.bore[-1:] if last >= self.length else np.array([[0.0, self.length]])
-        line = self.line[1:] if self.line[-1, 0] > 0.0 else self.line[1:-1]
+        line = self.exact[1:] if self.line[-1, 0] > 0.0 else self.exact[1:-1]
         outer = np.concatenate([start, line, end])
         return Surface((outer, self.hollow) if len(self.bore) else (outer,))
 
@@ -151,10 +154,13 @@ def revolved(line: FloatArray, bore: FloatArray | None, across: int) -> Revolved
     line = np.concatenate([line[:1], line[face][1:][-1:], line[~face & ~tail], line[tail][:1]])
     line, _ = eased(line, across)
     inner = np.zeros((0, 2)) if bore is None else np.array(bore, np.float64)
-    plain = Revolved(line, inner, section(across), across)
+    exact, radius = line, float(line[:, 0].max())
+    if line[-1, 0] > 0.0 and line[-1, 1] < (2.0 / 3.0 + 0.6 / across) * radius:  # no nose fits in
+        line = without_roundings(line, 2.0 * radius / across)
+    plain = Revolved(line, inner, exact, section(across), across)
     if plain.is_stack:
         # the cells over the diameter of a stack, no fewer than the body has
-        radius, thinnest = float(plain.line[:, 0].max()), min(high - low for low, high in plain.plates)
+        thinnest = min(high - low for low, high in plain.plates)
         least = 0.5 * min(thinnest, plain.wall)
         cubes = min(2.0 * radius / (0.5 * thinnest), MOST)
         # cells between two circles, n over the diameter, stand out by R pi^2 / (8 n^2) over their chords

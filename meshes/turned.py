@@ -18,7 +18,7 @@ from meshes.refine import reach, refine
 from meshes.revolved import SAME, Revolved, revolved
 from meshes.rod import RodMesh, nose_cells
 from meshes.shoulders import STEEPEST
-from meshes.surface import CORNER, Surface
+from meshes.surface import CORNER, Surface, closest_on
 from meshes.zone import Cloud, Zone
 
 __all__ = ["cells_across", "contact_radius", "turned"]
@@ -79,8 +79,12 @@ def turned(
     heights = _heights(body, start, body.length - (tail.start if tail else 0.0), planes, high)
     tail_start = body.length - tail.start if tail else np.inf
     exact = ((-np.inf, start), (low, high), (tail_start, np.inf))
-    points, cells, layer_of = _sections(body, heights, exact)
     nodes = len(body.half.unit)
+    points, cells, layer_of = _sections(body, heights, exact)
+    for edge, row in ((body.line[1], 0), (body.line[-1], len(heights) - 1)):
+        if body.is_stack and np.linalg.norm(closest_on(body.exact, edge[None]) - edge) > SAME * edge[0]:
+            rim = row * nodes + np.flatnonzero(body.half.radius > 1.0 - SAME)  # it stands for a rounding
+            points[rim] = body.surface.snap(points[rim], points[rim, None])
     parts = [(cells, layer_of)]
     for end, layer, flipped in (
         (tip, np.arange(nodes), False),

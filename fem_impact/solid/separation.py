@@ -60,7 +60,7 @@ class Separation:
         self.separated = True
         if ahead < self.horizon:
             self.reason = (
-                f"The rod's tail strikes {ahead * 1e6:.3g} us later, and only its tip can touch in this "
+                f"The rod's tail strikes {ahead * 1e3:.2f} ms later, and only its tip can touch in this "
                 "model: this is the motion before."
             )
             return True

@@ -126,8 +126,7 @@ def test_a_short_body_is_meshed_with_cells_no_wider_than_half_its_plate_and_vibr
     assert len(mesh(stated).cells) > 100
 
 
-def test_a_rounding_that_leaves_a_short_body_no_room_is_refused_with_a_remedy_that_works():
-    with pytest.raises(SceneError, match=r"too short for the rounding of its edge.*with a chamfer"):
-        Case.of(scene(ROUNDED))
-    points = [["0 mm", "10 mm"], ["2 mm", "12 mm"], ["6 mm", "12 mm"]]
-    assert len(mesh(scene({"material": "brass", "profile": points})).cells) > 100
+@pytest.mark.parametrize("fidelity", ["modal", "solid"])
+def test_a_short_body_with_a_rounded_edge_is_meshed(fidelity):
+    assert Case.of(scene(ROUNDED), fidelity).slots.vibrating
+    assert len(mesh(scene(ROUNDED)).cells) > 100

@@ -102,14 +102,6 @@ def test_cells_of_a_thin_disc_are_told_as_they_are():
     assert meshes.cells_across(disc(24e-3), 8) == 8
 
 
-def test_rounded_rims_of_a_thin_disc_are_refused_for_what_they_are():
-    turn = np.linspace(0.0, np.pi / 2, 20)
-    arc = np.stack([R - 1e-3 + 1e-3 * np.sin(turn), 1e-3 - 1e-3 * np.cos(turn)], axis=1)
-    line = np.concatenate([[[0.0, 0.0]], arc, [[R, 2e-3]]])
-    with pytest.raises(meshes.MeshError, match=r"is too short for the rounding of its edge.*chamfer"):
-        meshes.turned(line, 8)
-
-
 @st.composite
 def short_bodies(draw):
     """Outline, m, of a body that is no longer than wide, with chamfers or none, and its bore, if any."""
@@ -140,3 +132,30 @@ def test_a_random_short_body_is_meshed_and_refined_anywhere(body, across, place,
     assert quality(mesh).min_scaled_jacobian > 0.12
     skin = mesh.points[mesh.faces_with(SKIN)]
     assert np.hypot(skin[..., 0], skin[..., 1]).max() < 1.08 * R
+
+
+def rounded(length, rounding, both=False):
+    """Outline of a disc, the edge at its tip or both edges rounded; with 200 steps a rounding."""
+    turn = np.linspace(0.0, np.pi / 2.0, 200)
+    arc = np.stack([R - rounding + rounding * np.sin(turn), rounding - rounding * np.cos(turn)], axis=1)
+    tail = np.stack([arc[::-1, 0], length - arc[::-1, 1]], axis=1) if both else np.array([[R, length]])
+    line = np.concatenate([[[0.0, 0.0]], arc, tail])
+    return line[np.concatenate([[True], np.linalg.norm(np.diff(line, axis=0), axis=1) > 1e-9])]
+
+
+@pytest.mark.parametrize("both", [False, True])
+@pytest.mark.parametrize("rounding", [0.05e-3, 0.4e-3, 1.2e-3])
+@pytest.mark.parametrize("length", [2.4e-3, 6e-3])
+def test_the_rim_of_a_disc_is_round_where_its_cells_are_split(length, rounding, both):
+    line = rounded(length, rounding, both)
+    middle = np.array([R - rounding * (1 - np.sqrt(0.5)), 0.0, rounding * (1 - np.sqrt(0.5))])
+    centre = np.array([R - rounding, rounding])  # of the rounding
+    for across in (8, 16):
+        assert quality(meshes.turned(line, across).mesh).min_scaled_jacobian > 0.3
+        fine = meshes.turned(line, across, [about(middle, size) for size in (1e-3, 1e-3, 0.5e-3)]).mesh
+        require_positive(fine)
+        skin = fine.points[fine.free_skin]
+        away = np.column_stack([np.hypot(skin[:, 0], skin[:, 1]), skin[:, 2]]) - centre
+        round_there = (away[:, 0] > 0.0) & (away[:, 1] < 0.0) & (np.linalg.norm(skin - middle, axis=1) < 1e-3)
+        assert round_there.any()
+        assert np.linalg.norm(away[round_there], axis=1) == pytest.approx(rounding, rel=1e-3)
