@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable
+import re
+from collections.abc import Callable, Collection, Iterable
 from typing import Any, ClassVar
 
 
@@ -24,7 +25,8 @@ class StatementError(FemImpactError):
     problem : str
         What is wrong, in physical words.
     key : str, optional
-        Dotted key in the scene, such as ``projectile.length``, or an option, such as ``--height``.
+        Dotted key in the scene, such as ``projectile.length``; an argument of a function with its sign,
+        ``height=``; or an option of the command line, ``--height``.
     value : object, optional
         The refused value as the user gave it; left out of the message when None.
     remedy : str, optional
@@ -41,8 +43,10 @@ class StatementError(FemImpactError):
         super().__init__(self._message())
 
     def _message(self) -> str:
-        shown = "" if self.value is None else f" = {_short(self.value)}"
-        place = ": ".join(part for part in (self.source, f"{self.key}{shown}".strip(" =")) if part)
+        value = "" if self.value is None else _short(self.value)
+        between = "" if self.key.endswith("=") else " " if self.key.startswith("--") else " = "
+        stated = f"{self.key}{between}{value}" if value and self.key else self.key or value
+        place = ": ".join(part for part in (self.source, stated) if part)
         text = f"{place}: {self.problem}" if place else self.problem
         return f"{text} {self.remedy}".strip()
 
@@ -105,6 +109,28 @@ EXIT_CODES: dict[int, str] = {
 
 def _bare(name: str) -> str:
     return name.lower().lstrip("-")
+
+
+_ARGUMENT = re.compile(r"(?<![\w.\"'-])([a-z_]+)=(True\b)?(?=(\S?))")
+
+
+def in_options(message: str, options: Collection[str]) -> str:
+    """Return a message in which arguments of functions are options: ``tip_radius=`` is ``--tip-radius``.
+
+    ``options`` are those that there are, by the names of the arguments.
+
+    Examples
+    --------
+    >>> in_options('out="a.md": cannot be written. Choose another out=.', {"out"})
+    '--out "a.md": cannot be written. Choose another --out.'
+    """
+
+    def option(found: re.Match[str]) -> str:
+        name, true, after = found.groups()
+        between = " " if not true and re.match("[\\w\"'\\[{/]", after) else ""
+        return f"--{name.replace('_', '-')}{between}" if name in options else found[0]
+
+    return _ARGUMENT.sub(option, message)
 
 
 def did_you_mean(name: str, known: Iterable[str], otherwise: str, bare: Callable[[str], str] = _bare) -> str:

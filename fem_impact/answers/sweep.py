@@ -110,7 +110,7 @@ def sweep(
     """
     if fidelity not in FIDELITIES:
         hint = did_you_mean(fidelity, FIDELITIES, f"Use one of {', '.join(FIDELITIES)}.")
-        raise UsageError("is not a fidelity.", key="fidelity", value=fidelity, remedy=hint)
+        raise UsageError("is not a fidelity.", key="fidelity=", value=fidelity, remedy=hint)
     require_columns(columns)
     vary, asked = listed(vary), scene.accuracy.target
     with watched(progress) as meter, tempfile.TemporaryDirectory() as spare:

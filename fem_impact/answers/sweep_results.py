@@ -61,7 +61,7 @@ def require_columns(names: Sequence[str]) -> None:
         if name not in COLUMNS:
             meant = did_you_mean(name, COLUMNS, "", lambda text: UNIT.sub("", text).lower())
             remedy = f"{meant} `fem-impact schema` lists and explains them.".lstrip()
-            raise UsageError("is no column of an outcome.", key="columns", value=name, remedy=remedy)
+            raise UsageError("is no column of an outcome.", key="columns=", value=name, remedy=remedy)
 
 
 @dataclass(frozen=True, slots=True)

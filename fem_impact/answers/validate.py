@@ -135,7 +135,7 @@ def validate(
     quick = inputs_by or ("rigid" if fidelity == "rigid" else "modal")
     if quick not in FIDELITIES:
         remedy = f"Known: {', '.join(FIDELITIES)}."
-        raise UsageError("is no fidelity.", key="inputs_by", value=inputs_by, remedy=remedy)
+        raise UsageError("is no fidelity.", key="inputs_by=", value=inputs_by, remedy=remedy)
     names, at = _measured(tests), {q.measured: q.key.name for q in MEASURED if q.measured}
     keys = [at.get(name, name) for name in names]
     with watched(options.progress) as meter:
@@ -242,7 +242,7 @@ def _friction(scene: Scene) -> dict[str, Ends]:
     surface = scene.surface
     if surface.friction_low == surface.friction_high:
         remedy = "State one, such as impact.angle=44,46deg."
-        raise UsageError("is missing: no input of the scene is uncertain.", key="uncertain", remedy=remedy)
+        raise UsageError("is missing: no input of the scene is uncertain.", key="uncertain=", remedy=remedy)
     return {FRICTION: (surface.friction_low, surface.friction_high)}
 
 

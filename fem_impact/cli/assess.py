@@ -154,9 +154,9 @@ def _telling(options: Options) -> Callable[[str], None]:
 
 def _limited(options: Options, scene: Scene) -> tuple[dict[str, Any], None]:
     """Return the verdict on a number and its limit, over the intervals that are stated, as plain JSON."""
-    from fem_impact.answers.vary import read_vary
     from fem_impact.answers.verdict.criteria import LIMITED, Criterion, Rigidity
     from fem_impact.answers.verdict.limit import document, judge
+    from fem_impact.cli.values import read_values
     from fem_impact.scene.units import option_quantity
 
     criterion: Criterion
@@ -166,7 +166,7 @@ def _limited(options: Options, scene: Scene) -> tuple[dict[str, Any], None]:
     else:
         criterion = LIMITED[options.question]
         limit = option_quantity(options.limit, criterion.dimension, "--limit")
-    uncertain: dict[str, Any] = dict(read_vary(text) for text in options.uncertain)
+    uncertain: dict[str, Any] = dict(read_values(text) for text in options.uncertain)
     means = options.fidelity, *_means(options)
     found = judge(scene, criterion, limit, uncertain, *means, tell=_telling(options))
     given = "question", "limit", "uncertain", "within"

@@ -13,7 +13,7 @@ from collections.abc import Callable, Sequence
 from fem_impact.cli.options import Options
 from fem_impact.cli.parser import build_parser, read_line
 from fem_impact.cli.terminal import print_json, printable_streams
-from fem_impact.errors import EXIT_CODES, FemImpactError, OutputPathError, RunError, UsageError
+from fem_impact.errors import EXIT_CODES, FemImpactError, OutputPathError, RunError, UsageError, in_options
 from fem_impact.version import __version__
 
 
@@ -68,6 +68,7 @@ def _guarded(handler: Callable[[Options], int], options: Options) -> int:
 
 def _complain(message: str, code: int, options: Options) -> int:
     """Tell what went wrong on standard error; with ``--json`` also as a document on standard output."""
+    message = in_options(message, vars(options))
     kind = "interrupted" if code == 130 else "error"
     sys.stderr.write(f"fem-impact: {kind}: {message}\n")
     if options.json:

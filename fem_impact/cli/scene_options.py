@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fem_impact.cli.options import Options, add_text
-from fem_impact.errors import SceneError, UsageError
+from fem_impact.errors import SceneError, UsageError, did_you_mean
 
 if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
@@ -183,12 +183,37 @@ def named_scene(options: Options, needed: Sequence[str]) -> Scene | None:
 
 
 def rod_of(options: Options) -> Projectile:
-    """Return the solid steel rod that the options describe."""
-    from fem_impact.answers.verdict.drop import rod_from_options
+    """Return the solid steel rod that the options describe.
 
-    return rod_from_options(
-        options.length, options.diameter, options.tip or USUAL_TIP, options.tip_radius or None
+    Raises
+    ------
+    UsageError
+        A quantity has no unit, the tip is unknown, or it is an added one and has no radius.
+    SceneError
+        No such rod can be turned.
+    """
+    from fem_impact.answers.verdict.drop import DENSITY, TIP_RADII
+    from fem_impact.scene.tips import tips
+    from fem_impact.scene.units import option_quantity
+    from rigid import Projectile, RigidError
+
+    tip, known = options.tip or USUAL_TIP, tips()
+    if tip not in known:
+        remedy = did_you_mean(tip, known, f"Known are: {', '.join(known)}.")
+        raise UsageError("is no tip.", key="--tip", value=tip, remedy=remedy)
+    if not options.tip_radius and tip not in TIP_RADII:
+        remedy = 'Give its radius, such as --tip-radius "3 mm".'
+        raise UsageError("has no default radius.", key="--tip", value=tip, remedy=remedy)
+    given = options.tip_radius
+    radius = option_quantity(given, "length", "--tip-radius") if given else TIP_RADII[tip]
+    length, diameter = (
+        option_quantity(getattr(options, name), "length", f"--{name}") for name in ("length", "diameter")
     )
+    try:
+        return Projectile(length, diameter, tip, radius, DENSITY)
+    except RigidError as error:
+        remedy = "Change --length, --diameter, --tip or --tip-radius."
+        raise SceneError(f"{error}.", key="rod", remedy=remedy) from None
 
 
 def angle_of(options: Options) -> float:

@@ -74,9 +74,9 @@ def sweep(options: Options) -> int:
 
 
 def _vary(options: Options) -> dict[str, list[Any]]:
-    from fem_impact.answers.vary import read_vary
+    from fem_impact.cli.values import read_values
 
-    pairs = [read_vary(text) for text in options.vary]
+    pairs = [read_values(text) for text in options.vary]
     keys = [key for key, _ in pairs]
     twice = next((key for key in keys if keys.count(key) > 1), "")
     if twice:

@@ -41,12 +41,12 @@ def add_options(parser: CommandParser) -> None:
 def validate(options: Options) -> int:
     """Compare a scene with its tests and print errors, their uncertainties and what these are made of."""
     from fem_impact.answers.validate import validate as validated
-    from fem_impact.answers.vary import read_vary
     from fem_impact.case.case import Case
     from fem_impact.case.size import time_class
+    from fem_impact.cli.values import read_values
 
     scene = changed_scene(options.scene, options.changes)
-    pairs = [read_vary(text) for text in options.uncertain]
+    pairs = [read_values(text) for text in options.uncertain]
     intervals: dict[str, Any] = dict(pairs)
     if options.samples < 2 or options.samples & (options.samples - 1):
         remedy = "Write 16, 32, 64 or 128."

@@ -89,4 +89,4 @@ def unwritable(path: Path, error: OSError) -> OutputPathError:
     """Return the OutputPathError for an error of the operating system."""
     full = "free some space or " if error.errno in (errno.ENOSPC, errno.EDQUOT) else ""
     why = error.strerror or str(error)
-    return OutputPathError(f"{path}: cannot be written ({why}); {full}choose another place (out).")
+    return OutputPathError(f"{path}: cannot be written ({why}); {full}choose another place.")

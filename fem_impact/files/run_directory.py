@@ -116,7 +116,7 @@ def refuse_other_scene(path: Path, text: str) -> None:
     if path.exists() and read_text(path) != text:
         raise OutputPathError(
             f"{path}: is not the scene as this command would write it, and would be replaced. Choose "
-            "another place with --out."
+            "another out=."
         )
 
 

@@ -129,7 +129,7 @@ class Waves:
         places, strain = self.position, self.stretch + across * self.bending
         if not places[0] <= position <= places[-1] or abs(across) > 1:
             remedy = f"Give {places[0]:.4g} to {places[-1]:.4g} m, and -1 to 1 across."
-            raise UsageError("lies off the cylinder.", key="gauge", value=(position, across), remedy=remedy)
+            raise UsageError("lies off the cylinder.", key="gauge=", value=(position, across), remedy=remedy)
         after = int(np.clip(np.searchsorted(places, position), 1, len(places) - 1))
         share = (position - places[after - 1]) / (places[after] - places[after - 1])
         shown: np.ndarray = (1 - share) * strain[:, after - 1] + share * strain[:, after]

@@ -44,7 +44,7 @@ class Frame:
         if self.width % 16 or self.height % 16 or self.width < 640 or self.height < 480:
             raise UsageError(
                 "is no size of a film.",
-                key="size",
+                key="size=",
                 value=f"{self.width}x{self.height}",
                 remedy="Use multiples of 16, 640x480 at least.",
             )

@@ -164,7 +164,7 @@ def film_times(movement: Movement, field: str, span: Span) -> np.ndarray:
     """
     end = movement.end if field == "strain" else movement.stored_end
     if span.frames is not None and span.frames < 1:
-        raise UsageError("is no number of frames: a film needs one.", key="frames", value=span.frames)
+        raise UsageError("is no number of frames: a film needs one.", key="frames=", value=span.frames)
     if span.first is not None or span.last is not None or span.speed is not None:
         first, last = span.first or 0.0, end if span.last is None else span.last
         if not 0.0 <= first < last <= end * (1 + 1e-9):

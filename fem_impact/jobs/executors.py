@@ -199,4 +199,4 @@ def on_scheduler(address: str) -> Iterator[Executor]:
 
 def _refused(address: str, problem: str) -> UsageError:
     remedy = "Start `dask scheduler` and `dask worker ADDRESS --nthreads 1`."
-    return UsageError(problem, key="scheduler", value=address, remedy=remedy)
+    return UsageError(problem, key="scheduler=", value=address, remedy=remedy)

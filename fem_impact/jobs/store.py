@@ -29,7 +29,7 @@ _PLACE = {
     sqlite3.SQLITE_LOCKED: "Close the program that uses it.",
     **dict.fromkeys(
         (sqlite3.SQLITE_READONLY, sqlite3.SQLITE_PERM, sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_IOERR),
-        "Check that its place can be read and written, or choose another place (out).",
+        "Check that its place can be read and written, or choose another place.",
     ),
 }
 

@@ -227,7 +227,7 @@ def _key_named(key: Key | str) -> Key:
         return key
     if key not in KEY_TABLE:
         hint = did_you_mean(key, KEY_TABLE, "The table of keys in the documentation lists them.")
-        raise UsageError("is no key of an outcome.", key="key", value=key, remedy=hint)
+        raise UsageError("is no key of an outcome.", key="key=", value=key, remedy=hint)
     return KEY_TABLE[key]
 
 

@@ -58,7 +58,7 @@ def write_view(folder: Path, out: Path, span: Span, field: str) -> RenderResult:
     times = film_times(movement, field, Span(span.first, span.last, frames, span.speed))
     if len(times) > MOST:
         raise UsageError(
-            "are too many moments for a page.", key="frames", value=len(times), remedy=f"Up to {MOST}."
+            "are too many moments for a page.", key="frames=", value=len(times), remedy=f"Up to {MOST}."
         )
     motion = prepare(movement, field, times)
     (title, made, _, _), style = context(folder), FIELDS[field]

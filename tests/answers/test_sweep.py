@@ -13,7 +13,8 @@ from outcome_maker import altered, outcome
 import fem_impact
 from fem_impact.answers.sweep import MOST_ROWS, publish_sweep, sweep
 from fem_impact.answers.sweep_results import COLUMNS, SHORT, Results, SweepRow
-from fem_impact.answers.vary import Variation, cases, in_unit, read_vary
+from fem_impact.answers.vary import Variation, cases, in_unit
+from fem_impact.cli.values import read_values
 from fem_impact.errors import SceneError, UsageError
 from fem_impact.files.run_directory import earlier_runs
 from fem_impact.jobs import run as jobs_run
@@ -41,7 +42,7 @@ pytestmark = pytest.mark.usefixtures("unrendered")
     ],
 )
 def test_lists_and_ranges_with_units(text, values):
-    assert read_vary(text) == (text.partition("=")[0].strip(), values)
+    assert read_values(text) == (text.partition("=")[0].strip(), values)
 
 
 @pytest.mark.parametrize(
@@ -53,8 +54,8 @@ def test_lists_and_ranges_with_units(text, values):
     ],
 )
 def test_what_names_no_values_is_refused(text):
-    with pytest.raises(UsageError, match=r"--vary impact.angle=15..60:5deg"):
-        read_vary(text)
+    with pytest.raises(UsageError, match=r"Write impact.angle=15..60:5deg"):
+        read_values(text)
 
 
 @pytest.mark.parametrize(
@@ -68,11 +69,11 @@ def test_what_names_no_values_is_refused(text):
 )
 def test_a_range_that_does_not_come_to_its_end_names_the_nearest_that_do(text, nearest):
     with pytest.raises(UsageError) as refused:
-        read_vary(text)
+        read_values(text)
     assert str(refused.value).endswith(nearest)
     for ranged in nearest.removeprefix("Write ").removesuffix(".").split(" or "):
         first, _, last = ranged.partition(":")[0].partition("..")
-        _, values = read_vary(f"x={ranged}")
+        _, values = read_values(f"x={ranged}")
         assert [float(str(value).split()[0]) for value in (values[0], values[-1])] == [
             float(first),
             float(last),
@@ -82,7 +83,7 @@ def test_a_range_that_does_not_come_to_its_end_names_the_nearest_that_do(text, n
 @pytest.mark.parametrize(
     ("changes", "vary", "words"),
     [
-        (["impact.angle=20 deg"], "impact.angle=30,45deg", '--set = "impact.angle": is given beside --vary'),
+        (["impact.angle=20 deg"], "impact.angle=30,45deg", '--set "impact.angle": is given beside --vary'),
         (
             ["projectile.length=0.1 m"],
             "projectile.length_m=0.1",
@@ -207,7 +208,7 @@ def test_values_of_other_units_come_in_that_of_the_first():
         ({"lenght": ["15 mm"]}, "Did you mean projectile.length"),
         (
             {"projectile.length": ["1 mm", "2 mm"]},
-            "^vary: Each of the 2 combinations is refused: projectile.shape: .* the body only 1 mm",
+            "^vary=: Each of the 2 combinations is refused: projectile.shape: .* the body only 1 mm",
         ),
         ({}, "names no values"),
         ({"impact.angle": "15 deg"}, "one value, not a list"),

@@ -32,4 +32,4 @@ def test_its_document_has_every_point_with_its_range(capsys):
 
 def test_a_load_that_is_no_number_is_refused(capsys):
     assert main(["hardness", "t5b", "--loads", "HV30"]) == 2
-    assert '--loads = "HV30": is no number above 0' in capsys.readouterr().err
+    assert '--loads "HV30": is no number above 0' in capsys.readouterr().err

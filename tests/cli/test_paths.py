@@ -120,7 +120,7 @@ def test_a_verdict_does_not_replace_the_scene_that_it_reads(cli, monkeypatch):
     )
     code, _, err = cli("assess", "here/scene.toml", "--fidelity", "modal", "--out", "here")
     assert code == 4
-    assert "would be replaced. Choose another place with --out" in err
+    assert "would be replaced. Choose another --out" in err
     assert Path("here/scene.toml").read_text() == mine
 
 

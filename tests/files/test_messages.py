@@ -16,7 +16,15 @@ import fem_impact
 from fem_impact.cli.options import Options
 from fem_impact.cli.run import print_outcome
 from fem_impact.cli.terminal import chosen_meter, printable_streams
-from fem_impact.errors import FemImpactError, ResultError, SceneError, UsageError, did_you_mean, printable
+from fem_impact.errors import (
+    FemImpactError,
+    ResultError,
+    SceneError,
+    UsageError,
+    did_you_mean,
+    in_options,
+    printable,
+)
 from fem_impact.files.fields import read_fields
 from fem_impact.files.fields_write import FieldWriter
 from fem_impact.progress import Progress
@@ -130,7 +138,7 @@ def test_refused_values_have_the_users_unit_and_few_digits(cli, line, shown):
 def test_a_refused_drop_names_what_the_user_stated(cli):
     rod = ("--length", "80 mm", "--diameter", "19.123456789 mm", "--angle", "45 deg")
     _, _, err = cli("assess", *rod, "--height", "1000000 m", "--surface", "machined")
-    assert '--height = "1e+06 m": must be above 0 and below 1000 m' in err
+    assert '--height "1e+06 m": must be above 0 and below 1000 m' in err
     _, _, err = cli("coefficients", "x.csv", *rod, "--tip-radius", "12.3456789 mm")
     assert "<= 9.56 mm (the rod's radius), got 12.3 mm" in err
 
@@ -173,3 +181,17 @@ def test_a_dataset_that_states_more_than_the_file_holds_is_refused(tmp_path, nam
 
 def _rest(fields):
     return fields.cells, fields.static, fields.point_names, fields.cell_names
+
+
+def test_arguments_in_a_message_are_options_of_the_command_that_has_them():
+    said = 'tip_radius="3": no unit. Write tip_radius="3 mm", vary={...}, impact.out=1; another out=.'
+    told = '--tip-radius "3": no unit. Write --tip-radius "3 mm", vary={...}, impact.out=1; another --out.'
+    assert in_options(said, {"tip_radius", "out"}) == told
+    assert in_options("Leave out heat=True, or 'heat=True'.", {"heat"}) == "Leave out --heat, or 'heat=True'."
+
+
+def test_an_error_speaks_python_from_python_and_options_on_the_command_line(cli):
+    with pytest.raises(SceneError, match=r'^fidelity="best": is not a fidelity of a verdict'):
+        fem_impact.assess(fem_impact.load("t5b"), fidelity="best")
+    _, _, err = cli("cost", "t5b", "--of", "E_all", "--target", "5 %")
+    assert '--of "E_all": is not a quantity of interest' in err

@@ -156,7 +156,7 @@ def judge_stored(
     if not results:
         raise RunError(
             f"{out}: holds no run of {scene.id} by this version of the program. "
-            "Leave out --stored to run its settings."
+            "Leave out stored=True to run its settings."
         )
     return conclude(scene, results)
 

@@ -83,7 +83,7 @@ def chosen(asked: Iterable[str], scene: Scene | None = None) -> tuple[str, ...]:
     if rigid and "E_vib" in wanted:
         raise SceneError(
             "is not known here: the vibration effect is off.",
-            key="--of",
+            key="of=",
             value="E_vib",
             remedy='Name others, or add "vibration" to the effects of the scene.',
         )
@@ -91,5 +91,5 @@ def chosen(asked: Iterable[str], scene: Scene | None = None) -> tuple[str, ...]:
     for name in wanted:
         if name not in names:
             remedy = f"Known: {', '.join(names)}."
-            raise UsageError("is not a quantity of interest.", key="--of", value=name, remedy=remedy)
+            raise UsageError("is not a quantity of interest.", key="of=", value=name, remedy=remedy)
     return wanted or tuple(name for name in TARGETED if not (rigid and name == "E_vib"))

@@ -149,10 +149,10 @@ def assess(
     check_means(fidelity, budget_s)
     if of not in CHANGED:
         remedy = f"Use one of {', '.join(CHANGED)}."
-        raise SceneError("is not a number whose change is judged.", key="of", value=of, remedy=remedy)
+        raise SceneError("is not a number whose change is judged.", key="of=", value=of, remedy=remedy)
     if not 0.0 < tolerance < 1.0:
         remedy = "It is the change that may be neglected: give one such as 0.05."
-        raise SceneError("must lie between 0 and 1.", key="tolerance", value=tolerance, remedy=remedy)
+        raise SceneError("must lie between 0 and 1.", key="tolerance=", value=tolerance, remedy=remedy)
     scene = scene.first_impact
     bodies = Case(scene).bodies
     lacking = not_reduced(bodies)
@@ -217,9 +217,9 @@ def check_means(fidelity: str, budget_s: float) -> None:
     """Refuse another fidelity than those of a verdict, and a budget that is none (SceneError)."""
     if fidelity not in FIDELITIES:
         remedy = f"Use one of {', '.join(FIDELITIES)}."
-        raise SceneError("is not a fidelity of a verdict.", key="fidelity", value=fidelity, remedy=remedy)
+        raise SceneError("is not a fidelity of a verdict.", key="fidelity=", value=fidelity, remedy=remedy)
     if not 0.0 < budget_s < 1e6:
-        raise SceneError("must lie above 0 and below 1e6 s.", key="budget", value=f"{budget_s:g} s")
+        raise SceneError("must lie above 0 and below 1e6 s.", key="budget_s=", value=budget_s)
 
 
 def _over_angles(

@@ -1,4 +1,4 @@
-"""A dropped rod to be assessed, its options on the command line, and its distance from measured sets."""
+"""A dropped rod to be assessed, and its distance from measured sets."""
 
 from __future__ import annotations
 
@@ -7,10 +7,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from fem_impact.errors import SceneError, UsageError, did_you_mean
-from fem_impact.scene.tips import tips
-from fem_impact.scene.units import option_quantity
-from rigid import SHAPES, Arms, Projectile, RigidError, drop_velocities
+from fem_impact.errors import SceneError
+from rigid import SHAPES, Arms, Projectile, drop_velocities
 from rigid.arrays import Floats
 from rigid.experiments import MeasuredSet, measured_sets
 
@@ -54,14 +52,14 @@ class RodDropInput:
     def __post_init__(self) -> None:
         if not 0 < self.height < HIGHEST:
             raise SceneError(
-                f"must be above 0 and below {HIGHEST:g} m.", key="--height", value=f"{self.height:.3g} m"
+                f"must be above 0 and below {HIGHEST:g} m.", key="height=", value=f"{self.height:.3g} m"
             )
         if not 0 < self.alpha < math.pi / 2:
             problem = (
                 "must lie between 0 and 90 degrees; "
                 "a rod that falls flat on its end has no one contact point."
             )
-            raise SceneError(problem, key="--angle", value=f"{math.degrees(self.alpha):.3g} deg")
+            raise SceneError(problem, key="angle=", value=f"{math.degrees(self.alpha):.3g} deg")
 
     @property
     def velocity(self) -> tuple[float, float]:
@@ -169,31 +167,3 @@ def _of_motion(case: RodDropInput, sets: tuple[MeasuredSet, ...]) -> Iterator[st
 def _span(values: list[float], unit: str, form: str) -> str:
     low, high = format(values[0], form), format(values[-1], form)
     return f"{low} {unit} only" if low == high else f"{low} to {high} {unit}"
-
-
-def rod_from_options(length: str, diameter: str, tip: str, tip_radius: str | None) -> Projectile:
-    """Make the steel rod that ``--length --diameter --tip --tip-radius`` describe.
-
-    Raises
-    ------
-    UsageError
-        A quantity has no unit, the tip is unknown, or it is an added one and has no radius.
-    SceneError
-        No such rod can be turned.
-    """
-    known = tips()
-    if tip not in known:
-        remedy = did_you_mean(tip, known, f"Known are: {', '.join(known)}.")
-        raise UsageError("is no tip.", key="--tip", value=tip, remedy=remedy)
-    if tip_radius is None and tip not in TIP_RADII:
-        remedy = 'Give its radius, such as --tip-radius "3 mm".'
-        raise UsageError("has no default radius.", key="--tip", value=tip, remedy=remedy)
-    radius = (
-        option_quantity(tip_radius, "length", "--tip-radius") if tip_radius is not None else TIP_RADII[tip]
-    )
-    size = option_quantity(length, "length", "--length"), option_quantity(diameter, "length", "--diameter")
-    try:
-        return Projectile(*size, tip, radius, DENSITY)
-    except RigidError as error:
-        remedy = "Change --length, --diameter, --tip or --tip-radius."
-        raise SceneError(f"{error}.", key="rod", remedy=remedy) from None

@@ -196,7 +196,7 @@ def _places(scene: Scene, intervals: Sequence[tuple[str, float, float, str]]) ->
         return {(): scene}
     if len(intervals) not in PLACES:
         problem, remedy = f"states {len(intervals)} intervals.", f"Give at most {max(PLACES)}."
-        raise UsageError(problem, key="uncertain", remedy=remedy)
+        raise UsageError(problem, key="uncertain=", remedy=remedy)
     shares = np.linspace(0.0, 1.0, PLACES[len(intervals)]).tolist()
     return {
         place: at_place(scene, intervals, np.array(place)) for place in product(shares, repeat=len(intervals))

@@ -31,8 +31,8 @@ LEAST_HALF = 0.1
 """Per cent of E_0, to which shares are printed: no level knows them better."""
 
 FIRST_ONLY = (
-    "The first impact only: the rod keeps the rest of its energy and may strike again, which a run with "
-    "--until rest follows.",
+    "The first impact only: the rod keeps the rest of its energy and may strike again, which a run "
+    "until rest follows.",
     "Fracture, chipping and wear of rod and barrier; chemical heat.",
     "Supports and other bodies that the rod or the barrier may touch.",
 )

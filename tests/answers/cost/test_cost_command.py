@@ -45,7 +45,7 @@ def test_a_scene_without_vibration_is_judged_by_what_its_runs_know(cli, fake):
     assert "E_vib" not in json.loads(Path("results/cost/t5b/cost.json").read_text())["quantities"]
     code, _, err = cli("cost", *rigid_rod, "--of", "E_vib")
     assert code == 3
-    assert '--of = "E_vib": is not known here: the vibration effect is off' in err
+    assert '--of "E_vib": is not known here: the vibration effect is off' in err
 
 
 def test_all_scenes_of_the_paper_make_a_summary(cli, fake, monkeypatch):
