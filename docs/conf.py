@@ -11,6 +11,7 @@ author = "the fem-impact developers"
 extensions = [
     "myst_parser",
     "sphinx.ext.autodoc",
+    "sphinx.ext.autosummary",
     "sphinx.ext.napoleon",
     "sphinx_gallery.gen_gallery",
     "program_tables",
@@ -18,8 +19,9 @@ extensions = [
 ]
 myst_enable_extensions = ["colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 4
-exclude_patterns = ["_build", "examples", "extensions", "notebooks"]
-default_role = "code"  # docstrings write names in single backticks
+exclude_patterns = ["_build", "examples", "extensions", "notebooks", "plots", "templates"]
+templates_path = ["templates"]
+default_role = "py:obj"  # names in single backticks: code, and a link where the name is documented
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
 autodoc_default_options = {"members": True, "show-inheritance": True}
@@ -29,12 +31,12 @@ napoleon_use_ivar = True
 suppress_warnings = ["ref.python"]
 # scripts that are run while the documentation is built, and become pages and notebooks
 sphinx_gallery_conf = {
-    "examples_dirs": "notebooks",
-    "gallery_dirs": "tutorials/notebook",
+    "examples_dirs": ["notebooks", "plots"],
+    "gallery_dirs": ["tutorials/notebook", "gallery"],
     "filename_pattern": r"\.py$",
     "abort_on_example_error": True,
     "download_all_examples": False,
-    "write_computation_times": False,
+    "image_srcset": ["2x"],
     "show_signature": False,
     "show_memory": False,
 }

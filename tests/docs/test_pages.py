@@ -166,6 +166,8 @@ def _anchors(path):
     return {re.sub(r"[^\w -]", "", title.lower()).replace(" ", "-") for title in titles}
 
 
+DOCS = ROOT / "docs"
+MADE = {DOCS / "tutorials" / "notebook": DOCS / "notebooks", DOCS / "gallery": DOCS / "plots"}
 LINKS = {
     page: [one for one in set(re.findall(r"\]\(([^)\s]+)\)", without_code(text))) if "://" not in one]
     for page, text in PAGES.items()
@@ -177,8 +179,10 @@ def test_every_link_leads_somewhere(page):
     for target in LINKS[page]:
         place, _, anchor = target.partition("#")
         path = (ROOT / page).parent / place if place else ROOT / page
-        if path.parent == ROOT / "docs" / "tutorials" / "notebook":  # made from a script with the pages
-            path = ROOT / "docs" / "notebooks" / f"{path.stem}.py"
+        if source := MADE.get(path.parent):  # made from a script with the pages
+            path = source / ("GALLERY_HEADER.rst" if path.stem == "index" else f"{path.stem}.py")
+        elif source := MADE.get(path.parent.parent):
+            path = source / f"{path.stem.removeprefix('sphx_glr_').partition('_001')[0]}.py"
         assert path.exists(), target
         cited = set() if place else {one.key for one in references()}
         assert not anchor or anchor in _anchors(path) | cited, target

@@ -1,3 +1,11 @@
+"""
+Rotation: rigid theory beside free modes
+========================================
+
+Spin of the rod after the impact, by rigid theory and by the reduced model, which has the modes of the
+rod.
+"""
+
 import matplotlib.pyplot as plt
 
 import fem_impact
@@ -10,4 +18,4 @@ for fidelity, look in (("rigid", "o--"), ("modal", "s-")):
     plt.plot(angles, [run.motion.Omega for run in runs], look, label=fidelity)
 plt.gca().set(xlabel="angle, degrees", ylabel="Omega after the impact, rad/s", title="0.08 m rod")
 plt.legend()
-plt.savefig("rigid_beside_modal.svg")
+plt.show()

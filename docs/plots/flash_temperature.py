@@ -1,3 +1,10 @@
+"""
+Flash temperature of a sliding contact
+======================================
+
+Steady rise over the sliding speed for three sizes of the patch, by the moving source of heat.
+"""
+
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -9,4 +16,4 @@ for radius in (0.1e-3, 0.3e-3, 1e-3):
     plt.loglog(speed, moving_rise(heat, radius, speed, steel), label=f"patch of {1e3 * radius:g} mm")
 plt.gca().set(xlabel="sliding speed, m/s", ylabel="steady flash temperature rise, K")
 plt.legend()
-plt.savefig("flash_temperature.svg")
+plt.show()

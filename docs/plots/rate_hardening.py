@@ -1,3 +1,10 @@
+"""
+Rate hardening of metals
+========================
+
+Gain of the flow stress with the plastic strain rate, of four metals of the library.
+"""
+
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -9,4 +16,4 @@ for name in ("rod-steel", "plate-steel", "stainless-304", "copper"):
     plt.semilogx(rate, [rate_gain(materials()[name], one) for one in rate], label=name)
 plt.gca().set(xlabel="plastic strain rate, 1/s", ylabel="gain of the flow stress")
 plt.legend()
-plt.savefig("rate_hardening.svg")
+plt.show()

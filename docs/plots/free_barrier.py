@@ -1,3 +1,10 @@
+"""
+A barrier that moves
+====================
+
+Velocities after an impact on a barrier that is free to move, over its mass.
+"""
+
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -10,4 +17,4 @@ plt.semilogx(ratio, free.V_n, label="rod V_n")
 plt.semilogx(ratio, free.V_bn, label="barrier W_n")
 plt.gca().set(xlabel="mass of the barrier over that of the rod", ylabel="after the impact, m/s")
 plt.legend()
-plt.savefig("free_barrier.svg")
+plt.show()

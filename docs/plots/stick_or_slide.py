@@ -1,3 +1,11 @@
+"""
+Where the tip slides and where it sticks
+========================================
+
+Impulse ratio that comes out of rigid theory for three coefficients of friction. Where a curve leaves its
+own f, the tip sticks or turns back before the end.
+"""
+
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -11,4 +19,4 @@ for f in (0.1, 0.3, 0.57):
     plt.plot(np.degrees(angle), path.mu, label=f"f = {f}")
 plt.gca().set(xlabel="angle, degrees", ylabel="impulse ratio mu that comes out")
 plt.legend()
-plt.savefig("stick_or_slide.svg")
+plt.show()

@@ -1,3 +1,10 @@
+"""
+Slenderness of a steel rod
+==========================
+
+Length and diameter that have one gamma; 26.45 is the published limit of rigid behaviour.
+"""
+
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -8,4 +15,4 @@ gamma = slenderness(length, diameter)
 lines = plt.contour(length * 1e3, diameter * 1e3, gamma, levels=[10, 20, LIMIT, 50, 100, 200])
 plt.clabel(lines)
 plt.gca().set(xlabel="length, mm", ylabel="diameter, mm", title="slenderness gamma; published limit 26.45")
-plt.savefig("slenderness.svg")
+plt.show()

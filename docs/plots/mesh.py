@@ -1,3 +1,10 @@
+"""
+Elements of a rod
+=================
+
+The hexahedra of a rod with tip B on its plane of symmetry.
+"""
+
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -12,4 +19,4 @@ for face in mesh.faces[on_plane[mesh.faces].all(axis=1)]:
 plt.gca().set(
     xlabel="along the axis, mm", ylabel="mm", aspect="equal", title="elements on the plane of symmetry"
 )
-plt.savefig("mesh.svg")
+plt.show()

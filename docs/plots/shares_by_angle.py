@@ -1,3 +1,11 @@
+"""
+Where the energy goes, against angle
+====================================
+
+Shares of the energy before the impact that are rigid motion, vibration, friction and plastic work, by the
+reduced model.
+"""
+
 import matplotlib.pyplot as plt
 
 import fem_impact
@@ -8,4 +16,4 @@ names = ("rigid", "vibration", "friction", "plastic_barrier")
 plt.stackplot(angles, [[getattr(run.energy, name) for run in runs] for name in names], labels=names)
 plt.gca().set(xlabel="angle, degrees", ylabel="share of E_0", title="energy after the impact, by modes")
 plt.legend(loc="lower left")
-plt.savefig("shares_by_angle.svg")
+plt.show()

@@ -1,3 +1,12 @@
+"""
+Three levels of a run
+=====================
+
+Elements near the contact on the three meshes of one run, from coarse to fine: those that may yield are
+coloured, points that touched are red. `How a run finds its contact <../explanation/contact.html>`_
+explains it.
+"""
+
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import PolyCollection as Quads
@@ -21,4 +30,4 @@ for ax, level in zip(panels, chain.done, strict=True):
     at = 1e3 * np.vstack([at, level.record.barrier.touched])
     ax.plot(*at[at[:, 1] < 1e-6][:, [0, 2]].T, "r.")
     ax.set(xlim=(-4, 4), ylim=(-3, 3), aspect="equal", xlabel="t, mm", title=f"{1e3 * level.size:.2f} mm")
-plt.savefig("contact_levels.svg")
+plt.show()

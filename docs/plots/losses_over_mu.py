@@ -1,3 +1,10 @@
+"""
+Losses of rigid theory
+======================
+
+Normal and tangential energy loss of rigid theory over the impulse ratio.
+"""
+
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -11,4 +18,4 @@ plt.plot(mu, lost.E_ln / E_0, label="normal loss E_ln")
 plt.plot(mu, lost.E_lt / E_0, label="tangential loss E_lt")
 plt.gca().set(xlabel="impulse ratio mu", ylabel="share of E_0", title="0.08 m rod at 45 degrees, e = 0.35")
 plt.legend()
-plt.savefig("losses_over_mu.svg")
+plt.show()

@@ -1,3 +1,10 @@
+"""
+Critical impulse ratio of three tips
+====================================
+
+Impulse ratio above which a rod would stick, at e = 0.4: it follows from where the tip touches.
+"""
+
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -13,4 +20,4 @@ for tip, radius in (("A", 0.007), ("B", 0.003), ("plain", 0.0)):
     )
 plt.gca().set(xlabel="angle, degrees", ylabel="critical impulse ratio mu_c", ylim=(0, 2))
 plt.legend()
-plt.savefig("critical_ratio.svg")
+plt.show()
