@@ -34,4 +34,4 @@ def test_all_are_short_and_say_what_they_show():
         text = script.read_text()
         assert len(text.splitlines()) <= 32
         title, line, empty, about = (ast.get_docstring(ast.parse(text)) or "").splitlines()[:4]
-        assert (line, empty) == ("=" * len(title), "") and about.endswith((".", ",")) or about
+        assert (line, empty) == ("=" * len(title), "") and about
