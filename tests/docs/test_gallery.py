@@ -32,6 +32,6 @@ def test_all_are_short_and_say_what_they_show():
     assert len(SCRIPTS) >= 12
     for script in SCRIPTS:
         text = script.read_text()
-        assert len(text.splitlines()) <= 32
+        assert len(text.splitlines()) <= 34
         title, line, empty, about = (ast.get_docstring(ast.parse(text)) or "").splitlines()[:4]
         assert (line, empty) == ("=" * len(title), "") and about
