@@ -178,7 +178,7 @@ LINKS = {
 def test_every_link_leads_somewhere(page):
     for target in LINKS[page]:
         place, _, anchor = target.partition("#")
-        path = (ROOT / page).parent / place if place else ROOT / page
+        path = ((ROOT / page).parent / place).resolve() if place else ROOT / page
         if source := MADE.get(path.parent):  # made from a script with the pages
             path = source / ("GALLERY_HEADER.rst" if path.stem == "index" else f"{path.stem}.py")
         elif source := MADE.get(path.parent.parent):
