@@ -5,11 +5,18 @@ from fem_impact.case.effects.heating import thermal
 from fem_impact.case.effects.plasticity import hardening_of
 from fem_impact.case.elastic_only import left_out
 from fem_impact.physics.hardening import TABOR_STRAIN, rate_gain, rate_law
-from fem_impact.scene.flow import Flow, JohnsonCookFlow, RambergOsgoodFlow, TableFlow
 from fem_impact.scene.inputs import materials_of
 from fem_impact.scene.library import family_of
-from fem_impact.scene.material import JohnsonCookRate, Material, Rate
-from fem_impact.scene.pairs import known_pair
+from fem_impact.scene.material import (
+    Flow,
+    JohnsonCookFlow,
+    JohnsonCookRate,
+    Material,
+    RambergOsgoodFlow,
+    Rate,
+    TableFlow,
+)
+from fem_impact.scene.surface_table import known_pair
 
 RATES = (1e2, 1e3, 1e4)  # 1/s, at which flow stresses are told
 YIELDS = {"rod": "rod-plasticity", "barrier": "barrier-elastoplastic"}

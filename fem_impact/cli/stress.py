@@ -21,7 +21,7 @@ def add_options(parser: CommandParser) -> None:
 def stress(options: Options) -> int:
     """Run one hard case, or all of them; the exit code says whether all ended as they must."""
     from fem_impact.answers.report import Request
-    from fem_impact.evidence.hard_cases.scenes import CASES
+    from fem_impact.evidence.hard_cases.study import CASES
 
     if options.only and options.page:
         raise UsageError("runs all cases.", key="--page", remedy="Leave --only out.")

@@ -6,8 +6,7 @@ from typing import Any
 from fem_impact.errors import SceneError
 from fem_impact.scene import fields
 from fem_impact.scene.checks import check_choice, check_text
-from fem_impact.scene.flow import FLOWS, Flow, TableFlow
-from fem_impact.scene.material import RATES, Material, Rate, SkinSpec
+from fem_impact.scene.material import FLOWS, RATES, Flow, Material, Rate, SkinSpec, TableFlow
 from fem_impact.scene.tables import Table, check_keys, needed, numbers_of, within
 from fem_impact.scene.units import parse_number, parse_quantity
 

@@ -12,9 +12,8 @@ import tomli_w
 
 from fem_impact.scene import fields
 from fem_impact.scene.barrier import Barrier
-from fem_impact.scene.flow import Flow, TableFlow
 from fem_impact.scene.impact import FIRST, Impact
-from fem_impact.scene.material import Material
+from fem_impact.scene.material import Flow, Material, TableFlow
 from fem_impact.scene.own_mesh import OwnMesh
 from fem_impact.scene.parameter import Parameter
 from fem_impact.scene.projectile import ProjectileSpec

@@ -12,9 +12,8 @@ from fem_impact.case.effects.plasticity import hardening_of, strength_of
 from fem_impact.errors import SceneError
 from fem_impact.physics.hardening import Hardening, TabulatedHardening
 from fem_impact.run.simulate import simulate
-from fem_impact.scene.flow import JohnsonCookFlow, RambergOsgoodFlow, TableFlow
 from fem_impact.scene.inputs import inputs
-from fem_impact.scene.material import Material
+from fem_impact.scene.material import JohnsonCookFlow, Material, RambergOsgoodFlow, TableFlow
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.write import digest, to_dict, to_toml

@@ -19,9 +19,9 @@ from fem_impact.scene.library import (
     sources_of,
 )
 from fem_impact.scene.material import Material
-from fem_impact.scene.pairs import known_pair, pair_surface
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load, replace, replace_all
+from fem_impact.scene.surface_table import known_pair, pair_surface
 from fem_impact.scene.write import to_dict
 
 T5B = load("t5b")

@@ -8,8 +8,7 @@ from fem_impact.errors import SceneError
 from fem_impact.physics import hardening
 from fem_impact.physics.contact import LIMIT_PRESSURE, ContactPair
 from fem_impact.physics.hardening import johnson_cook, ramberg_osgood
-from fem_impact.scene.flow import RambergOsgoodFlow, TableFlow
-from fem_impact.scene.material import Material
+from fem_impact.scene.material import Material, RambergOsgoodFlow, TableFlow
 
 DEEP = 1.6  # peak Hertz pressure over yield stress at first yield, below the surface (Johnson 1985, eq 6.9)
 SOURCE = (

@@ -7,16 +7,16 @@ import hashlib
 import json
 import time
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from fem_impact import Case, RunOptions, known
+from fem_impact import Case, RunOptions, Scene, known, load, replace_all
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.errors import ResultError, RunError, SceneError
-from fem_impact.evidence.hard_cases.scenes import CASES, HardCase
+from fem_impact.evidence.data import read_stated, scene_keys
 from fem_impact.evidence.problems.problem import verify
 from fem_impact.fem.stable import SAFETY
 from fem_impact.files.atomic import make_directory
@@ -28,6 +28,44 @@ from fem_impact.solid.build import build
 from fem_impact.solid.model import Model
 from fem_impact.solid.run import SolidResult, solve
 from fem_impact.tables.table import Column, Table, read_csv
+
+Expected = Literal["closed", "refused", "detected"]
+
+
+@dataclass(frozen=True, slots=True)
+class HardCase:
+    """One hard case of cases.toml.
+
+    Attributes
+    ----------
+    difficulty : what is hard about it
+    changes : of the base scene, as a scene file writes them
+    expected : ``closed`` run, ``refused`` before the run, or trouble ``detected`` during it
+    gap : height of the lowest point at the start, m
+    shifted : place of the rod along t, m
+    step : share of the stable step
+    bounces : between two walls instead of a scene, 0 for none
+    """
+
+    name: str
+    difficulty: str
+    changes: Mapping[str, Any] = field(default_factory=dict)
+    expected: Expected = "closed"
+    gap: float = 2e-6
+    shifted: float = 0.0
+    step: float = 0.9
+    bounces: int = 0
+
+    def scene(self) -> Scene:
+        """Return its scene (SceneError if it is refused already here)."""
+        named = {"id": f"stress-{self.name.replace('.', '-')}"}
+        return replace_all(load("t5b"), scene_keys(_BASE) | scene_keys(self.changes) | named)
+
+
+_STATED = read_stated("hard_cases/cases.toml")
+_BASE = _STATED.pop("base")
+CASES = {name: HardCase(name, **stated) for name, stated in _STATED.items()}
+
 
 LEDGER = 1e-3  # of E_0: most that the ledger may miss, to either side
 FED = 1e-6  # of E_0: most that friction may give back between two rows of the history

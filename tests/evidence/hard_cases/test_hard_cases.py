@@ -11,8 +11,8 @@ from fem_impact.answers.report import Request
 from fem_impact.case.case import Case
 from fem_impact.case.zones import face_reach
 from fem_impact.errors import ResultError, RunError, SceneError
-from fem_impact.evidence.hard_cases.scenes import CASES
 from fem_impact.evidence.hard_cases.study import (
+    CASES,
     Balance,
     HardCaseJob,
     HardCaseResult,
