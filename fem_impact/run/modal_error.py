@@ -186,14 +186,14 @@ def factor_of(place: Place, name: str, far: float) -> float:
     return exp(stored().half_width(np.array(place), len(TOLD) + FACTORS.index(name), far))
 
 
-def unlike(place: Place, outcome: Outcome) -> tuple[str, ...]:
-    """Return in what a scene is unlike all stored ones, of which one place touched."""
-    return (*stored().outside(np.array(place)), *_unheard(outcome))
+def unlike(place: Place, outcome: Outcome, table: Stored | None = None) -> tuple[str, ...]:
+    """Return in what a scene is unlike all stored ones, of which one place touched, of a table."""
+    return (*(table or stored()).outside(np.array(place)), *_unheard(outcome))
 
 
-def farness(place: Place, outcome: Outcome) -> float:
-    """Return how far a scene lies beyond the stored ones, 0 to 1; 1 where it touches as none of them does."""
-    return 1.0 if _unheard(outcome) else stored().far(np.array(place))
+def farness(place: Place, outcome: Outcome, table: Stored | None = None) -> float:
+    """Return how far a scene lies beyond them, 0 to 1; 1 where it touches as none of them does."""
+    return 1.0 if _unheard(outcome) else (table or stored()).far(np.array(place))
 
 
 def _unheard(outcome: Outcome) -> tuple[str, ...]:

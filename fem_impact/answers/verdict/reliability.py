@@ -16,7 +16,7 @@ from fem_impact.case.case import Case
 from fem_impact.case.measured import vibration_pairs
 from fem_impact.outcome.keys import Key
 from fem_impact.outcome.record import KEY_TABLE, Outcome
-from fem_impact.run.modal_error import Place, Stored, place_of
+from fem_impact.run.modal_error import Place, Stored, farness, place_of, unlike
 from fem_impact.scene.types import Scene
 
 CHANGED: Mapping[str, Key] = {
@@ -44,9 +44,9 @@ def known_error(scene: Scene, whole: Outcome, of: str, change: float) -> tuple[f
     of : number of `CHANGED`
     change : of that number by vibration
     """
-    at, table = np.array(place_of(Case(scene), whole)), stored()
-    half = table.half_width(at, [*CHANGED].index(of), table.far(at))
-    return half * scale_of_change(change), table.outside(at)
+    at, table = place_of(Case(scene), whole), stored()
+    half = table.half_width(np.array(at), [*CHANGED].index(of), farness(at, whole, table))
+    return half * scale_of_change(change), unlike(at, whole, table)
 
 
 def sentence(of: str, half: float, far: tuple[str, ...]) -> str:

@@ -203,6 +203,9 @@ def test_the_known_error_grows_with_the_change_and_tells_in_what_a_scene_is_unli
     small, large = (known_error(scene, whole, "e", change) for change in (0.001, 0.4))
     assert large[0] == pytest.approx(20 * small[0])
     assert small[1] == ()
+    laid = replace(whole, energy=replace(whole.energy, radiated=0.1))
+    half, far = known_error(scene, laid, "e", 0.001)
+    assert far == ("what lands flat",) and half > small[0]
     half, far = known_error(LONG, modal_pair(LONG)[0], "e", 0.001)
     assert far == ("bending period over time of contact",)
     assert far[0] in sentence("e", half, far)
