@@ -396,3 +396,12 @@ def test_times_never_run_back():
     times = [state.time for phase in found.phases for state in phase.states]
     assert all(a <= b for a, b in pairwise(times))
     assert len(found.strikes) > 10
+
+
+def test_a_body_set_down_slowly_rests_by_the_strikes_that_its_fall_makes():
+    """Its first touch has a millionth of their energy: by a share of that it would rattle for ever."""
+    shape = outline(ROD)
+    found = follow(shape, start(shape, 60.0, -1e-3), ROD.k2, 0.5, 0.3)
+    assert found.finish is Finish.RESTS
+    assert len(found.strikes) < 60
+    assert max(one.before.normal**2 for one in found.strikes) > 1e3 * found.strikes[0].before.normal ** 2

@@ -227,6 +227,19 @@ def test_a_body_of_segments_takes_the_material_of_the_part_that_strikes():
     assert tail.e != pytest.approx(plain.e, abs=1e-3)
 
 
+def test_strikes_in_an_earlier_dent_are_counted():
+    """All of a ball that falls straight down; none of one whose place on the barrier moves on."""
+    told = {}
+    for v_t in ("0 m/s", "-1 m/s"):
+        changes = {"impact__v_t": v_t, "impact__v_n": "-2 m/s", "impact__angle": "0 deg"}
+        data = to_dict(rattling(impact__until="3 strikes", **changes))
+        data.pop("measured", None)
+        data["projectile"] = {"shape": "ball", "diameter": "20 mm", "material": "rod-steel"}
+        told[v_t] = " ".join(texts(simulate(read_dict(data), "rigid").validity.limitations, "model"))
+    assert "2 of the strikes not by finite elements land in the dent" in told["0 m/s"]
+    assert "land in the dent" not in told["-1 m/s"]
+
+
 # what is certain of it
 
 
