@@ -75,19 +75,15 @@ def _course(each: Sequence[StrikeRecord], shape: Outline, pull: tuple[float, flo
         lasts = end.time - begin.time
         free = flies(begin, end, pull, shape)
         for share in np.linspace(0.0, 1.0, max(LEAST, ceil(FLIGHT * FPS * lasts / longest)) + 1)[1:].tolist():
-            now = begin.flown(share * lasts, *pull) if free else _between(begin, end, share, shape)
-            yield _Frame(now, number, "" if free else TURNED)
+            now = begin.flown(share * lasts, *pull) if free else _between(begin, end, share)
+            lies = shape.corners[shape.lowest(now.alpha)].arms(now.alpha)[1]
+            height = max(now.height, lies) if free else lies
+            yield _Frame(now._replace(height=height), number, "" if free else TURNED)
 
 
-def _between(begin: State, end: State, share: float, shape: Outline) -> State:
-    """Return a body that lies on the barrier, a share of the way from one state to another."""
-    alpha, along = (
-        (1.0 - share) * one + share * other
-        for one, other in ((begin.alpha, end.alpha), (begin.along, end.along))
-    )
-    height = shape.corners[shape.lowest(alpha, end.alpha - begin.alpha)].arms(alpha)[1]
-    time = (1.0 - share) * begin.time + share * end.time
-    return begin._replace(time=time, height=height, along=along, alpha=alpha)
+def _between(begin: State, end: State, share: float) -> State:
+    """Return a body a share of the way from one state to another."""
+    return State(*((1.0 - share) * one + share * other for one, other in zip(begin, end, strict=True)))
 
 
 def _drawn(

@@ -16,12 +16,18 @@ from rigid.strikes import outline
 FALL = {"impact.slope": "0 deg", "impact.angle": "75 deg", "impact.v_t": "0 m/s", "restitution": 0.5}
 
 
-@pytest.fixture(scope="module")
-def followed():
-    scene = replace_all(load("quick"), FALL | {"impact.until": "4 strikes", "surface.friction": 0.3})
+def film(**changes):
+    scene = replace_all(
+        load("quick"), FALL | {"impact.until": "4 strikes", "surface.friction": 0.3} | changes
+    )
     shape = outline(scene.projectile.rigid_body)
     each = simulate(scene, "rigid").strikes.each
     return each, shape, list(path._course(each, shape, (GRAVITY, 0.0)))
+
+
+@pytest.fixture(scope="module")
+def followed():
+    return film()
 
 
 def test_the_body_touches_at_its_strikes_and_lies_over_the_barrier_between_them(followed):
@@ -32,6 +38,12 @@ def test_the_body_touches_at_its_strikes_and_lies_over_the_barrier_between_them(
     assert len(held) == len(each) * round(path.HELD * FPS)
     assert max(placed(body_line(shape), one.state)[:, 1].min() for one in held) < 2e-5
     assert max(heights) > 1e-4  # it flies
+
+
+def test_a_body_that_pivots_lies_on_the_barrier_and_the_film_says_so():
+    _, shape, frames = film(**{"restitution": 0.0, "impact.angle": "40 deg", "surface.friction": 0.6})
+    assert any(one.words == path.TURNED for one in frames)
+    assert max(abs(placed(body_line(shape), one.state)[:, 1].min()) for one in frames) < 2e-5
 
 
 def test_a_flight_ends_where_the_next_strike_begins_and_is_shortened(followed):
