@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import takewhile
 from math import copysign, exp, log, pi, radians
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -121,16 +121,9 @@ def with_spread(case: Case, strikes: Strikes, coarser: Strikes | None = None) ->
 
 
 def _without(strikes: Strikes, why: Unknown) -> Strikes:
-    return replace(
-        strikes,
-        certain=why,
-        spread=why,
-        holds=why,
-        hardest_agree=why,
-        friction_half=why,
-        other_end_low=why,
-        other_end_high=why,
-    )
+    told = "certain", "spread", "holds", "hardest_agree", "friction_half", "other_end_low", "other_end_high"
+    unknown: dict[str, Any] = dict.fromkeys(told, why)
+    return replace(strikes, **unknown)
 
 
 def _each(case: Case, own: Sequence[StrikeRecord], coarser: Sequence[StrikeRecord]) -> list[Known]:

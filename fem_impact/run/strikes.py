@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING
 
 from fem_impact.case.bodies import LaterStrike
 from fem_impact.case.effects.registry import AUTO
-from fem_impact.outcome.keys import Num, Unknown, known
-from fem_impact.outcome.record import Outcome
+from fem_impact.outcome.keys import Num, Unknown, unknown
 from fem_impact.outcome.strikes import StrikeRecord, Strikes
 from fem_impact.physics.contact import ContactPair
 from fem_impact.run.common import rod_flows
@@ -39,7 +38,6 @@ if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
 
 BESIDE = 1e-6  # rad from the end of a corner's inclinations, at which it touches alone
-ONE_PATH = Unknown("only one path was computed")
 NO_FORCE = Unknown("a rigid impact without duration has no force")
 FINISHED = {
     Finish.RESTS: "It rests.",
@@ -145,16 +143,6 @@ class Followed:
         self.level += sum(one.before.line > 0.0 for one in found.strikes)
         self.lossless += sum(one.e_energetic == 1.0 for one in found.strikes)
         return found.end, found.finish
-
-    def after(self, outcome: Outcome) -> State:
-        """Return the motion after the impact of an outcome, whose contact turns the body by its mean spin."""
-        scene, motion = self.case.scene, outcome.motion
-        contacts = known(outcome.contact.intervals)
-        lasts = contacts[-1].end if contacts else 0.0
-        turn = 0.5 * lasts * (scene.impact.omega + known(motion.Omega))
-        V_n, V_t = known(motion.V_n) - scene.barrier.v_n, known(motion.V_t) - scene.barrier.v_t
-        begin = self.touching(scene.impact.angle + turn, V_n, V_t, known(motion.Omega))
-        return begin._replace(time=lasts, along=0.5 * lasts * (scene.relative.v_t + V_t))
 
     def doubts(self) -> tuple[str, ...]:
         """Return what is to be told of restitutions that follow from the law of a round contact."""
@@ -271,7 +259,8 @@ class Followed:
         sums["friction"] += self.heat
         sums["damping"] += damped
         left, E_0 = self.kinetic(end) + vibration, each[0].before
-        return Strikes(
+        return replace(
+            unknown(Strikes, "only one path was computed"),
             until=case.scene.impact.until,
             each=each,
             end=finish.value,
@@ -282,13 +271,6 @@ class Followed:
             hardest_force=_hardest([one.force for one in each]),
             hardest_heat=_hardest([one.friction for one in each]),
             other_end=other_end(each, case.contact.body.length),
-            certain=ONE_PATH,
-            spread=ONE_PATH,
-            other_end_low=ONE_PATH,
-            other_end_high=ONE_PATH,
-            hardest_agree=ONE_PATH,
-            friction_half=ONE_PATH,
-            holds=ONE_PATH,
             gravity=self.gravity,
             **sums,
             settled=self.settled,
