@@ -36,6 +36,11 @@ def by_worker(work: Sequence[Work], workers: int) -> list[Sequence[Work]]:
     return [work[0::2], work[1::2]] if workers > 1 and len(work) > 1 else [work]
 
 
+def turns(runs: int, workers: int) -> int:
+    """Return how many of so many runs the busiest process does."""
+    return max(map(len, by_worker(range(runs), workers)))
+
+
 def longest_s(times: Sequence[float], workers: int) -> float:
     """Return the time, s, of the process that is busy longest."""
     return max(map(sum, by_worker(times, workers)))

@@ -19,9 +19,9 @@ from itertools import pairwise
 from math import ceil
 from pathlib import Path
 
-from fem_impact.answers.refine.budget import LONGER, about_s, in_turns, longest_s
+from fem_impact.answers.refine.budget import LONGER, about_s, in_turns, longest_s, turns
 from fem_impact.answers.refine.extrapolate import UNRESOLVED, level_limits, quantity_limits
-from fem_impact.answers.refine.forecast import MIDDLE, LevelProgress, now, require_pilot
+from fem_impact.answers.refine.forecast import MIDDLE, LevelProgress, OverBudgetError, now, require_pilot
 from fem_impact.answers.refine.level import STAMP, LevelRun, simulate_level
 from fem_impact.answers.refine.level_meshes import LevelMeshes, steps_between
 from fem_impact.answers.refine.quantities import TARGETED
@@ -243,15 +243,11 @@ class LevelChain:
         """Runs of the next level."""
         return 2 if self.twin else len(self._offsets)
 
-    def _turns(self, runs: int) -> int:
-        """Return how many of so many runs the busier of the workers does."""
-        return ceil(runs / self.workers)
-
     def forecast_s(self, splits: int) -> float:
         """Return about the wall time, s, of a level whose mesh is not made yet, from that of the last one."""
         last = self.done[-1]
-        one = last.wall_s / (1 + last.repeats) / self._turns(len(last.outcomes))
-        return float(one * MIDDLE ** (splits - last.splits) * self._turns(self._runs))
+        one = last.wall_s / (1 + last.repeats) / turns(len(last.outcomes), self.workers)
+        return float(one * MIDDLE ** (splits - last.splits) * turns(self._runs, self.workers))
 
     def _sharing(self, scene: Scene) -> list[Scene]:
         """Return the scenes that run on one mesh: a scene at places of the grid, or beside its twin."""
@@ -271,31 +267,37 @@ class LevelChain:
         if last:
             scene = replace(scene, save=self.scene.save)
         scenes, begun, room = self._sharing(scene), now(), 1.0
+        kept: LevelRun | None = None
         for repeats in range(MOST_REPEATS + 1):
             planned = [] if self.done or repeats else [self.meshes.pilot]
             cases = planned + [Case.of(one, "solid", before) for one in scenes[len(planned) :]]
-            runs = in_turns(
-                [
-                    partial(simulate_level, case, self._options(splits, repeats, number, begun))
-                    for number, case in enumerate(cases)
-                ],
-                self.workers,
-            )
-            record = together([record for _, record in runs])
-            ended = all(outcome.validity.finished for outcome, _ in runs)
+            work = [
+                partial(simulate_level, case, self._options(splits, repeats, number, begun))
+                for number, case in enumerate(cases)
+            ]
+            try:
+                runs = in_turns(work, self.workers)
+            except OverBudgetError as late:  # what ended in smaller zones is better than a coarser level
+                if kept is None:
+                    raise
+                level = replace(kept, wall_s=now() - begun, late=str(late))
+                break
+            outcomes, record = tuple(one for one, _ in runs), together([found for _, found in runs])
+            ended = all(outcome.validity.finished for outcome in outcomes)
+            size = contact_edge(cases[0].bodies)  # as it came out, which is not always as asked for
+            # without a first compilation of the kernels, and with what ran before an interruption
+            took_s = (1 + repeats) * longest_s([one.cost.whole_wall for one in outcomes], self.workers)
+            level = LevelRun(splits, size, tuple(cases), outcomes, record, took_s, repeats)
             zones = cases[0].zones
             if record.crushed and zones.skin_rows + zones.rod_rows and repeats < MOST_REPEATS:
                 before = replace(before, crushed=True)  # again, without thin rows and columns
                 continue
             if not record.left or record.crushed or (ended and not last) or repeats == MOST_REPEATS:
                 break
-            known, room = replace(record if ended else known, crushed=before.crushed), 2.0 * room
+            known, kept = (record, level) if ended else (known, kept)
+            known, room = replace(known, crushed=before.crushed), 2.0 * room
             before = known.wider(room)  # a record has the room of a first run
-        size = contact_edge(cases[0].bodies)  # as it came out, which is not always as asked for
-        outcomes = tuple(outcome for outcome, _ in runs)
-        # without a first compilation of the kernels, and with what ran before an interruption
-        took_s = (1 + repeats) * longest_s([one.cost.whole_wall for one in outcomes], self.workers)
-        self.done.append(LevelRun(splits, size, tuple(cases), outcomes, record, took_s, repeats))
+        self.done.append(level)
 
     def _place(self, number: int, repeats: int, run: int = 0) -> Path:
         """Return the directory of a run of a level, both counted, run again so often with more room."""
@@ -318,7 +320,7 @@ class LevelChain:
             before = self.done[-1].outcome.cost
             progress.duration_s = known(before.steps) * known(before.min_step)
             progress.halvings = [fine - coarse for coarse, fine in pairwise([splits, *later])]
-            progress.turns = self._turns(self._runs)
+            progress.turns = turns(self._runs, self.workers)
         return replace(self.options, out=out, progress=progress)
 
     def _stated(self) -> Outcome:

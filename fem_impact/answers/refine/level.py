@@ -35,6 +35,7 @@ class LevelRun:
     record : what they found together
     wall_s : wall time, s, of all its runs
     repeats : how often it ran again with more room
+    late : why another repeat has no outcome, where the budget did not hold it
     """
 
     splits: int
@@ -44,6 +45,7 @@ class LevelRun:
     record: ContactRecord
     wall_s: float
     repeats: int = 0
+    late: str = ""
 
     @property
     def outcome(self) -> Outcome:
@@ -55,7 +57,10 @@ class LevelRun:
         """Say that contact or flow left its zones, empty where they did not."""
         if not self.record.left:
             return ""
-        return f"Contact or flow left the zones held ready, after {self.repeats} repeats with more room."
+        again = f" Another repeat has no outcome. {self.late}" if self.late else ""
+        return (
+            f"Contact or flow left the zones held ready, after {self.repeats} repeats with more room.{again}"
+        )
 
     @property
     def narrow(self) -> str:

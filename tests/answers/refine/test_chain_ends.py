@@ -6,6 +6,7 @@ import pytest
 
 from fem_impact.answers.refine import level as level_module
 from fem_impact.answers.refine.chain import LevelChain
+from fem_impact.answers.refine.forecast import OverBudgetError
 from fem_impact.answers.simulate import simulate
 from fem_impact.case.case import Case
 from fem_impact.errors import ResultError, RunError, SceneError
@@ -81,6 +82,30 @@ def test_each_repeat_has_twice_the_room_of_the_one_before(level, monkeypatch):
     levels._run_level(2)
     assert levels.done[-1].repeats == 2
     assert rooms == [(k * level.record.rod.reach, k * level.record.barrier.spread) for k in (1.0, 2.0, 4.0)]
+
+
+@pytest.mark.parametrize("ends", [True, False])
+def test_what_left_its_zones_counts_where_the_budget_holds_no_repeat(level, ends, monkeypatch):
+    ran = []
+
+    def left(scene, fidelity, options, case):
+        ran.append(scene)
+        if len(ran) > 1:
+            raise OverBudgetError("It was given up.")
+        validity = replace(level.outcome.validity, finished=ends)
+        return replace(level.outcome, validity=validity), replace(level.record, left=True)
+
+    monkeypatch.setattr(level_module, "simulate_recorded", left)
+    levels = LevelChain(Case(QUICK), done=[level])
+    if not ends:
+        with pytest.raises(OverBudgetError):
+            levels._run_level(2)
+        return
+    levels._run_level(2)
+    assert levels.done[-1].repeats == 0 and levels.done[-1].outcome == level.outcome
+    assert levels.done[-1].left.endswith(
+        "after 0 repeats with more room. Another repeat has no outcome. It was given up."
+    )
 
 
 def test_a_level_whose_thin_rows_are_crushed_runs_again_without_them(level, monkeypatch):
