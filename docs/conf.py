@@ -16,6 +16,7 @@ extensions = [
     "sphinx_gallery.gen_gallery",
     "program_tables",
     "mathml",
+    "described",
 ]
 myst_enable_extensions = ["colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 4
