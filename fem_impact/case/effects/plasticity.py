@@ -13,8 +13,9 @@ from fem_impact.scene.material import Material, RambergOsgoodFlow, TableFlow
 DEEP = 1.6  # peak Hertz pressure over yield stress at first yield, below the surface (Johnson 1985, eq 6.9)
 SOURCE = (
     "first yield of a Hertzian contact below the surface (Johnson 1985, eq 6.9) or, with friction, on it "
-    "(sec 7.1); the other body's limit pressure 2.8 sigma_y caps the pressure"
+    "(sec 7.1); the other body's limit pressure, 2.8 times its strength, caps the pressure"
 )
+HARDEST = 1.0  # plastic strain that no dent of a slender body exceeds by much: the largest seen is .95
 
 
 def first_yield_ratio(pair: ContactPair, material: Material, other: Material) -> float:
@@ -48,11 +49,11 @@ def _peak(pair: ContactPair, other: Material) -> float:
 def strength_of(material: Material) -> float:
     """Return the larger of yield and ultimate stress, Pa, infinite of a material that never yields.
 
-    Without an ultimate stress it is the flow stress at the strain of a hardness test.
+    Without an ultimate stress it is the flow stress at the plastic strain `HARDEST`.
     """
     if not material.yields or material.ultimate_stress < inf:
         return max(material.yield_stress, material.ultimate_stress)
-    return float(hardening_of(material).flow_stress(hardening.TABOR_STRAIN))
+    return float(hardening_of(material).flow_stress(HARDEST))
 
 
 def hardening_of(material: Material) -> hardening.HardeningLaw:
