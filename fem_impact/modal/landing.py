@@ -16,6 +16,7 @@ from fem_impact.physics.contact import FLAT, ContactPair
 from fem_impact.physics.flow_law import FULLY_PLASTIC, REPRESENTATIVE, FlowLaw, flow_law
 from fem_impact.scene.material import Material
 
+LEANS = 0.25  # rise over length beyond which a straight part that touches with an end does not land flat
 ON_SIDE = 0.25 * pi  # stiffness of a side over E* times its length (Popov 2010)
 RIGID = 1e-9  # share of the contact's give that a barrier which gives nothing is taken to have
 
@@ -26,16 +27,24 @@ def lay_flat(
     """Lay a straight part with an end at a site along the barrier, if its other end is as near.
 
     It is where its middle lies within `FLAT` depths of the contact of its end (``pair``), over a surface that
-    neither end has touched. Returns both sites and the stiffness of the whole, N/m; None where nothing is.
+    neither end has touched, and it rises by less than `LEANS` of its length; of two parts that meet there the
+    one that leans less. Returns both sites and the stiffness of the whole, N/m; None where nothing is.
     """
     count, free = len(rod.sites.along_t), held.flats.law[:, LAW.known] == 0.0
     turn, depth = float(now.rigid[AT.turn]), pair.estimate.depth
-    for other in ((s + 1) % count, (s - 1) % count):
-        if other == s or held.site[s, SITE.known] or held.site[other, SITE.known] or not free.any():
+    low, place = height_of(rod, now, s), np.array(skin(rod.sites, s, turn))
+
+    def lean(other: int) -> float:
+        """Return how far the part to another site rises over its length."""
+        part = float(np.linalg.norm(np.array(skin(rod.sites, other, turn)) - place))
+        return (height_of(rod, now, other) - low) / part
+
+    for other in sorted({(s + 1) % count, (s - 1) % count} - {s}, key=lean):
+        if held.site[s, SITE.known] or held.site[other, SITE.known] or not free.any():
             continue
-        gap = height_of(rod, now, other) - height_of(rod, now, s)
+        gap = height_of(rod, now, other) - low
         ends = [in_body(case, *skin(rod.sites, k, turn)) for k in (s, other)]
-        if gap <= 2 * FLAT * depth and _is_straight(case, ends, depth):
+        if lean(other) < LEANS and gap <= 2 * FLAT * depth and _is_straight(case, ends, depth):
             f = int(np.argmax(free))
             held.flats.ends[f] = s, other
             flow = flow_law(pair, case.slots.rod_law, case.slots.barrier_law)
