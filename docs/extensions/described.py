@@ -14,8 +14,8 @@ def describe(app, what, name, obj, options, lines):
         if line and not line.strip("-"):
             inside = lines[at - 1] in SECTIONS
         entry = ENTRY.fullmatch(line) if inside else None
-        indented = following.startswith("    ")
-        if entry and (not following.lstrip()[0].isupper() if indented else " " in entry[2]):
+        sentences = re.match(" {4} *[A-Z]", following)
+        if entry and " " in entry[2] and not sentences:
             found += [entry[1], f"    {entry[2]}"]
         else:
             found.append(line)
