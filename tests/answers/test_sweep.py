@@ -560,7 +560,7 @@ def test_a_wrong_column_is_answered_with_the_nearest_before_a_directory_is_made(
     line = ("sweep", "t5b", "--vary", "impact.angle=15,20deg")
     code, out, err = cli(*line, "--columns", "mu,flash_temprature")
     assert (code, out) == (2, "")
-    assert 'columns = "flash_temprature"' in err and "Did you mean flash_temperature_K?" in err
+    assert '--columns "flash_temprature"' in err and "Did you mean flash_temperature_K?" in err
     assert not Path("results").exists()
     code, out, _ = cli(
         *line, "--columns", "mu, E_r_over_E_0", "--fidelity", "rigid", "--workers", "1", "--quiet"
