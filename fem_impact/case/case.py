@@ -70,7 +70,7 @@ class Case:
         """
         if fidelity not in FIDELITIES:
             hint = did_you_mean(fidelity, FIDELITIES, f"Use one of {', '.join(FIDELITIES)}.")
-            raise UsageError("is not a fidelity.", key="fidelity", value=fidelity, remedy=hint)
+            raise UsageError("is not a fidelity.", key="fidelity=", value=fidelity, remedy=hint)
         case = cls(scene, fidelity, record)
         require_crushing_named(scene)
         limits.require_still(scene.barrier, fidelity)

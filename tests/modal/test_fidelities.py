@@ -191,7 +191,7 @@ def test_restitution_is_a_key_of_the_scene():
 
 
 def test_an_unknown_fidelity_is_refused():
-    with pytest.raises(UsageError, match=r'fidelity = "modl": is not a fidelity. Did you mean modal\?'):
+    with pytest.raises(UsageError, match=r'fidelity="modl": is not a fidelity. Did you mean modal\?'):
         simulate(load("t5b"), "modl")
 
 
