@@ -74,6 +74,11 @@ def end_of(
     """
     builder = _Builder(line, half, across, bore, closed)
     score, cut, plain = builder.best()
+    if not score >= POOR:  # where a chamfer ends there may be room that there is not where it begins
+        late = replace(builder, late=True)
+        score, cut, plain, builder = max(
+            (score, cut, plain, builder), (*late.best(), late), key=lambda of: of[0]
+        )
     if plain is None or not score >= POOR:
         if np.isfinite(closed) and replace(builder, closed=np.inf).best()[0] >= POOR:
             raise ClosedEndError(closed)
@@ -122,6 +127,7 @@ class _Builder:
     across: int
     bore: FloatArray | None
     closed: float
+    late: bool = False
 
     def best(self) -> tuple[float, int, ShapeEnd | None]:
         """Return the score of the best nose grid, the vertex of the line at which it ends, and the grid."""
@@ -136,6 +142,8 @@ class _Builder:
         pitch = 2.0 * shape.radius / self.across
         on_nose = near is not None and near[1] <= shape.height
         split = shape.shoulder(near if on_nose else None, pitch / 2**levels)
+        if self.late:
+            split = next((float(arc) for arc in shape.extended(line[-1, 1]).corners() if arc > split), split)
         corner = inner_corner(shape, split, self.half.plug)
         start = max(shape.height + pitch, float(corner[1]) + 1.5 * pitch, 2.0 * shape.radius / 3.0)
         disc = self.closed < start + 0.5 * pitch

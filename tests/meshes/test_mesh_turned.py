@@ -312,3 +312,9 @@ def test_a_random_profile_is_meshed_without_folds_or_refused(line, across):
     skin = body.mesh.points[body.mesh.faces_with(SKIN)]
     # every face of the skin lies at the surface: within the sagitta of the polygon and the slices' pitch
     assert np.hypot(skin[..., 0], skin[..., 1]).max() < 1.08 * line[:, 0].max()
+
+
+@pytest.mark.parametrize("chamfer", np.arange(0.01, 0.31, 0.02))
+def test_a_pin_with_a_chamfer_of_45_degrees_of_any_size_is_meshed_with_eight_cells_across(chamfer):
+    line = 4e-3 * np.array([[0, 0], [1 - chamfer, 0], [1, chamfer], [1, 20]])
+    assert quality(meshes.turned(line, 8).mesh).min_scaled_jacobian > 0.2
