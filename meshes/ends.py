@@ -143,7 +143,7 @@ class _Builder:
         on_nose = near is not None and near[1] <= shape.height
         split = shape.shoulder(near if on_nose else None, pitch / 2**levels)
         if self.late:
-            split = next((float(arc) for arc in shape.extended(line[-1, 1]).corners() if arc > split), split)
+            split = float(shape.arc[-1])
         corner = inner_corner(shape, split, self.half.plug)
         start = max(shape.height + pitch, float(corner[1]) + 1.5 * pitch, 2.0 * shape.radius / 3.0)
         disc = self.closed < start + 0.5 * pitch
