@@ -12,9 +12,8 @@ from fem_impact.modal.motion import AT, SITE, ModalState, Touched
 from fem_impact.modal.rod import ModalRod
 from fem_impact.modal.sites import skin
 from fem_impact.modal.touch import LAID
-from fem_impact.physics.contact import FLAT, ContactPair
+from fem_impact.physics.contact import FLAT, ContactPair, impedance
 from fem_impact.physics.flow_law import FULLY_PLASTIC, REPRESENTATIVE, FlowLaw, flow_law
-from fem_impact.scene.material import Material
 
 LEANS = 0.25  # rise over length beyond which a straight part that touches with an end does not land flat
 ON_SIDE = 0.25 * pi  # stiffness of a side over E* times its length (Popov 2010)
@@ -78,17 +77,6 @@ def flexibility(case: Case) -> float:
     """Return (1 - nu^2) / E of the barrier, 1/Pa; 0 of a rigid one."""
     pair = case.contact
     return (1 - pair.barrier.nu**2) / pair.barrier.E if pair.compliant else 0.0
-
-
-def impedance(metal: Material) -> float:
-    """Return rho V, Pa s/m, of a half-space under a flat part; V = 3.4 c_s / (pi (1 - nu)) is Lysmer's.
-
-    Examples
-    --------
-    >>> round(impedance(Material("steel", 210e9, 0.3, 7850.0)) / (7850.0 * 3208.0), 2)
-    1.55
-    """
-    return 3.4 / (pi * (1 - metal.nu)) * sqrt(metal.rho * metal.E / (2 * (1 + metal.nu)))
 
 
 def _roundness(rod: ModalRod, s: int, turn: float) -> float:

@@ -292,3 +292,14 @@ def section_frequency(metal: Material, diameter: float) -> float:
     Such modes are local; their compliance under a point load is part of the contact law.
     """
     return SECTION * shear_speed(metal) / (diameter / 2)
+
+
+def impedance(metal: Material) -> float:
+    """Return rho V, Pa s/m, of a half-space under a flat part; V = 3.4 c_s / (pi (1 - nu)) is Lysmer's.
+
+    Examples
+    --------
+    >>> round(impedance(Material("steel", 210e9, 0.3, 7850.0)) / (7850.0 * 3208.0), 2)
+    1.55
+    """
+    return 3.4 / (pi * (1 - metal.nu)) * sqrt(metal.rho * metal.E / (2 * (1 + metal.nu)))

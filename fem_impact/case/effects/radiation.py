@@ -1,19 +1,26 @@
 """Waves that leave through the outer boundary of a meshed barrier, by dashpots beside its springs."""
 
+from math import sqrt
+
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.effects.slots import Effect, ModelSpec
 from fem_impact.errors import SceneError
+from fem_impact.physics.contact import impedance
 
 
 def number(bodies: Bodies) -> float:
     """Return the share of the normal energy that an elastic impact radiates into a half-space (Hunter).
 
+    Of a part that lands flat it is at most that of a bar on a dashpot with the impedance of the half-space.
     Nothing leaves a block with fixed faces, and what leaves a plate that bends are bending waves.
     """
     if bodies.barrier.boundary == "fixed" or bodies.barrier.bends:
         return 0.0
-    plate = bodies.barrier.material
-    return float(1.127 * (bodies.contact.approach / (plate.E / plate.rho) ** 0.5) ** 0.6)
+    plate, pair = bodies.barrier.material, bodies.contact
+    if pair.lands_flat:
+        bar, ground = sqrt(pair.rod.E * pair.rod.rho), impedance(plate)
+        return 4 * bar * ground / (bar + ground) ** 2
+    return float(1.127 * (pair.approach / (plate.E / plate.rho) ** 0.5) ** 0.6)
 
 
 def fill(bodies: Bodies, spec: ModelSpec) -> None:
@@ -45,9 +52,10 @@ EFFECT = Effect(
     "radiation",
     "Waves leave the barrier block through its outer boundary.",
     "Waves stay in the barrier block.",
-    "1.127 (v_n/c0)^0.6, radiated share of an elastic strike",
+    "1.127 (v_n/c0)^0.6, radiated share of an elastic strike; of a part that lands flat the most it can be",
     0.01,
-    "Hunter 1957, J. Mech. Phys. Solids 5, 162; a share w of the normal energy changes e by about w",
+    "Hunter 1957, J. Mech. Phys. Solids 5, 162; of what lands flat, 4 Z z / (Z + z)^2 of the "
+    "impedances of bar and half-space (Gazetas 1991); a share w of the normal energy changes e by about w",
     number,
     fill,
     needs=("barrier-elastic", "barrier-elastoplastic"),

@@ -171,3 +171,20 @@ def test_thresholds_are_those_that_the_page_names():
         "contact-heating": 0.1,
         "contact-loss": 0.02,
     }
+
+
+def test_what_lands_flat_sends_waves_into_the_barrier_however_slow_it_comes():
+    """Steel on steel: a bar has rho c = 40.6, the half-space 1.55 rho c_s = 39.0 MPa s/m: nearly matched."""
+    flat = replace_all(
+        load("t5b"),
+        {
+            "projectile.tip": "plain",
+            "projectile.tip_radius": "0 mm",
+            "impact.angle": "0 deg",
+            "impact.v_n": "-0.1 m/s",
+        },
+    )
+    assert number(flat, "radiation") == pytest.approx(1.0, abs=0.01)
+    tilted = changed(flat, "impact.angle", "20 deg")
+    assert number(tilted, "radiation") < 0.01
+    assert ("radiation" in Case(flat).active, "radiation" in Case(tilted).active) == (True, False)
