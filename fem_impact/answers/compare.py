@@ -1,7 +1,5 @@
 """Computed against measured quantities of a measured set, with computed energies that cannot be measured."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """What the interval of friction changes of a run's numbers, by the same or a quicker model."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 

@@ -1,7 +1,5 @@
 """What a printed hardness says of a hardened layer: all pairs of factor and depth that meet it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import inf

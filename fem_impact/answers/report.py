@@ -3,8 +3,6 @@
 A study of `fem_impact.evidence` makes such a report from its results; so do `sweep` and `cost`.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Simulate a scene as a user asks for it: on levels of meshes, on one mesh, or without a mesh."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from fem_impact.answers.refine.chain import BUDGET, LevelChain

@@ -1,7 +1,5 @@
 """Errors of a model beside measurements in the terms of ASME V&V 20, of one number and of several at once."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from math import hypot
 

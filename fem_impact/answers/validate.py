@@ -7,8 +7,6 @@ varied in the reduced or the rigid model, which takes milliseconds, or in the fi
 that of the fidelity asked for.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace

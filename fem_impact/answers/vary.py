@@ -1,7 +1,5 @@
 """Values of a sweep, with units, and the scenes that all their combinations make."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass

@@ -3,8 +3,6 @@
 Element matrices are assembled in batches and never stored all at once.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise

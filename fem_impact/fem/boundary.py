@@ -9,8 +9,6 @@ moves as under a static load, and plain dashpots take nearly twice the energy th
 a slow force (Lamb's problem), however large the block. `radiating_share` is the factor that corrects them.
 """
 
-from __future__ import annotations
-
 from math import pi, sqrt
 
 import numpy as np

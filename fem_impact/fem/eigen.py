@@ -1,7 +1,5 @@
 """The rod's stiffness over its mass points, which do not lie at the nodes, and its elastic eigenmodes."""
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Element operators of the eight-node hexahedron, from the weak forms."""
 
-from __future__ import annotations
-
 from typing import Any, Literal
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Split of the rod's motion into a rigid and a vibrating part, and its exact free flight."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

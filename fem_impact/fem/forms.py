@@ -11,8 +11,6 @@ t is a traction, Pa. Parameters of a form are attributes of its last argument ``
 Cells are trilinear, integrated at 2 x 2 x 2 Gauss points. Masses, springs and dashpots are lumped: row sums.
 """
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Meshes of a scene in the barrier frame, with their fine zones."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import cos, sin, sqrt

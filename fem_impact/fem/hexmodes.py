@@ -5,8 +5,6 @@ Working with the modes a1..a7 instead of eight nodes halves the arithmetic of an
 holds one number for each of ``LANES`` elements, so that the compiler turns lanes into vector registers.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from fem_impact.arrays import Array

@@ -1,7 +1,5 @@
 """Decorators of the compiled kernels, and the cache of their machine code."""
 
-from __future__ import annotations
-
 import hashlib
 import os
 import time

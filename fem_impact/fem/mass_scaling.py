@@ -6,8 +6,6 @@ selective mass scaling, node by node; Olovsson, Simonsson and Unosson 2005, doi:
 rod gains in small cells is taken off its larger ones, so that its mass, centre and moment of inertia stay.
 """
 
-from __future__ import annotations
-
 from math import sqrt
 
 import numpy as np

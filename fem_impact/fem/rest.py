@@ -1,7 +1,5 @@
 """What a free barrier has beside its meshed block: a rigid body of all the mass and inertia left."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

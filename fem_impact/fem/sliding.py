@@ -1,7 +1,5 @@
 """The factor of friction at a sliding speed, within compiled loops."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from fem_impact.arrays import Array

@@ -1,7 +1,5 @@
 """The stable step of an assembled body, and a measure of how a deforming element lowers it."""
 
-from __future__ import annotations
-
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray

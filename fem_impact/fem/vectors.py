@@ -22,8 +22,6 @@ How numba's ``intrinsic`` works: the function gets the numba types of its argume
 ``result(argument, ...)``, and a function that appends instructions through an `llvmlite.ir.IRBuilder`.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from llvmlite import ir

@@ -1,7 +1,5 @@
 """Pictures for a page with hover and zoom: traces and layouts in Plotly's format, as plain JSON values."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

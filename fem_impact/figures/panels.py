@@ -3,8 +3,6 @@
 A `Picture` is described once; `still` draws it as SVG or PNG, `live` for a page with hover and zoom.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Literal

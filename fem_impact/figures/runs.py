@@ -1,7 +1,5 @@
 """Pictures of runs: force and energies over time, waves, shares of E_0, model beside measurement."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path

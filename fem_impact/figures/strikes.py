@@ -1,7 +1,5 @@
 """Pictures of a body that strikes on: its path with the strikes, and where its energy went."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from itertools import pairwise
 from math import ceil

@@ -1,7 +1,5 @@
 """What lies where in a frame of a film, in pixels: one rod with its close-up, or several side by side."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from fem_impact.errors import UsageError

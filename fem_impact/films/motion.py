@@ -1,7 +1,5 @@
 """Positions and colours of each frame, with magnification and ranges fixed over the whole film."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple

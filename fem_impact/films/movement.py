@@ -1,7 +1,5 @@
 """Rod and barrier at any time of a film, and the times that a film shows."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import lru_cache

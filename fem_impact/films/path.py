@@ -1,7 +1,5 @@
 """Film of a body from its first strike to its last, flights shortened: its outline over the barrier."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from math import ceil, cos, sin

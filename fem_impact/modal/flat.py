@@ -12,8 +12,6 @@ depths of both sites, by its share of the way; its force acts on them by the sam
 moment and work are those of the cell.
 """
 
-from __future__ import annotations
-
 from math import sqrt
 from typing import NamedTuple, Self
 

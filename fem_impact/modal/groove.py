@@ -14,8 +14,6 @@ doi:10.1098/rspa.1959.0114). T is at most f q and 2 b k. What the tip ploughs up
 that the contact grows.
 """
 
-from __future__ import annotations
-
 from math import atan, exp, log, pi, sqrt
 from typing import NamedTuple
 

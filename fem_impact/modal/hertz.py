@@ -1,7 +1,5 @@
 """The contact that does not yield: Hertz' with a row of tangential springs, and perhaps a viscous part."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from fem_impact.fem.kernels import inlined

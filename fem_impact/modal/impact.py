@@ -1,7 +1,5 @@
 """One impact by modes and a local contact law."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Whether a straight part of the rod lands flat as one of its ends touches, and the law that it then gets."""
 
-from __future__ import annotations
-
 from math import cos, pi, sin, sqrt
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The contact laws of a site, made when it touches: from the attitude of the rod and its speed there."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from math import cos, pi, sin, sqrt
 

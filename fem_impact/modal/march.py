@@ -6,8 +6,6 @@ Any number of sites of the rod may touch at once, each with a contact of its own
 Hertz' with friction where nothing yields, else a `fem_impact.modal.groove`.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from fem_impact.arrays import Array

@@ -1,7 +1,5 @@
 """What moves in the march of the reduced model, what it is given and what it leaves: named tuples."""
 
-from __future__ import annotations
-
 from typing import NamedTuple, Self
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Which places of the rod touched, how wide and how deep: the sites of contact of an impact."""
 
-from __future__ import annotations
-
 from math import cos, sin, sqrt
 
 import numpy as np

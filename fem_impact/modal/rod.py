@@ -1,7 +1,5 @@
 """The rod as its contact sees it: rigid motion, elastic modes, and how each moves the contact point."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import pi, sqrt

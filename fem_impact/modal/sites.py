@@ -1,7 +1,5 @@
 """Where the rod may touch: the rounds of its outline, turned to the attitude of its first contact."""
 
-from __future__ import annotations
-
 from math import pi
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Where each site of the rod is, whether it touches, and with which force: the contact side of a step."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from fem_impact.arrays import Array

@@ -1,7 +1,5 @@
 """Checks of a record: its JSON Schema and further rules; error messages name file, key and value."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Mapping
 from functools import cache

@@ -1,7 +1,5 @@
 """What an outcome holds, group by group."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from fem_impact.outcome.keys import Num, Unknown, group, key, or_none, part, share

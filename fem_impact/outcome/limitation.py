@@ -1,7 +1,5 @@
 """What limits trust in a record: sentences, each with the kind of its cause."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Literal
 

@@ -1,7 +1,5 @@
 """Shares of E_0 after an impact and accounts of the energy ledger over time, with labels and colours."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Literal
 

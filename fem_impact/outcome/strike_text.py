@@ -1,7 +1,5 @@
 """What is told of strikes in words and as a table."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from math import degrees
 

@@ -1,7 +1,5 @@
 """One page over all studies of a folder, its Markdown twin, and the verdicts on the paper's conclusions."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from html import escape

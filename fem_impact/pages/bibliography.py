@@ -1,7 +1,5 @@
 """The one bibliography of program and documentation: BibTeX entries, each with what rests on it."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The projectile of a case as a picture: its section, or its mesh."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from fem_impact.case.case import Case

@@ -1,7 +1,5 @@
 """HTML elements, and the page around the sections with embedded figures, films and data files."""
 
-from __future__ import annotations
-
 import base64
 import gzip
 import hashlib

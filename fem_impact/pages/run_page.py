@@ -1,7 +1,5 @@
 """The report of one run, and the verdict on a scene as a page to print and sign."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterable, Sequence
 from dataclasses import replace

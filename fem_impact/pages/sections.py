@@ -1,7 +1,5 @@
 """Sections that the reports share, and model beside measured tests."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 from pathlib import Path

@@ -1,7 +1,5 @@
 """One page of a run to print on A4 and sign: drawing, verdict, numbers with errors, inputs with sources."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 

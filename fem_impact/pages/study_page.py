@@ -1,7 +1,5 @@
 """The report of a study: its study.json read and checked, its findings, its runs."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass

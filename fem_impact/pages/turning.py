@@ -1,7 +1,5 @@
 """A run in three dimensions, to be turned and played in a browser: one page that needs nothing else."""
 
-from __future__ import annotations
-
 import base64
 from pathlib import Path
 from typing import Any

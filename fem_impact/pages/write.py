@@ -1,7 +1,5 @@
 """Reports and films of finished runs and studies, written one by one or in parallel."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from concurrent.futures import BrokenExecutor, Executor, Future
 from contextlib import nullcontext

@@ -1,7 +1,5 @@
 """The outcome of an impact from how it ended, the same for every fidelity, and how far to trust it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from math import cos

@@ -1,7 +1,5 @@
 """Groups of an outcome that every fidelity fills in the same way: motion, coefficients, heat."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from math import cos, hypot, inf, sin
 

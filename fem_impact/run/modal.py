@@ -1,7 +1,5 @@
 """From a modal impact to the outcome."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

@@ -8,8 +8,6 @@ what the others let expect of it, and the `HELD` quantile over the scenes is tol
 only that the scene is of the kind of those that were drawn.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cache
 from math import ceil, exp, hypot, inf, log10, sqrt

@@ -1,7 +1,5 @@
 """What moved over time in the reduced model, as the history.csv of a run: forces, energies, motion."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from fem_impact.case.case import Case

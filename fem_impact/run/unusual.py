@@ -1,7 +1,5 @@
 """Sentences on numbers of an outcome that an impact on a resting barrier does not give by itself."""
 
-from __future__ import annotations
-
 from fem_impact.outcome.groups import Energy, Provenance, Restitution, RodMotion
 from fem_impact.outcome.keys import or_none
 from fem_impact.run.common import RESIDUAL_LIMIT

@@ -1,7 +1,5 @@
 """A meshed barrier as items of the model: its linear part, and what stands for all that lies around it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Bodies that have struck before: what of their last runs goes into the model of the next strike."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from math import cos, sin
 

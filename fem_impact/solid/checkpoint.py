@@ -4,8 +4,6 @@ An item or observer declares ``moving``, the names of its attributes that a run 
 read. Work space, which each step sets before it reads it, is left out.
 """
 
-from __future__ import annotations
-
 import hashlib
 import time as clock
 import zipfile

@@ -1,7 +1,5 @@
 """Observer of where the bodies touch, and the record of a run: places of contact and cells that flowed."""
 
-from __future__ import annotations
-
 from typing import ClassVar
 
 import numpy as np

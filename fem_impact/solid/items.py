@@ -3,8 +3,6 @@
 The time loop knows two lists of items, and observers. An effect that is off has no item.
 """
 
-from __future__ import annotations
-
 from typing import ClassVar, Protocol
 
 from fem_impact.solid.state import State

@@ -5,8 +5,6 @@ belongs to the positions is v . M v / 2 + dt v . f / 2: for a linear model leapf
 the strain energy exactly, and every impulse changes it by the impulse times the mean velocity.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 

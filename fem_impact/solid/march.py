@@ -1,7 +1,5 @@
 """The time loop: leapfrog with contact impulses, over lists of items and observers."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Protocol
 

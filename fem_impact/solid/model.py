@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -21,11 +20,9 @@ from fem_impact.solid.elastic import ElasticRod
 from fem_impact.solid.ground import Ground
 from fem_impact.solid.items import Force, Impulse, Item
 from fem_impact.solid.ledger import Ledger
+from fem_impact.solid.rigid_rest import ElasticNose
 from fem_impact.solid.state import State
-
-if TYPE_CHECKING:
-    from fem_impact.solid.rigid_rest import ElasticNose
-    from fem_impact.solid.yielding import YieldingZone
+from fem_impact.solid.yielding import YieldingZone
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,7 +1,5 @@
 """Observers of a run: energy ledger, history, field frames, progress and peak force."""
 
-from __future__ import annotations
-
 import time as clock
 from collections.abc import Callable
 from dataclasses import dataclass, field

@@ -4,8 +4,6 @@ Points that flow as most do go together, lane beside lane, in plain arithmetic t
 vectors; the few others go one by one.
 """
 
-from __future__ import annotations
-
 from math import sqrt
 
 import numpy as np

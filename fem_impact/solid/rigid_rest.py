@@ -6,8 +6,6 @@ motion of equal momentum and angular momentum; then positions keep their distanc
 the angle turned in a step.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import ClassVar
 

@@ -1,7 +1,5 @@
 """The end of the impact: the rod's exact free flight has no further contact."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field, replace
 from typing import ClassVar
 

@@ -1,7 +1,5 @@
 """How much harder each Gauss point is that lies in the hardened layer of a cut surface."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from fem_impact.arrays import Array, Ints

@@ -1,7 +1,5 @@
 """The state of a run: positions, velocities, forces, and time."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import ClassVar
 

@@ -1,9 +1,7 @@
 """The stable step of a yielding zone in its deformed shape, from the forces of its kernel."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from scipy.sparse.linalg import LinearOperator
@@ -13,10 +11,7 @@ from fem_impact.errors import RunError
 from fem_impact.fem.stable import gradient_squares, stable_step
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
-
-if TYPE_CHECKING:
-    from fem_impact.solid.yielding import YieldingZone
-
+from fem_impact.solid.yielding import YieldingZone
 
 TINY = 1e-6  # displacement of the stiffness' difference quotient, over the height of the thinnest cell
 

@@ -10,8 +10,6 @@ that never change and the pressure p = K ln(J) / J is the exact derivative of K 
 Cauchy stresses on current volumes elastic energy would leak by stress over modulus, 1e-4 of E_0 here.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The history.csv of a run: its columns, appended to during a run, and read back with checks."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Texts: sentences broken to a terminal's width, numbers in plain digits, symbols and units typeset."""
 
-from __future__ import annotations
-
 import re
 import textwrap
 from collections.abc import Callable

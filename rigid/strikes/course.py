@@ -10,8 +10,6 @@ Rules that the theory of impact does not give by itself:
 - a body that has fallen so far down a slope that it is far faster than at first tumbles on.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field

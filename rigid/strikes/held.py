@@ -1,7 +1,5 @@
 """A body that keeps touching with one corner: it pivots, rolls or slides until that ends."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

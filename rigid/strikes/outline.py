@@ -1,7 +1,5 @@
 """The convex outline of a body about its mass centre: arcs and corners, joined by straight lines."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import lru_cache

@@ -1,7 +1,5 @@
 """Output of the measured costs of one scene: JSON, CSV and tables."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path

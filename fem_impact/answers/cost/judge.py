@@ -1,7 +1,5 @@
 """Settings with their errors and costs, the Pareto front, and the choice."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import inf

@@ -1,14 +1,12 @@
 """Measurement of the cost of one scene: its models and levels are run, stored and judged."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from concurrent.futures import Executor
 from contextlib import nullcontext
 from dataclasses import asdict, dataclass, replace
 from math import inf
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from fem_impact.answers.cost.judge import Judged, SettingKind, front, judged_levels, judged_model
 from fem_impact.answers.refine.extrapolate import QuantityLimit, quantity_limits
@@ -22,12 +20,10 @@ from fem_impact.jobs.job import Failure, Job, Work
 from fem_impact.jobs.run import run_jobs, stored_results
 from fem_impact.jobs.store import STORE, Store
 from fem_impact.outcome.record import Outcome, installed_versions, utc_now
+from fem_impact.progress import ProgressMeter
 from fem_impact.scene.shipped import replace_all
+from fem_impact.scene.types import Scene
 from fem_impact.scene.write import to_dict
-
-if TYPE_CHECKING:
-    from fem_impact.progress import ProgressMeter
-    from fem_impact.scene.types import Scene
 
 SCHEMA = "fem-impact/cost/6"
 FINER = 1  # levels beyond those of the default run

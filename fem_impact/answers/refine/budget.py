@@ -1,7 +1,5 @@
 """Work of several runs on one process or two, and the time that it takes."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from contextlib import nullcontext
 from itertools import zip_longest

@@ -9,8 +9,6 @@ On each level but the pilot several runs may share a mesh: those at other places
 twin of the scene. What they found together makes the mesh of the next level.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass, field, replace

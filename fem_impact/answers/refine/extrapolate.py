@@ -9,8 +9,6 @@ Levels that agree by chance cannot know the energy of vibration better than its 
 (`vibration_floor`).
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise

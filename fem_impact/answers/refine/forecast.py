@@ -4,8 +4,6 @@ The mesh of a level says how long its run takes: by its cells, those that may yi
 levels are forecast from it by what halving the cells costs.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from math import inf

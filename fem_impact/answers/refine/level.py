@@ -1,7 +1,5 @@
 """One level of a run: the runs that share its mesh, and what they found."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 from fem_impact.answers.refine.extrapolate import NARROW, MeshRuns

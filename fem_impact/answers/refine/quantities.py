@@ -1,19 +1,14 @@
 """Quantities whose errors are reported for each setting, and the scales that errors are divided by."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 from math import hypot, sqrt
-from typing import TYPE_CHECKING
 
 from fem_impact.case.case import Case
 from fem_impact.errors import SceneError, UsageError
 from fem_impact.outcome.keys import Key, Num, or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
-
-if TYPE_CHECKING:
-    from fem_impact.scene.types import Scene
+from fem_impact.scene.types import Scene
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,8 +5,6 @@ of the stress wave makes cells swing that are too large for it. Both fall as cel
 levels have finer cells at the contact alone and do not show it: bands must leave room for it.
 """
 
-from __future__ import annotations
-
 from math import sqrt
 
 from fem_impact.outcome.groups import ARMS

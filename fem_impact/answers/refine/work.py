@@ -1,25 +1,19 @@
 """The levels of a scene as work of a study: what each of them gave, stored and read back."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 from dataclasses import dataclass
 from math import inf
-from typing import TYPE_CHECKING
 
 from fem_impact.answers.refine.chain import LevelChain
 from fem_impact.answers.refine.extrapolate import MeshRuns
 from fem_impact.case.case import Case
 from fem_impact.errors import ResultError
-from fem_impact.jobs.job import Job
+from fem_impact.jobs.job import Job, JobKind
 from fem_impact.outcome.record import Outcome
 from fem_impact.run.program import source_digest
+from fem_impact.scene.types import Scene
 from fem_impact.scene.write import digest
-
-if TYPE_CHECKING:
-    from fem_impact.jobs.job import JobKind
-    from fem_impact.scene.types import Scene
 
 # processor time of the levels of a default run over that planned of its last one, and of each finer level
 # over the one before: about, for the order of jobs and a first forecast

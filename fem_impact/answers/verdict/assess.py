@@ -1,11 +1,8 @@
 """One verdict on a scene: may rigid theory be used, what does vibration take, where does the rest go."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import isclose
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -28,10 +25,7 @@ from fem_impact.case.case import Case
 from fem_impact.case.limits import not_reduced
 from fem_impact.errors import RunError, SceneError
 from fem_impact.progress import tell_cell
-
-if TYPE_CHECKING:
-    from fem_impact.scene.types import Scene
-
+from fem_impact.scene.types import Scene
 
 TOLERANCE = 0.05
 """Change of e that may be neglected, unless stated."""

@@ -1,7 +1,5 @@
 """Losses carried over from the measured sets, largest losses over mu <= mu_c, bounds of friction heat."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 

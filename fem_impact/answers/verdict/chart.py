@@ -11,17 +11,13 @@ from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fem_impact.answers.verdict.assess import Verdict
 from fem_impact.arrays import Array
 from fem_impact.figures.panels import Mark, Panel, Picture, Series
 from fem_impact.outcome.keys import or_none
-
-if TYPE_CHECKING:
-    from fem_impact.answers.verdict.assess import Verdict
-
 
 TABLE = "design-chart.csv"
 COLUMNS = (

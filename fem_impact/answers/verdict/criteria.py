@@ -1,7 +1,5 @@
 """What may be asked of a scene by a limit: rigid theory's error, heat, force and dent, by both models."""
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """A dropped rod to be assessed, and its distance from measured sets."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass

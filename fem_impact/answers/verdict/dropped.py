@@ -1,7 +1,5 @@
 """A dropped rod as a scene, and a scene as a dropped rod where the measured tests apply to it."""
 
-from __future__ import annotations
-
 from math import hypot
 from typing import Any
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from fem_impact.answers.refine.extrapolate import (
     ONE_RUN,
@@ -22,10 +22,7 @@ from fem_impact.outcome.keys import Unknown, known, or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.outcome.shares import SHARES
 from fem_impact.run.simulate import simulate
-
-if TYPE_CHECKING:
-    from fem_impact.scene.types import Scene
-
+from fem_impact.scene.types import Scene
 
 REDUCED, MESHES = "the reduced model", "meshes of finite elements"
 """What a change of e rests on."""

@@ -1,10 +1,8 @@
 """Levels of finite elements until a question is decided, or the budget is used up."""
 
-from __future__ import annotations
-
 import shlex
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+from typing import Any, Protocol, TypeVar
 
 from fem_impact.answers.refine.budget import about_s
 from fem_impact.answers.refine.chain import LevelChain
@@ -13,10 +11,8 @@ from fem_impact.answers.verdict.effect import Answer
 from fem_impact.case.case import Case
 from fem_impact.options import RunOptions
 from fem_impact.progress import Notice, Progress
+from fem_impact.scene.types import Scene
 from fem_impact.tables.text import plain
-
-if TYPE_CHECKING:
-    from fem_impact.scene.types import Scene
 
 LEAST_LEVELS = 2
 """Levels that an answer needs: one alone cannot estimate its own error."""

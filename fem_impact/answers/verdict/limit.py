@@ -4,15 +4,13 @@ The reduced model looks at places over the intervals, and finite elements at the
 where its error leaves the answer open.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
 from itertools import product
 from math import inf
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -29,11 +27,9 @@ from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.limitation import texts
 from fem_impact.outcome.record import installed_versions
 from fem_impact.progress import tell_cell
+from fem_impact.scene.types import Scene
 from fem_impact.scene.write import digest
 from fem_impact.tables.text import plain
-
-if TYPE_CHECKING:
-    from fem_impact.scene.types import Scene
 
 PLACES = {1: 21, 2: 7, 3: 5, 4: 3}
 """Values of each of so many intervals at which the reduced model looks."""

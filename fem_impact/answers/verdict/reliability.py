@@ -5,8 +5,6 @@ Scenes drawn at random ran by both models, with a body that vibrates and with on
 where the scene stands among the stored ones (`fem_impact.run.modal_error.Stored`).
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from functools import cache
 

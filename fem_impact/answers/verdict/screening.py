@@ -1,16 +1,10 @@
 """Closed-form screening of a scene: T1/tau and gamma, at once and without a solver."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+from fem_impact.case.bodies import Bodies
 from fem_impact.tables.text import plain
 from rigid import LIMIT, behaves_rigidly
-
-if TYPE_CHECKING:
-    from fem_impact.case.bodies import Bodies
-
 
 ROUND = (
     "The contact is estimated as that of a round tip, but a flat face lands all at once: in two runs on "

@@ -1,7 +1,5 @@
 """A verdict in words: the three lines of its box, what it rests on, what it does not cover; and as JSON."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from math import degrees, isclose
 from typing import Any

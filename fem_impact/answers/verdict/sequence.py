@@ -1,7 +1,5 @@
 """The verdict on a sequence of strikes: may rigid theory be used for it, and for the hardest strike."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from fem_impact.outcome.keys import Unknown, known

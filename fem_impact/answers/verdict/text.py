@@ -1,7 +1,5 @@
 """Transfers of measured tests and coefficients as text for the terminal."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping
 from typing import Any

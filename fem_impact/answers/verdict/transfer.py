@@ -1,7 +1,5 @@
 """Measured tests carried over to one dropped rod: losses, worst case, bound of friction heat, limits."""
 
-from __future__ import annotations
-
 from dataclasses import asdict
 from typing import Any
 

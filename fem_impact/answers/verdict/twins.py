@@ -1,7 +1,5 @@
 """A scene beside its twin: the same contact under a rod that cannot vibrate, at any inclination."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from math import cos, hypot, sin
 

@@ -1,7 +1,5 @@
 """Record of the contact of a run: work, impulses and contact intervals."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import NamedTuple
 

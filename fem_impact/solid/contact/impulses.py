@@ -4,8 +4,6 @@ A point contact k joins five nodes with signed weights s: +1 or shape functions 
 on the barrier. Its relative velocity is sum(s v), an impulse p changes node velocities by s p / m.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from fem_impact.fem.kernels import inlined, kernel

@@ -1,7 +1,5 @@
 """Contact of the rod's nodes with the rigid plane n = 0."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import ClassVar
 

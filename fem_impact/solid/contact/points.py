@@ -1,7 +1,5 @@
 """The point contacts of one step: their search on both surfaces, their impulses and their work."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -5,8 +5,6 @@ its numbers and is not dear, again with one level more, and where that is not de
 reduced model gives its numbers, finite elements tell as well what a twin changes that cannot vibrate.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from fem_impact.answers.report import Request, StudyReport

@@ -4,8 +4,6 @@ A section in the plane (x, y), y >= 0, is made of quadrilaterals, each mapped fr
 out along z from the tip at z = 0; it may be moved along x or scaled on its way.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from math import sqrt
 from pathlib import Path

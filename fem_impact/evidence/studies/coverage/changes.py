@@ -1,7 +1,5 @@
 """Changes by vibration, reduced model beside finite elements, of drawn scenes and the measured sets."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from math import inf
 from pathlib import Path

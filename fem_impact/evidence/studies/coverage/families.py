@@ -1,7 +1,5 @@
 """Families of projectiles whose sizes are drawn at random: the table of a scene's projectile."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any

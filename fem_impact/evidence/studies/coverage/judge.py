@@ -1,10 +1,9 @@
 """Told errors beside those that finer runs show: how often the truth lies inside, with Wilson intervals."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+
+import pandas
 
 from fem_impact.case.size import time_class
 from fem_impact.evidence.studies.coverage.run import DEFAULT, FINER, FINEST, MODAL, CoverageResult
@@ -12,10 +11,6 @@ from fem_impact.evidence.studies.coverage.scenes import DrawnScene
 from fem_impact.outcome.keys import Unknown, or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.run.modal_error import scale_of, unit_of
-
-if TYPE_CHECKING:
-    import pandas
-
 
 KEYS: Mapping[str, str] = {
     "e": "e_edge",
@@ -66,8 +61,6 @@ class ToldError:
 
 def told_errors(scenes: Iterable[DrawnScene], results: Results) -> pandas.DataFrame:
     """Return one row a `ToldError`, with ``error``, whether it is ``inside``, and ``inside_finest``."""
-    import pandas
-
     rows = [row for scene in scenes for row in _of_scene(scene, results)]
     table = pandas.DataFrame(rows, columns=list(ToldError.__dataclass_fields__))
     table["error"] = (table["value"] - table["truth"]).abs()
@@ -143,7 +136,6 @@ def coverage(errors: pandas.DataFrame, by: list[str]) -> pandas.DataFrame:
     ``high``, medians ``half`` and ``error``, and ``needed``: by what half-widths had to be multiplied to hold
     `AIM` of the errors.
     """
-    import pandas
     from scipy.stats import binomtest
 
     rows = []
@@ -173,8 +165,6 @@ def ends(scenes: Iterable[DrawnScene], results: Results, model: str) -> pandas.D
 
     Bare is a run with numbers that tells no error of e.
     """
-    import pandas
-
     rows = []
     for scene in scenes:
         result = results.get((scene.name, model))
@@ -204,8 +194,6 @@ def times(scenes: Iterable[DrawnScene], results: Results) -> pandas.DataFrame:
     Before a run the class of its last level's processor time is told; after the pilot a range of the time
     that is left, of which ``said`` is the most.
     """
-    import pandas
-
     rows: list[tuple[str, str, float, float, bool]] = []
     for scene in scenes:
         result = results.get((scene.name, DEFAULT))

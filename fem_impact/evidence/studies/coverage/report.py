@@ -1,14 +1,12 @@
 """The report of the study: how often what was told held, and how runs ended; sentences, tables, figures."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from math import log
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas
 
 from fem_impact.answers.report import Sheet, StudyReport
 from fem_impact.answers.verdict.criteria import LIMITED
@@ -37,10 +35,6 @@ from fem_impact.run.modal import closed
 from fem_impact.run.modal_error import FACTORS, HELD, TOLD, Place, place_of
 from fem_impact.tables.table import Cell, Column, Table
 from fem_impact.tables.text import plain
-
-if TYPE_CHECKING:
-    import pandas
-
 
 MEANT = {
     LEVELS: "the band of a default run holds the limit of a run with one level more",

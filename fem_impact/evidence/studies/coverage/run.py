@@ -1,7 +1,5 @@
 """One scene of the study computed by one model as a user would, and what became of it."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import tempfile
@@ -11,25 +9,22 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from math import inf
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import fem_impact
+from fem_impact.answers.refine.level import LevelRun
 from fem_impact.answers.verdict.effect import Answer, VibrationEffect, solid_effect, untargeted
 from fem_impact.answers.verdict.levels import by_levels
 from fem_impact.answers.verdict.reliability import CHANGED
 from fem_impact.answers.verdict.twins import twins
 from fem_impact.errors import FemImpactError, ResultError, SceneError
 from fem_impact.evidence.studies.coverage.scenes import DrawnScene
+from fem_impact.jobs.job import JobKind
 from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.record import Outcome
 from fem_impact.progress import Notice, Progress
 from fem_impact.run.program import source_digest
-
-if TYPE_CHECKING:
-    from fem_impact.answers.refine.level import LevelRun
-    from fem_impact.jobs.job import JobKind
-    from fem_impact.scene.types import Scene
-
+from fem_impact.scene.types import Scene
 
 Trouble = Literal["", "refused", "stopped", "too dear", "fault"]
 """Why a run has no outcome: refused before any work, stopped by an error, broken off by the study, a fault of

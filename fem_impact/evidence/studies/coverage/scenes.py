@@ -5,14 +5,11 @@ their ranges (a Halton sequence), and kinds of barrier and metals take turns. Be
 bodies, each at five angles, and for every two scenes of a family one of its shapes that hardly yields.
 """
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import cos, log, pi, radians, sin
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 import tomli_w
@@ -30,12 +27,8 @@ from fem_impact.evidence.studies.coverage.families import (
 )
 from fem_impact.evidence.studies.coverage.twelve import TWELVE
 from fem_impact.scene.library import materials
-from fem_impact.scene.types import MEASURED_SETS
+from fem_impact.scene.types import MEASURED_SETS, Scene
 from fem_impact.scene.write import to_toml
-
-if TYPE_CHECKING:
-    from fem_impact.scene.types import Scene
-
 
 SEED = 20261126
 """Of the scenes by which the reduced model tells its error."""

@@ -1,7 +1,5 @@
 """Twelve bodies unlike the rods of the paper, each at five angles; speed and friction are drawn."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from fem_impact.evidence.studies.coverage.families import Projectile, metres
