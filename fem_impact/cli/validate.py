@@ -26,7 +26,7 @@ def add_options(parser: CommandParser) -> None:
     parser.state(
         validate,
         "fem-impact validate t5b",
-        "fem-impact validate t5b --uncertain impact.angle=44.5,45.5deg --uncertain surface.friction=+-10%",
+        "fem-impact validate t5b --uncertain surface.friction=+-10%",
     )
     add_scene(parser)
     add_uncertain(parser, "its part of the error is told")

@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
-from fem_impact.case.case import Case
 from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import Unknown, unknown
 from fem_impact.outcome.limitation import Limitation, limitations
-from fem_impact.outcome.record import Outcome
 from fem_impact.outcome.strikes import StrikeRecord, Strikes
 from fem_impact.run.certain import with_spread
-from fem_impact.run.modal_strikes import ModalCourse
-from fem_impact.run.solid_strikes import SolidCourse
 from fem_impact.run.strikes import RULES, Followed
-from fem_impact.solid.run import SolidResult
 from rigid.strikes import Finish, State
+
+if TYPE_CHECKING:
+    from fem_impact.case.case import Case
+    from fem_impact.outcome.record import Outcome
+    from fem_impact.run.modal_strikes import ModalCourse
+    from fem_impact.run.solid_strikes import SolidCourse
+    from fem_impact.solid.run import SolidResult
 
 LATER = "Strikes of a rigid body after those of a finer model do not feel its vibration."
 PASSED = "Modes take over {:.0%} of the vibration that finite elements left; the rest counts as damped."

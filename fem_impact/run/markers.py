@@ -6,11 +6,18 @@ on the published velocities (52 and 32 mm for the rods of 0.12 and 0.08 m). For 
 124 mm, beyond the tip, so the marker is taken at the tip there.
 """
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from fem_impact.arrays import Array, Ints
 from fem_impact.outcome.groups import Markers
-from fem_impact.solid.run import SolidResult
+
+if TYPE_CHECKING:
+    from fem_impact.solid.run import SolidResult
+
 
 WINDOW = 4e-3  # s, time T of 40 frames
 LEVER = {0.24: 0.124, 0.12: 0.052, 0.08: 0.032}  # m, by rod length, m

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from math import sqrt
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.optimize import brentq
 
 from fem_impact.arrays import Array
-from fem_impact.case.case import Case
 from fem_impact.case.effects.damping import loss_factor
 from fem_impact.case.effects.registry import AUTO
 from fem_impact.modal.impact import Arrival, ModalResult
@@ -20,6 +20,9 @@ from fem_impact.outcome.strikes import StrikeRecord
 from fem_impact.run.modal import closed
 from fem_impact.run.strikes import LEAST_BY_LAW, Followed
 from rigid.strikes import Finish, State, next_touch
+
+if TYPE_CHECKING:
+    from fem_impact.case.case import Case
 
 MOST = 40
 """Strikes that modes compute at most."""

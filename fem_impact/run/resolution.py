@@ -1,15 +1,21 @@
 """What a run did not resolve, its contact or its last separation, is unknown."""
 
+from __future__ import annotations
+
 from dataclasses import fields, replace
 from math import pi, sqrt
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
-from fem_impact.case.bodies import Bodies
 from fem_impact.case.cells import LEAST, advice, contact_edge, contact_radius, kind
-from fem_impact.outcome.groups import ARMS, ArmCoefficients, Energy, Heat, Markers
+from fem_impact.outcome.groups import ARMS, Heat, Markers
 from fem_impact.outcome.keys import Unknown, unknown
 from fem_impact.outcome.record import Outcome
-from fem_impact.solid.run import SolidResult
+
+if TYPE_CHECKING:
+    from fem_impact.case.bodies import Bodies
+    from fem_impact.outcome.groups import ArmCoefficients, Energy
+    from fem_impact.solid.run import SolidResult
+
 
 T = TypeVar("T", "ArmCoefficients", "Energy")
 ARM_LENGTHS = ("d_c", "d_d")

@@ -1,26 +1,31 @@
 """The rigid fidelity: impulses of a rigid rod along its sliding path, restitution by Thornton's law."""
 
+from __future__ import annotations
+
 import time
 from dataclasses import replace
 from functools import partial
 from math import isinf
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import rigid
-from fem_impact.case.case import Case
 from fem_impact.case.effects.heating import halves
 from fem_impact.outcome.groups import Energy, Heat, Markers, RodMotion, RunCost
 from fem_impact.outcome.keys import Unknown, known, unknown
 from fem_impact.outcome.limitation import limitations
 from fem_impact.outcome.record import Outcome
-from fem_impact.physics.contact import ContactPair
 from fem_impact.physics.contact_law import ContactLaw, contact_law
 from fem_impact.physics.contact_law import restitution as thornton
 from fem_impact.physics.flash import closed_form
 from fem_impact.physics.viscous import viscous_restitution
 from fem_impact.run.assemble import ImpactEnd, Reduction
 from fem_impact.run.common import MASSIVE, after, heat, plastic_shares, shaft_left_out
-from fem_impact.scene.sliding import SpeedTable
+
+if TYPE_CHECKING:
+    from fem_impact.case.case import Case
+    from fem_impact.physics.contact import ContactPair
+    from fem_impact.scene.sliding import SpeedTable
+
 
 STIFF_PLATE = "Bending of the plate, which takes energy and lowers e, is left out."
 MEAN_HEAT = (

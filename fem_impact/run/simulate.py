@@ -1,17 +1,22 @@
 """Computation of a scene by any fidelity: `simulate` returns its Outcome and writes its files."""
 
+from __future__ import annotations
+
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from fem_impact.case.case import Case
-from fem_impact.case.record import ContactRecord
 from fem_impact.errors import SceneError
 from fem_impact.files.run_directory import CHECKPOINT
 from fem_impact.options import RunOptions
-from fem_impact.outcome.record import Outcome
 from fem_impact.scene.impact import FIRST
-from fem_impact.scene.types import Scene
-from fem_impact.solid.run import SolidResult
+
+if TYPE_CHECKING:
+    from fem_impact.case.case import Case
+    from fem_impact.case.record import ContactRecord
+    from fem_impact.outcome.record import Outcome
+    from fem_impact.scene.types import Scene
+    from fem_impact.solid.run import SolidResult
 
 MOST = 12
 """Strikes at most by finite elements."""

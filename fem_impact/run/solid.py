@@ -1,19 +1,19 @@
 """From the end of a finite-element run to the quantities of the study: its outcome."""
 
+from __future__ import annotations
+
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 import rigid
-from fem_impact.case.case import Case
 from fem_impact.case.cells import advice
 from fem_impact.case.effects.heating import halves
-from fem_impact.case.record import Site
 from fem_impact.errors import RunError
 from fem_impact.outcome.groups import ContactSite, Energy, Heat, RodMotion, RunCost
 from fem_impact.outcome.keys import Num, Unknown, known, or_none, unknown
 from fem_impact.outcome.limitation import limitations
-from fem_impact.outcome.record import Outcome
 from fem_impact.physics.contact import fall
 from fem_impact.physics.flash import flash
 from fem_impact.run.assemble import ImpactEnd, Reduction
@@ -21,7 +21,13 @@ from fem_impact.run.common import CUT_OFF, MASSIVE, UNBENT, after, heat
 from fem_impact.run.markers import replay
 from fem_impact.run.resolution import NOT_RESOLVED, unresolved
 from fem_impact.run.unusual import LEAST_RATIO, PLOUGHING
-from fem_impact.solid.run import SolidResult
+
+if TYPE_CHECKING:
+    from fem_impact.case.case import Case
+    from fem_impact.case.record import Site
+    from fem_impact.outcome.record import Outcome
+    from fem_impact.solid.run import SolidResult
+
 
 MOST_E = 1.2  # of an impact whose energy comes back by friction and bending
 RINGING, LEAST = 0.1, 1e-4  # of E_vib and of E_0: so much above the modes is told

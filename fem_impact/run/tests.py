@@ -1,11 +1,13 @@
 """The measured tests that a scene repeats: a published set, or the user's own."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import hypot
 from pathlib import Path
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -15,7 +17,7 @@ from fem_impact.outcome.keys import Num, Unknown
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.scene.camera import Camera, read_camera
 from fem_impact.scene.means import Mean, holds_means, read_means
-from fem_impact.scene.types import OWN, Scene
+from fem_impact.scene.types import OWN
 from rigid import Arms, kinetic_energy
 from rigid.experiments import (
     Statistic,
@@ -25,6 +27,9 @@ from rigid.experiments import (
     of_mean,
     statistic,
 )
+
+if TYPE_CHECKING:
+    from fem_impact.scene.types import Scene
 
 COVERAGE = 2.0  # standard uncertainties from the mean of one test to the ends of its interval
 

@@ -3,9 +3,12 @@
 Modules that only some effects need are imported where they are used.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from functools import cached_property
 from math import sqrt
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -21,22 +24,26 @@ from fem_impact.fem.sparse import Hanging, NodeProduct
 from fem_impact.fem.stable import stable_step
 from fem_impact.physics.hardening import HardeningLaw
 from fem_impact.physics.viscous import LinearSolid, linear_solid
-from fem_impact.solid.block import ElasticBlockParts
 from fem_impact.solid.contact.moving_plane import MovingPlane
 from fem_impact.solid.contact.patch import facing_skin, make_patch
 from fem_impact.solid.contact.plane import PlaneContact
 from fem_impact.solid.contact.surface import SurfaceContact
-from fem_impact.solid.elastic import Dashpots, ElasticRod, ModalDamping, Weight
-from fem_impact.solid.foundation import FoundationSprings
+from fem_impact.solid.elastic import Dashpots, ElasticRod, Weight
 from fem_impact.solid.frame import FixedFrame, TurningFrame, mass_centre
 from fem_impact.solid.ground import Ground
 from fem_impact.solid.items import Force, Impulse
 from fem_impact.solid.model import Model
-from fem_impact.solid.rigid_rest import ElasticNose, RigidRest
-from fem_impact.solid.viscous import MaxwellCells
-from fem_impact.solid.yielding import YieldingZone
 from meshes import SKIN, RodMesh, face_at, owners
 from rigid import Faceted
+
+if TYPE_CHECKING:
+    from fem_impact.solid.block import ElasticBlockParts
+    from fem_impact.solid.elastic import ModalDamping
+    from fem_impact.solid.foundation import FoundationSprings
+    from fem_impact.solid.rigid_rest import ElasticNose, RigidRest
+    from fem_impact.solid.viscous import MaxwellCells
+    from fem_impact.solid.yielding import YieldingZone
+
 
 START_GAP = 1e-10  # m, so small that contact begins in the first step, before gravity or spin acts
 PLAY, BAND = 0.05, 0.02  # over the tip size, see `SurfaceContact`

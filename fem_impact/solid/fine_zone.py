@@ -5,10 +5,11 @@ softer body shears in a layer whose thickness follows from the mesh, as the mate
 Finer meshes move work from friction into plastic work right below the surface.
 """
 
-from typing import ClassVar
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
-from scipy.spatial import Delaunay
 
 from fem_impact.arrays import Array, Ints
 from fem_impact.fem.hexmodes import CORNERS, SIGNS
@@ -16,8 +17,13 @@ from fem_impact.solid.contact.surface import SurfaceContact
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
 from fem_impact.solid.stepguard import when_and_where
-from fem_impact.solid.yielding import YieldingZone
 from meshes import SKIN
+
+if TYPE_CHECKING:
+    from scipy.spatial import Delaunay
+
+    from fem_impact.solid.yielding import YieldingZone
+
 
 DEPTH = 0.1e-3  # m, thickness of the uppermost layer
 SHAPES = np.prod(1 + SIGNS[None] * CORNERS[:, None], axis=2) / 8  # (points, nodes)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,9 +21,11 @@ from fem_impact.solid.elastic import ElasticRod
 from fem_impact.solid.ground import Ground
 from fem_impact.solid.items import Force, Impulse, Item
 from fem_impact.solid.ledger import Ledger
-from fem_impact.solid.rigid_rest import ElasticNose
 from fem_impact.solid.state import State
-from fem_impact.solid.yielding import YieldingZone
+
+if TYPE_CHECKING:
+    from fem_impact.solid.rigid_rest import ElasticNose
+    from fem_impact.solid.yielding import YieldingZone
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,12 +1,14 @@
 """One run of the explicit model, from its case to the state after the last separation."""
 
+from __future__ import annotations
+
 import resource
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -25,7 +27,6 @@ from fem_impact.solid.build import build
 from fem_impact.solid.checkpoint import Checkpoint
 from fem_impact.solid.fine_zone import left_zones, outside_zones, skin_shares
 from fem_impact.solid.frame import mass_centre
-from fem_impact.solid.heatwatch import HeatWatch
 from fem_impact.solid.march import Observer, advance, evaluate, march
 from fem_impact.solid.model import Model
 from fem_impact.solid.observers import ProgressObserver
@@ -33,6 +34,9 @@ from fem_impact.solid.rodview import RodState, modes_of
 from fem_impact.solid.shares import run_time_shares
 from fem_impact.solid.state import State
 from fem_impact.solid.watchers import Stopwatch, Watchers
+
+if TYPE_CHECKING:
+    from fem_impact.solid.heatwatch import HeatWatch
 
 
 @dataclass(frozen=True, slots=True)

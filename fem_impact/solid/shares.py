@@ -1,13 +1,19 @@
 """Run time of each effect: the items of a model are timed one by one after the run."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from functools import partial
 from time import process_time
+from typing import TYPE_CHECKING
 
 from fem_impact.solid.frame import TurningFrame
-from fem_impact.solid.heatwatch import HeatWatch
-from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
+
+if TYPE_CHECKING:
+    from fem_impact.solid.heatwatch import HeatWatch
+    from fem_impact.solid.model import Model
+
 
 REPEATS = 5
 

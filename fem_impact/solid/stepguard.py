@@ -1,7 +1,9 @@
 """The stable step of a yielding zone in its deformed shape, from the forces of its kernel."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, field, replace
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 from scipy.sparse.linalg import LinearOperator
@@ -11,7 +13,10 @@ from fem_impact.errors import RunError
 from fem_impact.fem.stable import gradient_squares, stable_step
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
-from fem_impact.solid.yielding import YieldingZone
+
+if TYPE_CHECKING:
+    from fem_impact.solid.yielding import YieldingZone
+
 
 TINY = 1e-6  # displacement of the stiffness' difference quotient, over the height of the thinnest cell
 

@@ -5,12 +5,11 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import ClassVar, Protocol
+from typing import TYPE_CHECKING, ClassVar, Protocol
 
 import numpy as np
 
 from fem_impact.arrays import Array
-from fem_impact.case.case import Case
 from fem_impact.case.cells import body_cell
 from fem_impact.fem.geometry import tail_corners
 from fem_impact.fem.kernels import COMPILING
@@ -21,7 +20,6 @@ from fem_impact.solid.checkpoint import Moving
 from fem_impact.solid.contact.surface import SurfaceContact
 from fem_impact.solid.contact_watch import ContactWatch
 from fem_impact.solid.fine_zone import SkinWatch
-from fem_impact.solid.heatwatch import HeatWatch
 from fem_impact.solid.march import Observer
 from fem_impact.solid.model import Model
 from fem_impact.solid.observers import AddedMass, Frames, History, PeakForce, Watch, history_column
@@ -31,6 +29,11 @@ from fem_impact.solid.state import State
 from fem_impact.solid.stepguard import SMALLEST, THIN_CRUSHED, StepGuard
 from fem_impact.solid.strain import StrainWatch
 from fem_impact.tables.history import HISTORY, HistoryWriter
+
+if TYPE_CHECKING:
+    from fem_impact.case.case import Case
+    from fem_impact.solid.heatwatch import HeatWatch
+
 
 FRAMES_SPAN = 3.0  # contact durations (estimated) over which the wanted number of frames is spread
 TRANSITS, EARLY = 2.0, 0.4  # lengths run by a stretching wave, in which this share of the frames is written

@@ -36,7 +36,7 @@ def test_span_and_speed(movement):
 
 @pytest.mark.parametrize("span", [Span(3e-4, 1e-4), Span(last=1.0), Span(frames=0), Span(first=-1e-6)])
 def test_a_span_outside_the_run_is_refused(movement, span):
-    with pytest.raises(UsageError, match=r"^frames = 0: is no number|^the span of the film = "):
+    with pytest.raises(UsageError, match=r"^frames=0: is no number|^the span of the film = "):
         film_times(movement, "strain", span)
 
 

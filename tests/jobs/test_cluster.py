@@ -83,7 +83,7 @@ def test_a_worker_killed_in_mid_study_costs_nothing(cluster, tmp_path):
 def test_a_scheduler_that_does_not_answer_is_refused(monkeypatch):
     monkeypatch.setattr(cluster_module, "SCHEDULER_PATIENCE", 1)
     with (
-        pytest.raises(UsageError, match=r"scheduler = .*no scheduler answers"),
+        pytest.raises(UsageError, match=r"scheduler=.*no scheduler answers"),
         on_scheduler("tcp://127.0.0.1:1"),
     ):
         pass

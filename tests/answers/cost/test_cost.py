@@ -138,7 +138,7 @@ def test_a_stored_level_that_is_damaged_is_refused(fake):
 
 
 def test_what_never_ran_cannot_be_judged(tmp_path):
-    with pytest.raises(RunError, match=r"holds no run of t5b .* Leave out --stored"):
+    with pytest.raises(RunError, match=r"holds no run of t5b .* Leave out stored=True"):
         judge_stored(SCENE, tmp_path, NullMeter())
 
 
