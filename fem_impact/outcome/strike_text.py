@@ -128,4 +128,5 @@ def _totals(strikes: Strikes) -> str:
     time = "" if isinstance(strikes.time, Unknown) else f" after {strikes.time:.4g} s"
     gave = or_none(strikes.gravity) or 0.0
     gravity = f" Gravity gave {gave:.3g} J." if abs(gave) > least else ""
-    return f"The end comes{time}: {sums}.{gravity}{rubbed}"
+    ends = "The last of them" if strikes.end == "bounces on" else "The end"
+    return f"{ends} comes{time}: {sums}.{gravity}{rubbed}"
