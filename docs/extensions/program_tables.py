@@ -1,11 +1,16 @@
-"""The directive `from-program`: parts of pages that are made from the program when they are built.
+"""Parts of pages that are made from the program: tables that stand in the pages, and long texts.
 
-A page holds ``{from-program} NAME``; NAME is a function of `PARTS`, which returns Markdown.
+A table stands between ``<!-- from-program: NAME -->`` and ``<!-- end -->``, so that the raw file holds it; a
+test compares it, and ``python docs/extensions/program_tables.py`` writes all of them anew. A long text comes
+in place of the directive ``{from-program} NAME`` when the documentation is built. NAME is a function of
+`TABLES` or `TEXTS`, which returns Markdown.
 """
 
 import argparse
 import math
-from collections.abc import Iterator
+import re
+from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import get_args
 
 from sphinx.util.docutils import SphinxDirective
@@ -207,27 +212,41 @@ def bibliography() -> str:
     return "\n\n".join(f"({one.key})=\n\n`{one.key}` {one.text}" for one in references())
 
 
-PARTS = {
-    make.__name__.replace("_", "-"): make
-    for make in (
-        *(scene_numbers, scene_choices, scene_units, materials, material_sources, friction_pairs),
-        *(surfaces, effects, problems),
-        *(outcome_keys, commands, studies, exit_codes, bibliography),
-    )
-}
+def _named(*makers: Callable[[], str]) -> dict[str, Callable[[], str]]:
+    return {make.__name__.replace("_", "-"): make for make in makers}
+
+
+TABLES = _named(
+    *(scene_numbers, scene_choices, scene_units, materials, friction_pairs, surfaces, effects, problems),
+    *(outcome_keys, studies, exit_codes),
+)
+TEXTS = _named(material_sources, commands, bibliography)
+PLACE = re.compile(r"(<!-- from-program: ([\w-]+) -->\n).*?(<!-- end -->)", re.DOTALL)
+DOCS = Path(__file__).parents[1]
+PAGES = sorted(page for page in DOCS.glob("*/*.md") if PLACE.search(page.read_text("utf-8")))
+
+
+def filled(page: str) -> str:
+    """Return the text of a page with its tables as the program is."""
+    return PLACE.sub(lambda found: f"{found[1]}\n{TABLES[found[2]]().strip()}\n\n{found[3]}", page)
 
 
 class FromProgram(SphinxDirective):
-    """Insert a part of the reference."""
+    """Insert a long text."""
 
     required_arguments = 1
 
     def run(self):
         """Return the nodes of the part."""
-        return self.parse_text_to_nodes(PARTS[self.arguments[0]](), allow_section_headings=True)
+        return self.parse_text_to_nodes(TEXTS[self.arguments[0]](), allow_section_headings=True)
 
 
 def setup(app):
     """Register the directive."""
     app.add_directive("from-program", FromProgram)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
+
+
+if __name__ == "__main__":
+    for path in PAGES:
+        path.write_text(filled(path.read_text("utf-8")), encoding="utf-8")
