@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from fem_impact.outcome.keys import Num, Unknown, group, key, known
+from fem_impact.errors import UsageError, did_you_mean
+from fem_impact.outcome.keys import Num, Unknown, group, key, keys_of, known
 
 if TYPE_CHECKING:
     import pandas
@@ -150,7 +151,17 @@ class Strikes:
     )
 
     def half_width(self, number: int, name: str) -> Num:
-        """Return the half-width of a number of a strike, from 1, by its key, or why there is none."""
+        """Return the half-width of a number of a strike, from 1, by its key, or why there is none.
+
+        Raises
+        ------
+        UsageError
+            Strikes have no such number.
+        """
+        names = [one.name for one in keys_of(StrikeRecord)]
+        if name not in names:
+            hint = did_you_mean(name, names, f"Give one of {', '.join(names)}.")
+            raise UsageError("is no number of a strike.", key="name=", value=name, remedy=hint)
         if isinstance(self.spread, Unknown):
             return self.spread
         if isinstance(self.certain, Unknown) or number > self.certain:
@@ -161,8 +172,6 @@ class Strikes:
     def to_dataframe(self) -> pandas.DataFrame:
         """Return a row a strike, with the columns of its JSON (ResultError: there are none)."""
         import pandas
-
-        from fem_impact.outcome.keys import keys_of
 
         columns = tuple(keys_of(StrikeRecord))
         rows = [[one.of(strike) for one in columns] for strike in known(self.each)]

@@ -10,7 +10,7 @@ from typing import Any
 
 from fem_impact.errors import SceneError, UsageError, did_you_mean
 from fem_impact.scene import fields
-from fem_impact.scene.impact import one_way, restated
+from fem_impact.scene.impact import FIRST, one_way, restated
 from fem_impact.scene.library import CHANGED, nearest_scene, shipped, stated
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.read import read_dict, read_scene, read_tables, read_toml
@@ -133,6 +133,8 @@ def _changed(scene: Scene, changes: Mapping[str, Any]) -> dict[str, Any]:
     if data.get("surface", {}).get("state") == "pair" and any(".material" in key for key in changes):
         for key in PAIR:
             data["surface"].pop(key, None)  # it follows from both materials
+    if changes.get("impact.until") == FIRST and not any(key.startswith("strikes") for key in changes):
+        data.pop("strikes", None)  # it says how a body is followed
     if new := moved(changes):
         data["impact"] = restated(scene.impact, data["impact"], new)
     if any(key.startswith("projectile.") for key in changes) and "projectile.segments" not in changes:

@@ -6,7 +6,7 @@ from dataclasses import replace as replace_record
 import pytest
 
 from fem_impact.case.case import Case
-from fem_impact.errors import SceneError
+from fem_impact.errors import SceneError, UsageError
 from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.limitation import texts
 from fem_impact.outcome.record import Outcome
@@ -260,6 +260,8 @@ def test_the_path_lies_within_what_is_told_of_it_as_far_as_it_is_certain(steep):
 def test_half_widths_grow_from_the_models_own_as_the_sequence_goes_on(steep):
     case = Case.of(rattling(impact__angle="75 deg"), "modal")
     own = reduce(case, closed(case)).validity.model_band
+    with pytest.raises(UsageError, match=r"is no number of a strike\. Did you mean E_before_J"):
+        steep.half_width(1, "before_J")
     assert steep.half_width(1, "e") == pytest.approx(own["e_edge"], rel=0.1)
     times = [steep.half_width(number, "time_s") for number in range(1, 1 + steep.certain)]
     E_0 = steep.each[0].before

@@ -13,7 +13,7 @@ from fem_impact.scene.impact import Impact
 from fem_impact.scene.inputs import STATED, inputs, materials_of
 from fem_impact.scene.library import materials, shipped, surfaces
 from fem_impact.scene.read import read_dict, read_toml
-from fem_impact.scene.shipped import load, replace
+from fem_impact.scene.shipped import load, replace, replace_all
 from fem_impact.scene.strikes import Following
 from fem_impact.scene.types import MEASURED_SETS, Accuracy, Heating, Save
 from fem_impact.scene.write import to_dict
@@ -189,3 +189,8 @@ def test_a_scene_is_read_from_a_table_with_numbers_of_numpy(tmp_path):
     assert (scene.impact.v_n, scene.impact.v_t) == (-1.5, 0.25)
     with pytest.raises(SceneError, match="lenght"):
         load({**table, "projectile": {**table["projectile"], "lenght": "1 m"}})
+
+
+def test_who_asks_for_the_first_impact_alone_leaves_how_strikes_are_followed():
+    followed = replace_all(load("quick"), {"impact.until": "rest", "strikes.angle_error": "1 deg"})
+    assert replace(followed, "impact.until", "first").strikes == Following()
