@@ -13,7 +13,7 @@ from fem_impact.modal.touch import LAID
 from fem_impact.physics.contact import FLAT, ContactPair, impedance
 from fem_impact.physics.flow_law import FULLY_PLASTIC, REPRESENTATIVE, FlowLaw, flow_law
 
-LEANS = 0.25  # rise over length beyond which a straight part that touches with an end does not land flat
+LEANS = 0.5  # rise over length beyond which a straight part that touches with an end does not land flat
 ON_SIDE = 0.25 * pi  # stiffness of a side over E* times its length (Popov 2010)
 RIGID = 1e-9  # share of the contact's give that a barrier which gives nothing is taken to have
 

@@ -18,7 +18,7 @@ import numpy as np
 from fem_impact.arrays import Array
 from fem_impact.case.case import Case
 from fem_impact.case.measured import reduced_pairs
-from fem_impact.outcome.keys import or_none
+from fem_impact.outcome.keys import known, or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.physics.contact import ContactPair
 from fem_impact.physics.contact_law import contact_law
@@ -30,6 +30,8 @@ HELD = 0.9
 # change by a tenth from .5 to 2 and from 1 to 10
 NEAR, COMMON = 1.5, 1.0
 VIBRATION = "E_vib_over_E_0"
+PLOUGHS = 0.1
+"""Impulse ratio beyond friction, of the form of a dent, that no stored scene comes near; the most is .095."""
 LEAST_VIBRATION = 0.005  # of E_0, below which errors of the vibration energy no longer fall with it
 TOLD = (
     *("e_edge", "mu", "V_n_m_per_s", "V_t_m_per_s", "Omega_rad_per_s"),
@@ -164,13 +166,26 @@ def scale_of(key: str, outcome: Outcome) -> float:
 
 
 def half_widths(place: Place, outcome: Outcome) -> dict[str, float]:
-    """Return half-widths, by key, of those numbers of `TOLD` that an outcome of the reduced model knows."""
+    """Return half-widths, by key, of those numbers of `TOLD` that an outcome of the reduced model knows.
+
+    Where the form of a dent gives more impulse along the barrier than any stored scene shows, all that is
+    beyond friction may be wrong.
+    """
     at, table, far = np.array(place), stored(), farness(place, outcome)
     halves = {
         key: table.half_width(at, of, far) * scale_of(key, outcome)
         for of, key in enumerate(TOLD)
         if or_none(KEY_TABLE[key].of(outcome)) is not None
     }
+    for key in ("E_r_over_E_0", VIBRATION, "W_friction_over_E_0"):  # shares lie between 0 and 1
+        if key in halves:
+            share = known(KEY_TABLE[key].of(outcome))
+            halves[key] = min(halves[key], max(share, 1.0 - share))
+    beyond, motion = _beyond_friction(outcome), outcome.motion
+    if beyond > PLOUGHS:
+        halves["mu"] = max(halves["mu"], beyond)
+        V_t = halves["V_t_m_per_s"], beyond * abs(known(motion.V_n) - motion.v_n)
+        halves["V_t_m_per_s"] = max(V_t)
     if or_none(outcome.restitution.paper.e) is not None:
         halves["e_paper"] = halves["e_edge"]  # arms a little apart take nearly the same approach
     return halves
@@ -197,7 +212,13 @@ def farness(place: Place, outcome: Outcome, table: Stored | None = None) -> floa
 def _unheard(outcome: Outcome) -> tuple[str, ...]:
     """Return how a scene touches as no stored one does: of those hardly one lands flat, and sends waves."""
     several = ("the number of places that touch",) * (len(or_none(outcome.contact.sites) or ()) > 1)
-    return several + ("what lands flat",) * (or_none(outcome.energy.radiated) is not None)
+    flat = ("what lands flat",) * (or_none(outcome.energy.radiated) is not None)
+    return (*several, *flat, *("how an edge digs in",) * (_beyond_friction(outcome) > PLOUGHS))
+
+
+def _beyond_friction(outcome: Outcome) -> float:
+    """Return the impulse ratio beyond that of friction, 0 where it is less or not known."""
+    return max(abs(or_none(outcome.restitution.mu) or 0.0) - outcome.motion.friction, 0.0)
 
 
 def sentence(place: Place, outcome: Outcome) -> str:

@@ -43,3 +43,12 @@ def test_a_chamfer_that_leans_by_37_degrees_does_not_land_flat():
     assert run.restitution.edge.e == pytest.approx(0.516, abs=0.05)
     assert run.restitution.mu == pytest.approx(0.080, abs=0.02)
     assert run.motion.Omega == pytest.approx(12.8, abs=1.0)
+
+
+def test_all_impulse_beyond_friction_that_no_stored_scene_comes_near_counts_as_error():
+    """Finite elements on two levels at 65 degrees: mu .43 +- .25; at 70 they rise from .26 to .35."""
+    run = tilted(70)
+    mu, half = run.estimate("mu")
+    assert half == pytest.approx(mu - 0.25) and mu > 0.5
+    assert run.estimate("V_t_m_per_s")[1] >= half * (run.motion.V_n - run.motion.v_n)
+    assert any("how an edge digs in" in one.text for one in run.validity.limitations)

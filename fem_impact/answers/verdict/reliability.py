@@ -44,7 +44,8 @@ def known_error(scene: Scene, whole: Outcome, of: str, change: float) -> tuple[f
     """
     at, table = place_of(Case(scene), whole), stored()
     half = table.half_width(np.array(at), [*CHANGED].index(of), farness(at, whole, table))
-    return half * scale_of_change(change), unlike(at, whole, table)
+    widest = 1 + abs(change)  # of numbers that lie between 0 and 1, and so their change between -1 and 1
+    return min(half * scale_of_change(change), widest), unlike(at, whole, table)
 
 
 def sentence(of: str, half: float, far: tuple[str, ...]) -> str:
