@@ -7,7 +7,7 @@ from dataclasses import replace
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.effects.slots import ModelSpec
 from fem_impact.case.plates import is_wider, thin_plate
-from fem_impact.case.shaft import coned, shaft_flows
+from fem_impact.case.shaft import coned, gives_elsewhere
 from fem_impact.errors import SceneError
 from fem_impact.outcome.limitation import Limitation, limitations
 from fem_impact.physics.contact import FLAT
@@ -372,7 +372,7 @@ def not_reduced(bodies: Bodies) -> str:
         "a plate thinner than its contact is wide": is_wider(bodies),
         "a hardened skin": "machined-skin" in bodies.effects,
     }
-    return next((what for what, holds in obstacles.items() if holds), shaft_flows(bodies))
+    return next((what for what, holds in obstacles.items() if holds), gives_elsewhere(bodies))
 
 
 def require_own_mesh(bodies: Bodies, fidelity: str) -> None:

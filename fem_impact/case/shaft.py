@@ -1,4 +1,4 @@
-"""What models leave out of a projectile's shaft: that it flows along its length, and sharp shoulders."""
+"""What models leave out of a projectile: a shaft that flows, a flattened wall, and sharp shoulders."""
 
 from math import cos, pi, sqrt
 
@@ -6,6 +6,8 @@ from fem_impact.case.bodies import Bodies
 from fem_impact.physics.stepped_beam import sections
 from meshes import shoulders
 from rigid import Turned
+
+THIN = 3.0  # middle radius over wall from which on a wall bends as a thin ring
 
 
 def shaft_flows(bodies: Bodies) -> str:
@@ -28,6 +30,32 @@ def shaft_flows(bodies: Bodies) -> str:
         return ""
     told = f"{stress / 1e6:.3g} MPa over {rod.yield_stress / 1e6:.3g} MPa"
     return f"a shaft that would yield along its length (axial stress, estimated: {told})"
+
+
+def wall_is_flattened(bodies: Bodies) -> str:
+    """Say that a tube which comes down on its side would be flattened for good; empty if it would not.
+
+    The energy of the strike is held against what its rings bear elastically between two plates up to their
+    collapse load, 4 M / R a metre with M = sigma_y t^2 / 4 (DeRuntz and Hodge 1963, J. Appl. Mech. 30, 391);
+    R is the middle radius, t the wall, and a thin ring gives way by (pi / 4 - 2 / pi) P R^3 / (E I).
+    """
+    rod, contact = bodies.rod, bodies.contact
+    if not (rod.bore and contact.rod_yields and contact.lands_flat and cos(contact.angle) < 0.5):
+        return ""
+    _, outer, inner = rod.wall()
+    R, t = 0.5 * (outer + inner), outer - inner
+    load = contact.rod.yield_stress * t**2 / R
+    gives = (pi / 4 - 2 / pi) * load * R**3 / (contact.rod.E * t**3 / 12)
+    bears = 0.5 * float((load * gives).mean()) * rod.length
+    comes = 0.5 * contact.body.mass * contact.approach**2
+    if (R < THIN * t).any() or comes <= bears:
+        return ""
+    return f"a wall that would be flattened ({comes:.3g} J come down, and it bears {bears:.3g} J elastically)"
+
+
+def gives_elsewhere(bodies: Bodies) -> str:
+    """Say where a body would yield besides its contact; empty if it would not."""
+    return shaft_flows(bodies) or wall_is_flattened(bodies)
 
 
 def coned(bodies: Bodies) -> str:

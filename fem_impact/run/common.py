@@ -6,7 +6,7 @@ from math import cos, hypot, inf, sin
 import rigid
 from fem_impact.case.case import Case
 from fem_impact.case.effects.heating import halves
-from fem_impact.case.shaft import shaft_flows
+from fem_impact.case.shaft import gives_elsewhere
 from fem_impact.outcome.groups import (
     ArmCoefficients,
     BarrierMotion,
@@ -47,10 +47,10 @@ def strikes_again(V_n: float) -> str:
     return f"The mass centre still comes down at {-V_n:.3g} m/s, so that the rod strikes again later."
 
 
-def shaft_left_out(case: Case) -> str:
-    """Return what a model without a mesh leaves out of a shaft that would yield, else nothing."""
-    flows = shaft_flows(case.bodies)
-    return f"Left out: {flows}." if flows else ""
+def flow_left_out(case: Case) -> str:
+    """Return what a model without a mesh leaves out of a body that would yield elsewhere, else nothing."""
+    gives = gives_elsewhere(case.bodies)
+    return f"Left out: {gives}." if gives else ""
 
 
 def motion(case: Case, V_n: float, V_t: float, Omega: float, mass: float, k2: float) -> RodMotion:

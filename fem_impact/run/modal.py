@@ -17,9 +17,9 @@ from fem_impact.run.common import (
     RESIDUAL_LIMIT,
     UNBENT,
     apart,
+    flow_left_out,
     plastic_shares,
     rod_flows,
-    shaft_left_out,
 )
 from fem_impact.run.modal_error import half_widths, place_of, sentence
 
@@ -88,7 +88,7 @@ def reduce(case: Case, result: ModalResult) -> Outcome:
             "model",
             *ASSUMPTIONS,
             *_dent(case),
-            shaft_left_out(case),
+            flow_left_out(case),
             LAID if result.laid else "",
             LEVEL if turns else "",
             tilted if turned > TILT_TOLD else "",

@@ -19,7 +19,7 @@ from fem_impact.physics.contact_law import restitution as thornton
 from fem_impact.physics.flash import closed_form
 from fem_impact.physics.viscous import viscous_restitution
 from fem_impact.run.assemble import ImpactEnd, Reduction
-from fem_impact.run.common import MASSIVE, after, heat, plastic_shares, shaft_left_out
+from fem_impact.run.common import MASSIVE, after, flow_left_out, heat, plastic_shares
 
 if TYPE_CHECKING:
     from fem_impact.case.case import Case
@@ -82,7 +82,7 @@ def rigid_outcome(case: Case) -> Outcome:
         choices=Unknown(UNKNOWN),
         unmeshed=UNKNOWN,
         limited=limitations(
-            "model", loss.source, *ASSUMPTIONS, _sharp(case), shaft_left_out(case), *plate, *heated
+            "model", loss.source, *ASSUMPTIONS, _sharp(case), flow_left_out(case), *plate, *heated
         ),
     )
 
