@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 TITLED = ("projectile", "barrier", "surface", "impact")
 """Tables of a scene whose changed values its title tells."""
 USUAL_TIP = "B"
+SLOWED = 0.5
+"""Share of the old speed of approach below which a fall along the axis is no other way to state it."""
 SHAPE = ("tip", "tip_radius")
 """Options of a steel rod that have a default."""
 ROD = '\\\n      --length "80 mm" --diameter "19 mm" --angle "45 deg"'
@@ -152,10 +154,9 @@ def _say_fall(scene: Scene, changed: set[str]) -> None:
         falls = "the ball falls" if ball else "the rod falls along its axis"
         sentence = f"{falls} as fast as before, {speed:.4g} m/s"
     else:
-        sentence = (
-            "warning: v_n and v_t are those of the old angle. A fall as fast at the new one: "
-            f"--set impact.speed='{speed:.4g} m/s'"
-        )
+        sentence = "warning: v_n and v_t are those of the old angle."
+        if speed * math.cos(impact.angle) > SLOWED * abs(impact.v_n):  # a fall along the axis still strikes
+            sentence += f" A fall as fast at the new one: --set impact.speed='{speed:.4g} m/s'"
     sys.stderr.write(f"fem-impact: {sentence}\n")
 
 

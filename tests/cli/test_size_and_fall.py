@@ -58,6 +58,8 @@ def test_velocities_beside_the_axis_are_kept_at_a_new_angle_and_the_user_is_told
     assert OLD in err and "impact.speed='2.109 m/s'" in err and BESIDE in " ".join(out.split())
     _, out, err = cli("check", str(mine), "--set", "impact.angle=20 deg", "--set", "impact.speed=2.107 m/s")
     assert not err and BESIDE not in " ".join(out.split())
+    _, _, err = cli("check", str(mine), "--set", "impact.angle=88 deg")
+    assert OLD in err and "impact.speed" not in err  # a fall along an axis that lies down hardly strikes
 
 
 def test_the_outcome_keeps_the_doubt(cli):
