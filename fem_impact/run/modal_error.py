@@ -8,10 +8,11 @@ what the others let expect of it, and the `HELD` quantile over the scenes is tol
 only that the scene is of the kind of those that were drawn.
 """
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from math import ceil, exp, hypot, inf, log10, sqrt
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 
@@ -117,6 +118,12 @@ class Stored:
 
     places: Array
     errors: Array
+
+    @classmethod
+    def of(cls, rows: Sequence[Mapping[str, float]], names: Sequence[str]) -> Self:
+        """Return the scenes of a table: `Place` and the distances of some numbers, by name."""
+        places, errors = ([[row[name] for name in of] for row in rows] for of in (Place._fields, names))
+        return cls(np.array(places), np.abs(errors))
 
     def half_width(self, place: Array, of: int, far: float = 0.0) -> float:
         """Return the half-width, as ``errors`` are, of the number of a column at a place (6,).
@@ -235,9 +242,4 @@ def sentence(place: Place, outcome: Outcome) -> str:
 @cache
 def stored() -> Stored:
     """Return the stored scenes."""
-    rows = reduced_pairs()
-
-    def columns(names: tuple[str, ...]) -> Array:
-        return np.array([[row[name] for name in names] for row in rows])
-
-    return Stored(columns(Place._fields), np.abs(columns((*TOLD, *FACTORS))))
+    return Stored.of(reduced_pairs(), (*TOLD, *FACTORS))

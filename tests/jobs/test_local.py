@@ -69,6 +69,12 @@ def test_an_error_of_a_call_comes_back_and_the_process_stays():
         assert processes.submit(os.getpid).result() == first
 
 
+def test_a_fault_of_a_call_tells_its_place_in_the_other_process():
+    with LocalProcesses(1) as processes, pytest.raises(ValueError, match="invalid literal") as fault:
+        processes.submit(int, "no number").result()
+    assert "answer = fn(*args, **kwargs)" in "".join(fault.value.__notes__)
+
+
 def test_a_process_of_its_own_for_every_job():
     with LocalProcesses(1, reuse=False) as processes:
         first = processes.submit(os.getpid).result()

@@ -120,9 +120,13 @@ def modal_effect(scene: Scene, pair: Pair, of: str = "e") -> VibrationEffect:
     Shares of E_0 have the half-widths that the run itself tells; all plastic work that of the shares beside
     it together, with which it adds up to one.
     """
-    value, bodies = difference(pair, of), Case(scene).bodies
-    half, far = known_error(untargeted(scene), pair[0], of, value)
-    thin = half_space_error(bodies) * abs(known(pair[0].restitution.edge.e)) if is_thin(bodies) else 0.0
+    value, case = difference(pair, of), Case(untargeted(scene))
+    half, far = known_error(case, pair[0], of, value)
+    thin = (
+        half_space_error(case.bodies) * abs(known(pair[0].restitution.edge.e))
+        if is_thin(case.bodies)
+        else 0.0
+    )
     halves = {share.key.path[-1]: pair[0].estimate(share.key)[1] for share in SHARES}
     shares = {name: half for name, half in halves.items() if half is not None}
     return VibrationEffect(

@@ -14,8 +14,7 @@ from fem_impact.case.case import Case
 from fem_impact.case.measured import vibration_pairs
 from fem_impact.outcome.keys import Key
 from fem_impact.outcome.record import KEY_TABLE, Outcome
-from fem_impact.run.modal_error import Place, Stored, farness, place_of, unlike
-from fem_impact.scene.types import Scene
+from fem_impact.run.modal_error import Stored, farness, place_of, unlike
 
 CHANGED: Mapping[str, Key] = {
     "e": KEY_TABLE["e_edge"],
@@ -32,17 +31,17 @@ def scale_of_change(change: float) -> float:
     return max(abs(change), LEAST)
 
 
-def known_error(scene: Scene, whole: Outcome, of: str, change: float) -> tuple[float, tuple[str, ...]]:
+def known_error(case: Case, whole: Outcome, of: str, change: float) -> tuple[float, tuple[str, ...]]:
     """Return the half-width of the reduced model's change of a number, and in what the scene is unlike all.
 
     Parameters
     ----------
-    scene : Scene
+    case : of the scene
     whole : outcome by the reduced model, with vibration
     of : number of `CHANGED`
     change : of that number by vibration
     """
-    at, table = place_of(Case(scene), whole), stored()
+    at, table = place_of(case, whole), stored()
     half = table.half_width(np.array(at), [*CHANGED].index(of), farness(at, whole, table))
     widest = 1 + abs(change)  # of numbers that lie between 0 and 1, and so their change between -1 and 1
     return min(half * scale_of_change(change), widest), unlike(at, whole, table)
@@ -60,9 +59,4 @@ def sentence(of: str, half: float, far: tuple[str, ...]) -> str:
 @cache
 def stored() -> Stored:
     """Return the stored scenes; their errors are those of the changes, over `scale_of_change`."""
-    rows = vibration_pairs()
-
-    def columns(names: tuple[str, ...]) -> np.ndarray:
-        return np.array([[row[name] for name in names] for row in rows])
-
-    return Stored(columns(Place._fields), np.abs(columns((*CHANGED,))))
+    return Stored.of(vibration_pairs(), (*CHANGED,))

@@ -200,13 +200,13 @@ def test_the_half_width_of_a_change_holds_nine_in_ten_scenes_left_out_one_by_one
 def test_the_known_error_grows_with_the_change_and_tells_in_what_a_scene_is_unlike():
     scene = load("t5b")
     whole, _ = modal_pair(scene)
-    small, large = (known_error(scene, whole, "e", change) for change in (0.001, 0.4))
+    small, large = (known_error(Case(scene), whole, "e", change) for change in (0.001, 0.4))
     assert large[0] == pytest.approx(20 * small[0])
     assert small[1] == ()
     laid = replace(whole, energy=replace(whole.energy, radiated=0.1))
-    half, far = known_error(scene, laid, "e", 0.001)
+    half, far = known_error(Case(scene), laid, "e", 0.001)
     assert far == ("what lands flat",) and half > small[0]
-    half, far = known_error(LONG, modal_pair(LONG)[0], "e", 0.001)
+    half, far = known_error(Case(LONG), modal_pair(LONG)[0], "e", 0.001)
     assert far == ("bending period over time of contact",)
     assert far[0] in sentence("e", half, far)
 
@@ -289,7 +289,7 @@ def test_the_change_of_another_number_is_that_of_two_runs(of, key):
     here = assess(load("t5b"), "modal", of=of).here
     free, stiff = (KEY_TABLE[key].of(run) for run in (here.free, here.stiff))
     assert here.value == free - stiff != 0.0
-    assert here.band == known_error(load("t5b"), here.free, of, here.value)[0] > 0.0
+    assert here.band == known_error(Case(load("t5b")), here.free, of, here.value)[0] > 0.0
 
 
 def test_what_finite_elements_show_of_the_reduced_models_error_counts_at_other_inclinations(monkeypatch):
@@ -560,11 +560,11 @@ def test_the_band_of_the_reduced_model_holds_what_a_half_space_under_a_thin_plat
         replace_all(load("plate-10mm"), {"barrier.thickness": thickness}) for thickness in ("8 mm", "12 mm")
     )
     change, plain = (modal_effect(scene, modal_pair(scene)) for scene in (thin, thick))
-    told = known_error(thin, change.free, "e", change.value)[0]
+    told = known_error(Case(thin), change.free, "e", change.value)[0]
     share = (change.band - told) / known(change.free.restitution.edge.e)
     assert share == pytest.approx(half_space_error(Case.of(thin).bodies), rel=1e-12)
     assert "The plate is thin beside the contact" in change.source
-    assert plain.band == known_error(thick, plain.free, "e", plain.value)[0]
+    assert plain.band == known_error(Case(thick), plain.free, "e", plain.value)[0]
 
 
 def test_one_level_decides_nothing(monkeypatch):
