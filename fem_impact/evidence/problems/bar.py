@@ -8,10 +8,9 @@ import numpy as np
 
 import meshes
 from fem_impact.evidence.problems import setups
-from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values, within
+from fem_impact.evidence.problems.problem import Check, Solved, Values, within
 from fem_impact.evidence.references.rod_end import FOLLOWED, BarImpact, bar_speed, chain_restitution, strike
 from fem_impact.scene.impact import Impact
-from fem_impact.scene.parameter import Parameter
 from fem_impact.solid.contact.plane import PlaneContact
 from fem_impact.solid.march import march
 from fem_impact.solid.model import Model
@@ -121,28 +120,3 @@ def solve(p: Values) -> Solved:
             Check("largest energy of all bounces / E_0", "1", energy.most, 1.0, GROWTH, "at most"),
         ]
     return Solved(tuple(checks), steps, elements)
-
-
-PROBLEM = Problem(
-    "bar",
-    "a bar without lateral strain on a rigid wall: plateau, duration, one release; then two walls",
-    (
-        setups.length(),
-        setups.diameter(),
-        setups.speed("speed", "approach speed", 2.0),
-        *(q for q in setups.elastic() if q.key != "nu"),
-        Parameter("slices", "cells along the bar", "", 50, 2000, default=100, whole=True),
-        setups.across(6),
-        Parameter(
-            "bounces",
-            "bounces between two walls, 0 for none",
-            "",
-            0,
-            1e5,
-            default=1000,
-            whole=True,
-            even=True,
-        ),
-    ),
-    solve,
-)

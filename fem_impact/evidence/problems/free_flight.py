@@ -11,9 +11,8 @@ import numpy as np
 
 from fem_impact import Case
 from fem_impact.evidence.problems import setups
-from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values, within
+from fem_impact.evidence.problems.problem import Check, Solved, Values, within
 from fem_impact.evidence.references.rod_end import bar_speed
-from fem_impact.scene.parameter import Parameter
 from fem_impact.solid.march import march
 from fem_impact.solid.run import solve as run_solid
 
@@ -93,36 +92,3 @@ def momentum(p: Values) -> Solved:
         Check("energy ledger / E_0", "1", result.worst / result.E_0, 0.0, 1e-5, "at most"),
     )
     return Solved(checks, result.steps, len(result.model.geometry.rod.mesh.cells))
-
-
-_SPIN = Parameter("omega", "spin, positive from n to t", "angular speed", -1e3, 1e3, default=45.0)
-_SIZE = (
-    setups.length(0.08),
-    setups.diameter(),
-    Parameter("tip_radius", "radius of the rounded edge", "length", 1e-4, 0.1, default=3e-3),
-    *setups.elastic(),
-)
-_MESH = (
-    Parameter("tip_size", "cell edge at the contact", "length", 1e-5, 5e-3, default=0.8e-3),
-    setups.across(6),
-)
-SPIN = Problem(
-    "free-spin",
-    "a free rod turns in flight: no strain energy, no growth, the same spin",
-    (*_SIZE, _SPIN, Parameter("time", "time of flight", "time", 1e-5, 1e-1, default=4e-3), *_MESH),
-    spin,
-)
-MOMENTUM = Problem(
-    "momentum",
-    "a spinning rod strikes a frictionless plane: momentum, angular momentum and energy balance",
-    (
-        *_SIZE,
-        Parameter("angle", "rod axis to barrier normal", "angle", 0.1, 1.4, default=pi / 4),
-        setups.speed("v_n", "approach speed along the normal", 1.5, 500.0),
-        Parameter("v_t", "speed down the slope", "speed", 0.0, 500.0, default=1.0),
-        Parameter("omega", "spin, positive from n to t", "angular speed", -1e3, 1e3, default=20.0),
-        *_MESH,
-        Parameter("max_time", "time after which a run stops", "time", 1e-5, 1e-2, default=2.5e-3),
-    ),
-    momentum,
-)

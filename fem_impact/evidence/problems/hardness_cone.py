@@ -22,13 +22,12 @@ from fem_impact.case.effects.plasticity import hardening_of
 from fem_impact.errors import RunError, SceneError
 from fem_impact.evidence.problems import setups
 from fem_impact.evidence.problems.bodies import Block, FreeBody, body_model, placed
-from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values
+from fem_impact.evidence.problems.problem import Check, Solved, Values
 from fem_impact.evidence.references.axisymmetric import Metal
 from fem_impact.evidence.references.cone import FROM, REACH, Indentation, cone_speed, indent
 from fem_impact.physics.hardening import KGF_PER_MM2, TABOR, TABOR_STRAIN, Hardening, Skin, power_hardening
 from fem_impact.physics.indentation import FACES, FRICTION, FRICTIONS, share, vickers
 from fem_impact.scene.library import material
-from fem_impact.scene.parameter import Parameter
 from fem_impact.solid.contact.surface import SurfaceContact
 from fem_impact.solid.march import march
 from fem_impact.solid.state import State
@@ -188,18 +187,3 @@ def solve(p: Values) -> Solved:
         ]
         size = fine[1:]
     return Solved(tuple(checks), *size)
-
-
-PROBLEM = Problem(
-    "hardness",
-    "a rigid cone is pressed into yielding steel: mean pressure, contact radius; Vickers' number beside",
-    (
-        Parameter("angle", "half the angle of the cone at its tip", "angle", 0.9, 1.4, default=PYRAMID),
-        Parameter("f", "Coulomb friction of the second run; 0: none", "", 0.0, 0.5, default=0.1),
-        *setups.elastic(206e9),
-        Parameter("yield_stress", "yield stress", "stress", 1e6, 1e10, default=320e6),
-        Parameter("ultimate_stress", "ultimate stress (engineering)", "stress", 1e6, 1e10, default=446e6),
-        Parameter("cells", "cells over the cone's radius, even", "", 10, 20, default=10, even=True),
-    ),
-    solve,
-)

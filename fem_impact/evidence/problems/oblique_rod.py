@@ -26,7 +26,7 @@ with cells of 0.5 mm on the block, has a softer contact that lasts twice as long
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from math import inf, pi, sin, sqrt
+from math import inf, pi, sin
 
 import numpy as np
 
@@ -35,7 +35,7 @@ from fem_impact import Case
 from fem_impact.errors import SceneError
 from fem_impact.evidence.problems import setups
 from fem_impact.evidence.problems.discretisation import BarMesh, contact_error, lean_error, radiation_error
-from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values, within
+from fem_impact.evidence.problems.problem import Check, Solved, Values, within
 from fem_impact.evidence.references.free_modes import free_bar_flexibility
 from fem_impact.evidence.references.hertz import (
     SPAN,
@@ -51,7 +51,6 @@ from fem_impact.evidence.references.hertz import (
 from fem_impact.evidence.references.oblique import ObliqueRebound, ObliqueRod, oblique_drop, oblique_rod
 from fem_impact.evidence.references.rod_edge import edge_excess
 from fem_impact.evidence.references.waves import radiation_resistance, shear_resistance
-from fem_impact.scene.parameter import Parameter
 from fem_impact.solid.run import SolidResult
 from fem_impact.solid.run import solve as run_solid
 from rigid import Projectile
@@ -271,26 +270,3 @@ def solve(p: Values) -> Solved:
         Check("energy ledger / E_0", "1", result.worst / result.E_0, 0.0, LEDGER, "at most"),
     )
     return Solved(checks, result.steps, elements)
-
-
-PARAMETERS = (
-    setups.length(),
-    setups.diameter(),
-    Parameter("tip_radius", "radius of the rounded edge", "length", 1e-4, 0.1, default=3e-3),
-    Parameter("angle", "rod axis to barrier normal", "angle", 0.1, 1.4, default=pi / 4),
-    setups.speed("v_n", "approach speed along the normal", 2.1 / sqrt(2)),
-    Parameter("v_t", "speed down the slope", "speed", 0.0, 1e3, default=2.1 / sqrt(2)),
-    setups.friction(0.34),
-    *setups.elastic(),
-    Parameter("elastic_barrier", "1: an elastic block, 0: a rigid plane", "", 0, 1, default=1, whole=True),
-    Parameter("barrier_E", "Young's modulus of the block", "stress", 1e6, 2e12, default=206e9),
-    Parameter("tip_size", "cell edge at the contact", "length", 1e-5, 5e-3, default=0.2e-3),
-    setups.across(),
-    Parameter("max_time", "time after which a run stops", "time", 1e-5, 1e-2, default=2e-3),
-)
-PROBLEM = Problem(
-    "oblique-rod",
-    "an elastic rod strikes obliquely: restitution, contacts, bending energy beside modes and Hertz",
-    PARAMETERS,
-    solve,
-)

@@ -11,11 +11,10 @@ from dataclasses import dataclass, replace
 from math import exp, log, sqrt
 
 from fem_impact.evidence.problems import setups, spheres
-from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values, within
+from fem_impact.evidence.problems.problem import Check, Solved, Values, within
 from fem_impact.evidence.references.hertz import PlateImpact, zener_impact
 from fem_impact.physics.plate import plate_impedance, pulse_wave
 from fem_impact.scene.barrier import Barrier
-from fem_impact.scene.parameter import Parameter
 from fem_impact.solid.model import Model
 
 RESTITUTION, FORCE, TIME = 0.02, 0.03, 0.03
@@ -167,33 +166,3 @@ def solve_thin_plate(p: Values) -> Solved:
     slow = _through(p, plate, AFTER * time)
     checks = slow.beside_zener(p, exact, at, ENERGY_THROUGH)
     return Solved((*checks, *_wide({**p, "speed": p["fast"]}, exact)), slow.impact.state.step, slow.cells)
-
-
-PLATE = Problem(
-    "plate",
-    "an elastic sphere strikes infinite thin plates: bending waves lower e as Zener's equation says",
-    spheres.parameters(
-        9.5e-3,
-        setups.speed("speed", "approach speed", 1.0),
-        Parameter("least", "Zener's lambda of the thickest plate", "", 1e-3, 1.0, default=0.05),
-        Parameter("most", "Zener's lambda of the thinnest plate", "", 1e-3, 2.0, default=1.0),
-        *setups.elastic(210e9),
-        cells=4,
-        across=8,
-    ),
-    solve_plate,
-)
-THIN_PLATE = Problem(
-    "thin-plate",
-    "an elastic sphere strikes infinite plates meshed through: Zener's equation, and edges twice as far",
-    spheres.parameters(
-        9.5e-3,
-        setups.speed("speed", "approach speed, slow: the plate is thick beside its contact", 0.3),
-        setups.speed("fast", "approach speed, fast: the plate is thin beside its contact", 30.0),
-        Parameter("number", "Zener's lambda of either plate", "", 0.05, 2.0, default=0.5),
-        *setups.elastic(210e9),
-        cells=3,
-        across=8,
-    ),
-    solve_thin_plate,
-)

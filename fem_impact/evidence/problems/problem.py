@@ -1,7 +1,7 @@
-"""Problems with known answers, run through the solver's own parts: parameters, checks, cost; all by name.
+"""Problems with known answers, run through the solver's own parts: checks and cost; all by name.
 
-Every problem takes its physical parameters and returns computed values beside a reference made by other
-means (`fem_impact.evidence.references`), with error, tolerance, verdict and cost.
+Every problem takes its physical parameters, stated in problems.toml, and returns computed values beside a
+reference made by other means (`fem_impact.evidence.references`), with error, tolerance, verdict and cost.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from math import inf, isfinite
 from typing import Any, Literal
 
 from fem_impact.errors import SceneError, UsageError, did_you_mean
+from fem_impact.evidence.data import read_stated
 from fem_impact.scene.parameter import Parameter
 from fem_impact.tables.table import Table
 
@@ -168,25 +169,22 @@ class Problem:
         return {key: p.default for key, p in known.items() if p.default is not None} | stated
 
 
-# name -> module and its problem; a module is imported when its problem is asked for
-PROBLEMS = {
-    "bar": ("bar", "PROBLEM"),
-    "hertz": ("spheres", "HERTZ"),
-    "oblique-sphere": ("spheres", "OBLIQUE_SPHERE"),
-    "plate": ("plates", "PLATE"),
-    "thin-plate": ("plates", "THIN_PLATE"),
-    "sears": ("sears_rod", "PROBLEM"),
-    "thornton": ("thornton_tip", "PROBLEM"),
-    "taylor": ("taylor_bar", "PROBLEM"),
-    "hardness": ("hardness_cone", "PROBLEM"),
-    "wall-bar": ("square_bars", "WALL_BAR"),
-    "tilted-bar": ("square_bars", "TILTED_BAR"),
-    "modes": ("waves", "MODES"),
-    "waves": ("waves", "WAVES"),
-    "free-spin": ("free_flight", "SPIN"),
-    "momentum": ("free_flight", "MOMENTUM"),
-    "oblique-rod": ("oblique_rod", "PROBLEM"),
-}
+# by name: words, function that solves it, parameters; its module is imported when a problem is asked for
+_STATED = read_stated("problems/problems.toml")
+_SHARED = _STATED.pop("shared")
+PROBLEMS = tuple(_STATED)
+"""Names of all problems."""
+
+
+def parameters_of(name: str) -> tuple[Parameter, ...]:
+    """Return the parameters of a problem as stated."""
+    stated = _STATED[name]["parameters"].items()
+    return tuple(Parameter(key, **{"dimension": ""} | _SHARED.get(key, {}) | own) for key, own in stated)
+
+
+def defaults(name: str) -> dict[str, float]:
+    """Return the default values of a problem's parameters, SI."""
+    return {p.key: p.default for p in parameters_of(name) if p.default is not None}
 
 
 def problem(name: str) -> Problem:
@@ -200,9 +198,9 @@ def problem(name: str) -> Problem:
     if name not in PROBLEMS:
         remedy = did_you_mean(name, PROBLEMS, f"Known are: {', '.join(PROBLEMS)}.")
         raise UsageError("is no problem of the verification.", key=name, remedy=remedy)
-    module, attribute = PROBLEMS[name]
-    found: Problem = getattr(import_module(f"fem_impact.evidence.problems.{module}"), attribute)
-    return found
+    module, solve = _STATED[name]["solve"].split(".")
+    solved_by = getattr(import_module(f"fem_impact.evidence.problems.{module}"), solve)
+    return Problem(name, _STATED[name]["words"], parameters_of(name), solved_by)
 
 
 def verify(name: str, changes: Mapping[str, float | str] | None = None) -> Verification:

@@ -29,13 +29,12 @@ import numpy as np
 from fem_impact.errors import SceneError
 from fem_impact.evidence.problems import setups
 from fem_impact.evidence.problems.discretisation import contact_error
-from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values, within
+from fem_impact.evidence.problems.problem import Check, Solved, Values, within
 from fem_impact.evidence.problems.spheres import MARGIN
 from fem_impact.evidence.references.hertz import contact_modulus
 from fem_impact.evidence.references.rod_end import bar_speed, end_law, rod_impact, sears
 from fem_impact.fem.flight import flight
 from fem_impact.scene.barrier import Barrier
-from fem_impact.scene.parameter import Parameter
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.shapes import Profile
 from fem_impact.solid.march import evaluate
@@ -125,21 +124,3 @@ def solve(p: Values) -> Solved:
         Check("largest energy / E_0", "1", found.most, 1.0, 1e-3, "at most"),
     )
     return Solved(checks, found.state.step, len(model.geometry.rod.mesh.cells))
-
-
-PROBLEM = Problem(
-    "sears",
-    "a rod with a round end strikes along its axis: force, contact time, vibration",
-    (
-        setups.length(),
-        setups.diameter(),
-        Parameter("tip_radius", "radius of the round end at its pole", "length", 1e-4, 1.0, default=7e-3),
-        setups.speed("speed", "approach speed", 2.0),
-        *setups.elastic(),
-        Parameter("block", "1: an elastic block, 0: a rigid plane", "", 0, 1, default=1, whole=True),
-        Parameter("barrier_E", "Young's modulus of the block", "stress", 1e6, 2e12, default=206e9),
-        Parameter("cells", "cells over the contact radius", "", 2, 20, default=5),
-        setups.across(8),
-    ),
-    solve,
-)

@@ -19,7 +19,6 @@ from fem_impact.scene.fields import Element
 from fem_impact.scene.impact import Impact
 from fem_impact.scene.material import Material
 from fem_impact.scene.own_mesh import OwnMesh
-from fem_impact.scene.parameter import Parameter
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.shapes import NamedShape
 from fem_impact.scene.surface import Surface
@@ -35,40 +34,6 @@ from meshes import HexMesh
 WIDER = 1.2  # a nose draws the cells where it touches apart, by so much with 8 of them across
 COARSE = 0.249  # of a bar's width: so large a tip size leaves its cells whole
 NEAREST = 2**0.4  # cells are halved to the size nearest to the stated one, which is to be nearly the largest
-
-
-def length(default: float = 0.24) -> Parameter:
-    """Return the rod's length."""
-    return Parameter("length", "length of the rod", "length", 0.02, 2.0, default=default)
-
-
-def diameter() -> Parameter:
-    """Return the rod's diameter."""
-    return Parameter("diameter", "diameter of the rod", "length", 1e-3, 0.2, default=0.019)
-
-
-def elastic(E: float = 219e9, nu: float = 0.29, rho: float = 7850.0) -> tuple[Parameter, ...]:
-    """Return Young's modulus, Poisson's ratio and density."""
-    return (
-        Parameter("E", "Young's modulus", "stress", 1e6, 2e12, default=E),
-        Parameter("nu", "Poisson's ratio", "", 0.0, 0.49, default=nu),
-        Parameter("rho", "density", "density", 10.0, 3e4, default=rho),
-    )
-
-
-def across(default: int = 8, low: int = 6) -> Parameter:
-    """Return the number of cells over the diameter, even."""
-    return Parameter("across", "cells over the diameter, even", "", low, 24, default=default, even=True)
-
-
-def speed(name: str, words: str, default: float, high: float = 1e3) -> Parameter:
-    """Return a speed, above 0."""
-    return Parameter(name, words, "speed", 1e-4, high, default=default)
-
-
-def friction(default: float) -> Parameter:
-    """Return Coulomb's coefficient."""
-    return Parameter("f", "Coulomb friction", "", 0.0, 5.0, default=default)
 
 
 def slender(p: Values, across: str, low: float, high: float) -> None:

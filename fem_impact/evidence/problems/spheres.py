@@ -20,32 +20,18 @@ from fem_impact.evidence.problems.discretisation import (
     grid_radiation_error,
     lean_error,
 )
-from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values, within
+from fem_impact.evidence.problems.problem import Check, Solved, Values, within
 from fem_impact.evidence.references.finite_sphere import ball_impact
 from fem_impact.evidence.references.hertz import HertzImpact, contact_modulus, hertz, sliding_ratio
 from fem_impact.evidence.references.sphere import INERTIA, oblique_ball, oblique_sphere
 from fem_impact.evidence.references.waves import radiated_energy
 from fem_impact.fem.elements import lumped_mass
-from fem_impact.scene.parameter import Parameter
 from fem_impact.solid.model import Model
 from meshes import HexMesh, Zone
 
 MARGIN = 16.0  # the block reaches so many contact radii beyond its fine zone; 8 are 0.3 % too soft
 REACH = 1.3  # half-width of the fine zone over the contact radius
 CONTACT = 5e-3, 0.12  # contact radii over the ball's that the reference covers
-
-
-def parameters(
-    radius: float, *others: Parameter, cells: float = 6, across: int = 16
-) -> tuple[Parameter, ...]:
-    """Return the list: radius, the problem's own, mesh and barrier."""
-    return (
-        Parameter("radius", "radius of the sphere", "length", 1e-4, 1.0, default=radius),
-        *others,
-        Parameter("block", "1: a block like the sphere, 0: a rigid plane", "", 0, 1, default=1, whole=True),
-        Parameter("cells", "cells over the contact radius", "", 2, 20, default=cells),
-        setups.across(across),
-    )
 
 
 def ball_mass(p: Values) -> float:
@@ -294,13 +280,6 @@ def solve_hertz(p: Values) -> Solved:
     return Solved(checks, found.state.step, len(model.geometry.rod.mesh.cells))
 
 
-HERTZ = Problem(
-    "hertz",
-    "an elastic sphere strikes a frictionless barrier: force, time of contact, radiated energy",
-    parameters(9.5e-3, setups.speed("speed", "approach speed", 1.0), *setups.elastic(210e9)),
-    solve_hertz,
-)
-
 RESTITUTION, SLIPPED = 0.02, 0.05  # of a blow that sticks
 SLIDING = 0.999  # of Coulomb's ratio, from which a blow counts as sliding throughout
 UNCOUPLED = 0.45  # Poisson's ratio from which pressing hardly shifts the skin on a rigid plane
@@ -375,18 +354,3 @@ def solve_oblique(p: Values) -> Solved:
         Check("largest energy / E_0", "1", found.most, 1.0, 1e-3, "at most"),
     )
     return Solved(checks, found.state.step, len(model.geometry.rod.mesh.cells))
-
-
-OBLIQUE_SPHERE = Problem(
-    "oblique-sphere",
-    "an elastic sphere strikes obliquely with friction: reversal, spin, impulse ratio",
-    parameters(
-        2.5e-3,
-        setups.speed("speed", "approach speed", 3.9),
-        Parameter("angle", "path to the normal", "angle", 0.01, 1.5, default=20 * pi / 180),
-        Parameter("f", "Coulomb friction", "", 0.001, 5.0, default=0.092),
-        *setups.elastic(380e9, 0.23, 4000.0),
-        cells=5,
-    ),
-    solve_oblique,
-)

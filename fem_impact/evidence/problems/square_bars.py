@@ -37,13 +37,12 @@ from numpy.typing import NDArray
 import meshes
 from fem_impact.arrays import Array
 from fem_impact.evidence.problems import setups
-from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values, within
+from fem_impact.evidence.problems.problem import Check, Solved, Values, defaults, within
 from fem_impact.evidence.references.bricks import Bar, rebound, spring_force, wall_stress
 from fem_impact.evidence.references.rod_end import bar_speed
 from fem_impact.physics.contact import pressure_speed
 from fem_impact.scene.fields import Element
 from fem_impact.scene.impact import Impact
-from fem_impact.scene.parameter import Parameter
 from fem_impact.solid.march import march
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
@@ -95,43 +94,15 @@ class NodeSprings:
         return ()
 
 
-PRINTED_BAR = {"side": 0.019, "length": 0.24, "E": 206e9, "nu": 0.29, "rho": 7850.0}
+PRINTED_BAR = defaults("wall-bar")
 ALONG = 12  # times as many cells along the printed bar as across it
 SLENDER = 2.5, 40.0  # length over side
 KINDS: tuple[Element, ...] = ("full", "bbar", "incompatible")
 
 
-def parameters() -> tuple[Parameter, ...]:
-    """Return size, material, cells across and kind of element."""
-    return (
-        Parameter("side", "side of the square section", "length", 1e-3, 0.2, default=PRINTED_BAR["side"]),
-        setups.length(PRINTED_BAR["length"]),
-        *setups.elastic(PRINTED_BAR["E"], PRINTED_BAR["nu"], PRINTED_BAR["rho"]),
-        Parameter(
-            "cells",
-            "cells across the bar, even; 12 times as many along the printed one",
-            "",
-            4,
-            24,
-            default=12,
-            whole=True,
-            even=True,
-        ),
-        Parameter(
-            "element",
-            "0: plain 8-point, 1: mean dilatation, 2: incompatible",
-            "",
-            0,
-            2,
-            default=2,
-            whole=True,
-        ),
-    )
-
-
 def is_printed(p: Values) -> bool:
     """Return whether size and material are the printed ones."""
-    return all(p[name] == value for name, value in PRINTED_BAR.items())
+    return all(p[name] == PRINTED_BAR[name] for name in ("side", "length", "E", "nu", "rho"))
 
 
 def counts(p: Values) -> tuple[int, int]:
@@ -194,14 +165,6 @@ def solve_wall(p: Values) -> Solved:
         printed = PRINTED_STRESS[kind] * p["speed"] / PRINTED_SPEED
         checks.append(Check(f"{name}, printed", "Pa", stress, printed, TOLERANCE[kind]))
     return Solved(tuple(checks), state.step, len(model.geometry.rod.mesh.cells))
-
-
-WALL_BAR = Problem(
-    "wall-bar",
-    "a square bar whose end stops dead, beside five public codes",
-    (setups.speed("speed", "speed of the bar", PRINTED_SPEED), *parameters()),
-    solve_wall,
-)
 
 
 ANGLE, SPEED = radians(20), 3.0
@@ -294,25 +257,3 @@ def solve_tilted(p: Values) -> Solved:
         Check("impulse ratio", "1", book.impulse[0] / book.impulse[1], p["f"], CLOSED, "at most"),
     ]
     return Solved(tuple(checks), state.step, len(model.geometry.rod.mesh.cells))
-
-
-TILTED_BAR = Problem(
-    "tilted-bar",
-    "a square bar flies onto a tilted plate, beside two public codes",
-    (
-        setups.speed("speed", "speed along the bar's axis", SPEED),
-        Parameter(
-            "angle",
-            "bar's axis to the plate's normal; printed is 20 degrees",
-            "angle",
-            0.02,
-            1.4,
-            default=ANGLE,
-        ),
-        Parameter("f", "Coulomb friction; printed are 0 and 0.2", "", 0.0, 5.0, default=0.0),
-        *parameters(),
-        Parameter("stiffness", "of the public codes' springs, N/m3", "", 1e13, 3e14, default=2.6e13),
-        Parameter("stick", "their tangential over their normal stiffness", "", 0.01, 1.0, default=0.1),
-    ),
-    solve_tilted,
-)

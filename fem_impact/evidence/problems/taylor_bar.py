@@ -32,25 +32,17 @@ import meshes
 from fem_impact.arrays import Array
 from fem_impact.evidence.problems import setups
 from fem_impact.evidence.problems.bodies import FreeBody, body_model, placed
-from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values, within
+from fem_impact.evidence.problems.problem import Check, Solved, Values, defaults, within
 from fem_impact.evidence.references.axisymmetric import Metal, taylor_bar
 from fem_impact.evidence.references.rod_end import bar_speed
 from fem_impact.physics.hardening import linear_hardening
-from fem_impact.scene.parameter import Parameter
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
 
-PRINTED = {
-    "radius": 3.2e-3,
-    "speed": 227.0,
-    "E": 117e9,
-    "nu": 0.35,
-    "rho": 8930.0,
-    "yield_stress": 400e6,
-    "hardening": 100e6,
-}
-LENGTH, TIME = 32.4e-3, 80e-6
-FINAL, FOOT = 21.42e-3 / LENGTH, 7.22e-3 / 3.2e-3
+PRINTED = defaults("taylor")
+COPPER = ("speed", "E", "nu", "rho", "yield_stress", "hardening")  # of them those that size leaves
+TIME = 80e-6
+FINAL, FOOT = 21.42e-3 / PRINTED["length"], 7.22e-3 / PRINTED["radius"]
 SLENDER, HARDEST = (3.0, 20.0), 1.6  # length over radius; rho v^2 over the yield stress
 CRUSHED = 2e-3  # of the first step: at the foot of a bar without hardening it falls to 0.014 and stays there
 CAUTION = 0.8  # the whole bar flows: with the full step coarse cells near the foot came to grow unstable
@@ -61,7 +53,7 @@ TRIPS = 3.0  # round trips of the elastic wave that are followed at least
 def _time(p: Values) -> float:
     """Return how long the bar is followed, s: its momentum over the force of its yield stress."""
     stops = p["rho"] * p["speed"] * p["length"] / p["yield_stress"]
-    printed = PRINTED["rho"] * PRINTED["speed"] * LENGTH / PRINTED["yield_stress"]
+    printed = PRINTED["rho"] * PRINTED["speed"] * PRINTED["length"] / PRINTED["yield_stress"]
     return p["time"] or max(TIME * stops / printed, TRIPS * 2 * p["length"] / bar_speed(p["E"], p["rho"]))
 
 
@@ -94,9 +86,9 @@ def strike(p: Values, slices: float) -> tuple[Array, float, State, int]:
 
 def _printed(p: Values, shape: Array, near: Array) -> list[Check]:
     """Return the final shape beside the printed one, where the bar has its shape and copper."""
-    scale = p["radius"] / PRINTED["radius"]
-    alike = abs(p["length"] - scale * LENGTH) < 1e-9 * LENGTH and p["time"] in (0.0, TIME * scale)
-    if not alike or any(p[name] != value for name, value in PRINTED.items() if name != "radius"):
+    scale, length = p["radius"] / PRINTED["radius"], PRINTED["length"]
+    alike = abs(p["length"] - scale * length) < 1e-9 * length and p["time"] in (0.0, TIME * scale)
+    if not alike or any(p[name] != PRINTED[name] for name in COPPER):
         return []
     return _beside(shape, np.array([FINAL * p["length"], FOOT * p["radius"]]), near, ", printed")
 
@@ -144,21 +136,3 @@ def solve(p: Values) -> Solved:
         Check("energy ledger / E_0", "1", missed, 0.0, 1e-3, "at most"),
     ]
     return Solved(tuple(checks), state.step, cells)
-
-
-PROBLEM = Problem(
-    "taylor",
-    "a yielding bar flattens on a frictionless wall: final length and foot radius",
-    (
-        Parameter("length", "length of the bar", "length", 1e-3, 1.0, default=LENGTH),
-        Parameter("radius", "radius of the bar", "length", 1e-4, 0.1, default=PRINTED["radius"]),
-        setups.speed("speed", "speed of the bar", PRINTED["speed"], 5e3),
-        *setups.elastic(PRINTED["E"], PRINTED["nu"], PRINTED["rho"]),
-        Parameter("yield_stress", "yield stress", "stress", 1e5, 1e10, default=PRINTED["yield_stress"]),
-        Parameter("hardening", "plastic modulus", "stress", 0.0, 1e11, default=PRINTED["hardening"]),
-        Parameter("time", "time that is followed; 0: until it has stopped", "time", 0.0, 1.0, default=0.0),
-        Parameter("slices", "cells along the bar", "", 10, 200, default=96, whole=True),
-        setups.across(8),
-    ),
-    solve,
-)

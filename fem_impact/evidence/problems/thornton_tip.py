@@ -10,12 +10,11 @@ from math import exp, floor, log, log2, pi, sqrt
 import numpy as np
 
 from fem_impact.evidence.problems import setups
-from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values, within
+from fem_impact.evidence.problems.problem import Check, Solved, Values, within
 from fem_impact.evidence.problems.spheres import ball_mass
 from fem_impact.evidence.references import hertz
 from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.material import Material
-from fem_impact.scene.parameter import Parameter
 from fem_impact.solid.model import Model
 
 SLOPE, SLOPE_TOLERANCE, CONVERGED = -0.25, 0.05, 0.03
@@ -107,19 +106,3 @@ def solve(p: Values) -> Solved:
         Check("energy ledger / E_0", "1", max(run[1] for run in (*runs, fine)), 0.0, 1e-3, "at most"),
     )
     return Solved(checks, fine[2], fine[3])
-
-
-PROBLEM = Problem(
-    "thornton",
-    "a yielding sphere on a rigid plane: restitution falls as speed to the power -1/4",
-    (
-        Parameter("radius", "radius of the sphere", "length", 1e-4, 1.0, default=9.5e-3),
-        setups.speed("slowest", "lowest approach speed", 2.5),
-        setups.speed("fastest", "highest approach speed", 10.0),
-        *setups.elastic(),
-        Parameter("yield_stress", "yield stress", "stress", 1e5, 1e10, default=546e6),
-        Parameter("hardening", "plastic modulus", "stress", 0.0, 1e11, default=0.0),
-        Parameter("cells", "cells over the contact radius", "", 2, 20, default=7),
-    ),
-    solve,
-)

@@ -11,7 +11,7 @@ import meshes
 from fem_impact.arrays import Array
 from fem_impact.evidence.problems import setups
 from fem_impact.evidence.problems.discretisation import BarMesh
-from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values
+from fem_impact.evidence.problems.problem import Check, Solved, Values
 from fem_impact.evidence.references.free_modes import bending_modes, cylinder_frequencies
 from fem_impact.evidence.references.rod_end import bar_speed
 from fem_impact.evidence.references.waves import flexural_speed, longitudinal_speed
@@ -21,7 +21,6 @@ from fem_impact.fem.layout import TWISTING, MassPoints, number
 from fem_impact.fem.slices import SliceOperator
 from fem_impact.fem.sparse import assemble, assemble_mass, tie_operator
 from fem_impact.scene.barrier import Barrier
-from fem_impact.scene.parameter import Parameter
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.solid.march import march
 from fem_impact.solid.model import Model
@@ -145,19 +144,6 @@ def solve_modes(p: Values) -> Solved:
     return Solved(tuple(checks), state.step, len(model.geometry.rod.mesh.cells))
 
 
-PARAMETERS: tuple[Parameter, ...] = (
-    setups.length(),
-    setups.diameter(),
-    *setups.elastic(),
-    setups.across(low=8),
-)
-MODES = Problem(
-    "modes",
-    "natural frequencies of a free round bar, by eigenproblem and by ringing",
-    PARAMETERS,
-    solve_modes,
-)
-
 WAVES_TOLERANCE = 0.005  # of c0
 JUDGED, SHORT = 0.2 + 1e-9, "waves so short are up to 1 % slow even with 24 cells across"
 LONGITUDINAL, FLEXURAL = 2, 0  # components of the axis that move
@@ -230,19 +216,3 @@ def solve_waves(p: Values) -> Solved:
                 else Check.shown(label, "1", found, speed, SHORT)
             )
     return Solved(tuple(checks), 0, bar.cells)
-
-
-WAVES = Problem(
-    "waves",
-    "phase speeds of the first longitudinal and flexural waves in an endless bar of slices",
-    (
-        setups.diameter(),
-        *setups.elastic(),
-        Parameter("ratio", "largest radius over wavelength, judged up to 0.2", "", 0.01, 0.5, default=0.2),
-        setups.across(low=8),
-        Parameter(
-            "aspect", "height of a slice over diameter / across (runs take 1)", "", 0.1, 4.0, default=1.0
-        ),
-    ),
-    solve_waves,
-)

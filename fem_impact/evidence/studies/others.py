@@ -19,6 +19,7 @@ from fem_impact.answers.v_and_v import COVERAGE, Comparison, joint
 from fem_impact.arrays import Array
 from fem_impact.evidence.data import read_table
 from fem_impact.evidence.problems import taylor_bar
+from fem_impact.evidence.problems.problem import defaults
 from fem_impact.evidence.studies.joint import LEVEL
 from fem_impact.evidence.studies.report_parts import comparison_table, error_panel, rests_on
 from fem_impact.figures.panels import Picture
@@ -64,8 +65,7 @@ class Rod:
         start, top = metal.yield_stress or 0.0, metal.ultimate_stress or 0.0
         flow = {"yield_stress": factor * start, "hardening": factor * considere_modulus(start, top)}
         sizes = {"length": self.length, "radius": self.diameter / 2, "speed": self.speed}
-        values = {one.key: one.default for one in taylor_bar.PROBLEM.parameters}
-        p = {**values, **sizes, **flow, "E": metal.E, "nu": metal.nu, "rho": metal.rho}
+        p = {**defaults("taylor"), **sizes, **flow, "E": metal.E, "nu": metal.nu, "rho": metal.rho}
         shape, *_ = taylor_bar.strike(p, slices)
         return np.asarray(shape / (self.length, self.diameter / 2))
 

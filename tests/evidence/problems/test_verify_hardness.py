@@ -4,10 +4,10 @@ import pytest
 
 from fem_impact.errors import SceneError
 from fem_impact.evidence.problems import hardness_cone
-from fem_impact.evidence.problems.problem import verify
+from fem_impact.evidence.problems.problem import defaults, verify
 from fem_impact.evidence.references.cone import indent
 
-VALUES = hardness_cone.PROBLEM.values({})
+VALUES = defaults("hardness")
 
 
 @pytest.mark.parametrize("f", [0.0, pytest.param(0.1, marks=pytest.mark.slow)])
