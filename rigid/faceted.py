@@ -215,6 +215,16 @@ class Faceted:
         """Whether points at distances `rho` from the axis and heights `z`, m, lie within the outer width."""
         return np.asarray((rho <= self.radius(z)) & (z >= 0.0) & (z <= self.length))
 
+    def within(self, x: Floats, z: Floats) -> NDArray[np.bool_]:
+        """Whether points (x, z), m, lie inside the body where the plane of motion cuts it (even-odd rule)."""
+        ends = np.stack([self.facets, np.roll(self.facets, -1, axis=1)], axis=-1).reshape(-1, 2)
+        cut = (np.abs(self.points[ends, 1]) <= LEVEL * self.length).all(axis=1)
+        (a, low), (b, high) = np.moveaxis(self.points[ends[cut]][:, :, [0, 2]], 0, -1)
+        x, z = np.asarray(x)[..., None], np.asarray(z)[..., None]
+        share = (z - low) / np.where(high == low, 1.0, high - low)
+        crossed = ((low > z) != (high > z)) & (a + share * (b - a) > x)
+        return np.asarray(crossed.sum(axis=-1) % 2 == 1)
+
     def sections(self, z: Floats, factor: Floats | float = 1.0) -> Floats:
         """Mass, kg/m, and second moment over x about its centre, kg m, of a metre, (k, 2), of the whole body.
 

@@ -190,6 +190,16 @@ def require_shallow(bodies: Bodies) -> None:
         )
 
 
+def unused(scene: Scene, fidelity: str) -> str:
+    """Return that a stated restitution is not used, nothing where it is or none is stated."""
+    if scene.restitution is None or fidelity == "rigid":
+        return ""
+    return (
+        f"The stated restitution {scene.restitution:g} is that of the rigid model (--fidelity rigid) alone: "
+        "here the loss follows from the contact and the materials."
+    )
+
+
 def require_still(barrier: Barrier, fidelity: str) -> None:
     """Refuse a barrier that turns where a fidelity has none (SceneError)."""
     if barrier.inertia is not None and fidelity == "rigid":

@@ -5,7 +5,7 @@ from fem_impact.case.effects.heating import thermal
 from fem_impact.case.effects.plasticity import hardening_of
 from fem_impact.case.elastic_only import left_out
 from fem_impact.physics.hardening import TABOR_STRAIN, rate_gain, rate_law
-from fem_impact.scene.inputs import materials_of
+from fem_impact.scene.inputs import materials_of, melting
 from fem_impact.scene.library import family_of
 from fem_impact.scene.material import (
     Flow,
@@ -86,8 +86,17 @@ def _friction(bodies: Bodies) -> str:
 
 def _heat(bodies: Bodies) -> str:
     missing = [key for key, value in thermal(bodies).items() if value is None]
-    if not missing or "friction" not in bodies.effects:
+    if "friction" not in bodies.effects:
         return ""
+    if not missing:
+        metals, known = _metals(bodies), melting(bodies.scene)
+        unmelted = dict.fromkeys(metals[body].name for body in metals if body not in known)
+        if not unmelted or "contact-heating" not in bodies.effects:
+            return ""
+        return (
+            f"The melting point of {' and '.join(unmelted)} is not known: a flash temperature above it is "
+            "too high. State heating.rod_melting or heating.barrier_melting."
+        )
     return (
         f"The heat of the contact is not known: no material states {' and '.join(missing)}, "
         "nor does [heating] of the scene."

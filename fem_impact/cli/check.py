@@ -116,7 +116,7 @@ def _body_lines(body: dict[str, float], bends_as: str) -> Iterable[str]:
         f"periods: bending T1 = {plain(1e6 * body['bending_period_s'])} us, longitudinal "
         f"{plain(1e6 * body['stretching_period_s'])} us ({bends_as} and bar)"
         f"{ovalling}",
-        f"gamma {body['gamma']:.4g} m^-0.3815, from the largest diameter, {mm['diameter_m']:.4g} mm",
+        f"gamma {body['gamma']:.4g} m^-0.3815, from the largest width, {mm['diameter_m']:.4g} mm",
     )
 
 

@@ -257,6 +257,8 @@ def print_outcome(
         lines += [f"  vibration is below its numerical floor (fraction {floor})"]
     lines += _accuracy_lines(outcome, target_of)
     told = {**{label: KEY_TABLE[name] for label, name, _ in rows}, **listed, HEATING: SKIN}
+    if not isinstance(outcome.heat.power, Unknown):  # the heat was followed
+        told["flash temperature"] = FLASH
     lines += _unknown_lines({label: key.of(outcome) for label, key in told.items()})
     others = [one for one in by_weight(outcome.validity.limitations) if one not in wrong]
     lines += ["", *limitation_lines(others)]

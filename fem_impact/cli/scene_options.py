@@ -124,7 +124,7 @@ def command_line(options: Options, command: str, *names: str, scene: str = "") -
 def say_kept(scene: Scene, options: Options) -> None:
     """Say what ``--set`` left as it was: velocities at another angle, a bore in a longer projectile."""
     changed = set(read_changes(options.changes))
-    _say_fall(scene, changed)
+    _say_fall(scene, changed, options)
     rod = scene.projectile
     longer = bool({"projectile.length", "projectile.length_m"} & changed)
     if rod.segments and longer and "projectile.segments" not in changed:
@@ -142,11 +142,15 @@ def say_kept(scene: Scene, options: Options) -> None:
         )
 
 
-def _say_fall(scene: Scene, changed: set[str]) -> None:
+def _say_fall(scene: Scene, changed: set[str], options: Options) -> None:
     """Say that the velocities are those of the angle before, or that the fall is as fast as it was."""
     impact = scene.impact
-    stated = any(key.startswith(("impact.v_", "impact.speed", "impact.height")) for key in changed)
-    if stated or not {"impact.angle", "impact.angle_rad"} & changed or impact.height:
+    given = any(key.startswith(("impact.v_", "impact.speed", "impact.height")) for key in changed)
+    if given or not {"impact.angle", "impact.angle_rad"} & changed or impact.height:
+        return
+    from fem_impact.scene.shipped import load_to_change
+
+    if load_to_change(options.scene, read_changes(options.changes)).impact.angle == impact.angle:
         return
     speed = math.hypot(impact.v_n, impact.v_t)
     if impact.speed:

@@ -30,14 +30,21 @@ def drawn(body: Body, touch: tuple[float, float], joints: Sequence[float] = ()) 
     Thin bodies are drawn three rows high at least, not to scale. Segments, between ``joints``, m from the
     tip, have different signs.
     """
-    rows = min(MOST_ROWS, max(3, round(body.diameter / body.length * COLUMNS / TALL)))
-    rows += 1 - rows % 2  # one of them on the axis
+    from rigid import Faceted
+
+    middle, width = 0.0, body.diameter
+    if isinstance(body, Faceted):  # which may be bent
+        low, high = body.points[:, 0].min(), body.points[:, 0].max()
+        middle, width = 0.5 * (low + high), high - low
+    rows = min(MOST_ROWS, max(3, round(width / body.length * COLUMNS / TALL)))
+    rows += 1 - rows % 2  # one of them in the middle
     z = (np.arange(COLUMNS) + 0.5) / COLUMNS * body.length
-    x = np.linspace(1.0, -1.0, rows) * 0.5 * body.diameter * (1 - 0.5 / rows)
-    inside = body.holds(np.abs(x)[:, None] + 0.0 * z, z + 0.0 * x[:, None])
+    x = middle + width * np.linspace(-0.5, 0.5, rows) * (1 - 0.5 / rows)  # downwards
+    X, Z = np.broadcast_arrays(x[:, None], z)
+    inside = body.within(X, Z) if isinstance(body, Faceted) else body.holds(np.abs(X), Z)
     sign = [SHADES[number % len(SHADES)] for number in np.searchsorted(joints, z)]
     cells = [[sign[k] if cell else HOLLOW for k, cell in enumerate(row)] for row in inside]
-    row = int(np.argmin(np.abs(x + touch[0])))  # at an angle above 0 the lower side comes down first
+    row = int(np.argmin(np.abs(x - touch[0])))  # at an angle above 0 the lower side comes down first
     cells[row][min(COLUMNS - 1, int(touch[1] / body.length * COLUMNS))] = TOUCH
     return ["  " + "".join(line).rstrip() for line in cells]
 

@@ -10,7 +10,6 @@ import numpy as np
 from fem_impact.arrays import Array
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.case import Case
-from fem_impact.errors import SceneError
 from fem_impact.fem.body import MeshedBodies
 from fem_impact.modal.motion import Sites
 from fem_impact.modal.sites import nearest_skin, rotated, settle, sites_of, skin
@@ -83,12 +82,8 @@ def modes(scene: Scene) -> FreeModes:
     Raises
     ------
     SceneError
-        The projectile cannot be meshed, or is a mesh of the user's own.
+        The projectile cannot be meshed.
     """
-    if scene.projectile.own_mesh is not None:
-        path = scene.projectile.own_mesh.path
-        problem = "is a mesh of your own, whose modes are found within a run alone."
-        raise SceneError(problem, key="projectile.mesh", value=path, remedy="Give a body of revolution.")
     return FreeModes(*_modes(_elastic(scene.projectile), scene.across))
 
 
@@ -158,7 +153,8 @@ def _modes(rod: ProjectileSpec, across: int) -> tuple[Array, Array, Array]:
         effects=("vibration", "barrier-rigid"),
         accuracy=Accuracy(tip_size=min(rod.diameter / 4, COARSEST), across=across, mass_scaling=1.0),
     )
-    meshed = MeshedBodies(Case.of(scene))
+    # nothing strikes: a mesh of the user's own is not refused for how it would touch
+    meshed = MeshedBodies(Case.of(scene) if rod.own_mesh is None else Case(scene))
     modes, mesh = meshed.rod_modes(), meshed.geometry.rod.mesh
     low = modes.omega < section_frequency(rod.material, rod.diameter)
     # modes are normalised with the mass of the half rod

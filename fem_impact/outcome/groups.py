@@ -92,7 +92,9 @@ class RodMotion:
     k_squared: float = key(
         "k_squared_m2", "m2", "Squared radius of gyration about b through the mass centre."
     )
-    gamma: float = key("gamma_per_m0_3815", "m^-0.3815", "Slenderness l / d^1.3815.")
+    gamma: float = key(
+        "gamma_per_m0_3815", "m^-0.3815", "Slenderness l / d^1.3815, d the largest diameter or width."
+    )
     v_n: float = key(
         "v_n_m_per_s", "m/s", "Normal velocity of the mass centre at first contact, negative inwards."
     )

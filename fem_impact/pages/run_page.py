@@ -238,6 +238,9 @@ def _cards(outcome: Outcome, rigid: Outcome | None, friction: FrictionSpread | N
         by_friction = f"interval of f: {changed}" if changed else ""
         note = ". ".join(sentence for sentence in (by_friction, theory, missing) if sentence)
         numbers.append(sections.card(label, sections.estimated(outcome, key) + unit, note))
+    melted = outcome.heat.temperature
+    if isinstance(melted, Unknown) and not isinstance(outcome.heat.power, Unknown):
+        numbers.append(sections.card("flash temperature", DASH, melted.reason))
     residual = number(outcome.energy.residual, 2)
     last = sections.card("ledger residual", residual, "of E₀; a run must stay below 1e-4")
     said = friction.said.replace("At the right", "Interval of f") if friction else ""

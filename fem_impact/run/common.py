@@ -17,7 +17,7 @@ from fem_impact.outcome.groups import (
 from fem_impact.outcome.keys import Num, Unknown, known, unknown
 from fem_impact.physics.flash import Flash, flash_bound
 from fem_impact.run.tests import tests_of
-from fem_impact.scene.inputs import melting
+from fem_impact.scene.inputs import first_melting, melting
 
 NO_TABLE = "the scene repeats no measured set, so no table gives its arms"
 MASSIVE = Unknown("the barrier is massive")
@@ -31,6 +31,8 @@ HARDER = Unknown(
 HARD = "neither body yields, so that no hardness limits the pressure of a touching spot"
 UNDETERMINED = Unknown("the contact point does not approach, or no moment acts about the mass centre: 0 / 0")
 NO_PUSH = Unknown("gravity has drawn the rod to the barrier more than that has pushed it away")
+MELTS = "melt; melting is left out"
+"""End of the reason of a temperature beyond a melting point."""
 RESIDUAL_LIMIT = 1e-4  # of E_0: above it a run failed
 ROUND_OFF = 1e-6  # a moment impulse over that of the normal impulse at arm d_d: below it there is none
 
@@ -249,7 +251,7 @@ def plastic_shares(case: Case, share: float) -> tuple[Num, Num]:
 def heat(case: Case, flash: Flash, power: float, flux: float, patch: float, less_vibration: Num) -> Heat:
     """Return the heat of the contact: peaks of power, W, flux, W/m2, and patch, m2, of the whole contact."""
     ambient, ignition = case.scene.heating.ambient, case.scene.heating.ignition
-    temperature = below_melting(case, ambient + flash.peak)
+    temperature = below_melting(case, ambient + flash.peak, "at least {limit:.0f} K; ")
     return Heat(
         patch=patch,
         power=power,
@@ -280,12 +282,15 @@ def _bound(case: Case, ambient: float) -> Num:
     return below_melting(case, ambient + rise)
 
 
-def below_melting(case: Case, temperature: float) -> Num:
-    """Return a temperature of the contact, K; it is not known where a body melts: latent heat is left out."""
-    lowest, name = min(((limit, name) for name, limit in melting(case.scene).values()), default=(inf, ""))
+def below_melting(case: Case, temperature: float, known: str = "") -> Num:
+    """Return a temperature of the contact, K; it is not known where a body melts: latent heat is left out.
+
+    ``known`` is what is said of it then, of the melting point ``limit``.
+    """
+    lowest, name = first_melting(case.scene)
     if temperature < lowest:
         return temperature
     return Unknown(
-        f"not resolved: conduction of heat alone gives {temperature:.0f} K, above {lowest:.0f} K, where "
-        f"{name} begins to melt; melting is left out"
+        f"{known.format(limit=lowest)}not resolved: conduction of heat alone gives {temperature:.0f} K, "
+        f"above {lowest:.0f} K, where {name} begins to {MELTS}"
     )

@@ -1,5 +1,6 @@
 """The inputs of a scene: every value that enters a model, with where it comes from."""
 
+from math import inf
 from typing import Any
 
 from fem_impact.scene.library import CHANGED, materials, melting_of, source_of
@@ -49,6 +50,11 @@ def melting(scene: Scene) -> dict[str, tuple[str, float]]:
     stated = {body: getattr(scene.heating, f"{body}_melting") for body in metals}
     found = {body: stated[body] or melting_of(name) for body, name in metals.items()}
     return {body: (metals[body].removesuffix(CHANGED), limit) for body, limit in found.items() if limit}
+
+
+def first_melting(scene: Scene) -> tuple[float, str]:
+    """Return the lowest known melting point, K, and its metal's name; infinite where none is known."""
+    return min(((limit, name) for name, limit in melting(scene).values()), default=(inf, ""))
 
 
 def materials_of(scene: Scene) -> dict[str, Material]:

@@ -59,6 +59,7 @@ def test_velocities_beside_the_axis_are_kept_at_a_new_angle_and_the_user_is_told
     _, out, err = cli("check", str(mine), "--set", "impact.angle=20 deg", "--set", "impact.speed=2.107 m/s")
     assert not err and BESIDE not in " ".join(out.split())
     _, _, err = cli("check", str(mine), "--set", "impact.angle=88 deg")
+    assert not cli("check", str(mine), "--set", "impact.angle=30 deg")[2]  # as it is stated
     assert OLD in err and "impact.speed" not in err  # a fall along an axis that lies down hardly strikes
 
 

@@ -4,11 +4,13 @@ import re
 
 import numpy as np
 import pytest
+from own_bodies import box, write
 
 from fem_impact.case.case import Case
 from fem_impact.figures.outline import draw
+from fem_impact.figures.outline import drawn as in_words
 from fem_impact.figures.style import new_figure
-from fem_impact.scene.shipped import load
+from fem_impact.scene.shipped import load, replace
 from rigid import Turned
 
 
@@ -47,6 +49,18 @@ def test_a_tube_is_drawn_with_its_bore_contact_and_mass_centre(monkeypatch, tmp_
     assert axes.get_aspect() == 1.0
 
 
+def test_a_bent_mesh_is_drawn_as_it_is_bent(tmp_path):
+    """Towards x > 0, which is drawn below: the tip lies in the highest row, the tail in the lowest."""
+    points, cells = box(2, 1, 10, (-3e-3, 0.0, 0.0), (3e-3, 3e-3, 0.1))
+    points[:, 0] += 0.03 * points[:, 2] / 0.1
+    write(tmp_path / "bent.vtu", points, cells)
+    rod = {"mesh": tmp_path / "bent.vtu", "mesh_unit": "m", "material": "rod-steel"}
+    body = replace(load("t5b"), "projectile", rod).projectile.rigid_body
+    lines = in_words(body, body.touch(0.5)[:2])
+    assert lines[0].startswith("  #") and lines[0].count("#") < 20
+    assert lines[-1].startswith(" " * 40) and "o" in "".join(lines)
+
+
 def test_a_long_rod_is_drawn_with_a_break_that_hides_nothing(monkeypatch, tmp_path):
     axes, body, _ = drawn(monkeypatch, tmp_path, "tungsten-rod")
     tip, tail = axes.figure.axes
@@ -82,7 +96,7 @@ def test_another_format_is_refused_before_any_work(cli, tmp_path):
 
 
 def test_a_mesh_is_drawn_with_its_cells_and_its_materials(cli, tmp_path):
-    from own_bodies import taper, write
+    from own_bodies import taper
 
     write(tmp_path / "bar.vtu", *taper(end=0.9))
     (tmp_path / "own.toml").write_text(

@@ -237,9 +237,11 @@ def test_a_temperature_above_the_melting_point_is_not_resolved(melting, resolved
 
 def test_without_both_melting_points_no_bound_is_told():
     scene = replace_all(
-        load("t5b"), {"projectile.material": "stainless-304", "effects": ["auto", "contact-heating"]}
+        load("t5b"), {"projectile.material": "tungsten-heavy-alloy", "effects": ["auto", "contact-heating"]}
     )
-    told = simulate(scene, "rigid").heat
+    outcome = simulate(scene, "rigid")
+    assert any("melting point of tungsten-heavy-alloy" in one.text for one in outcome.validity.limitations)
+    told = outcome.heat
     assert told.temperature > 293.0 and told.bound.reason.endswith("state heating.rod_melting")
 
 
@@ -253,6 +255,12 @@ def test_melting_points_stand_beside_shipped_materials_with_their_sources():
     assert "C26000 cartridge brass: solidus" in told["heating.rod_melting"]
     own = {"name": "mine", "E": "70 GPa", "nu": 0.33, "rho": "2700 kg/m3"}
     assert melting(changed(load("t5b"), "projectile.material", own)) == {"barrier": ("plate-steel", 1700.15)}
+
+
+def test_a_stated_restitution_that_a_model_does_not_use_is_told():
+    stated = changed(load("t5b"), "restitution", 0.5)
+    for fidelity, told in (("modal", True), ("solid", True), ("rigid", False)):
+        assert any("stated restitution 0.5" in one.text for one in Case(stated, fidelity).limitations) is told
 
 
 def test_ignition_is_the_users():

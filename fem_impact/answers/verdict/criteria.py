@@ -27,20 +27,28 @@ from fem_impact.outcome.keys import Num, Unknown
 from fem_impact.outcome.record import Outcome
 from fem_impact.physics.contact_law import contact_law
 from fem_impact.physics.flash import flash
+from fem_impact.run.common import MELTS
 from fem_impact.run.modal import closed, reduce
 from fem_impact.run.modal_error import factor_of, farness, place_of
 from fem_impact.scene.fields import LEVELS
+from fem_impact.scene.inputs import first_melting
 from fem_impact.scene.types import Scene
 
 
 @dataclass(frozen=True, slots=True)
 class Bound:
-    """A number with its least and most, SI; ``alike``: its error was found on scenes like this one."""
+    """A number with its least and most, SI; ``alike``: its error was found on scenes like this one.
+
+    Beyond a ``ceiling`` it is not known, for the reason ``beyond``: value and least are at most the ceiling,
+    and the most is infinite.
+    """
 
     value: float
     low: float
     high: float
     alike: bool = True
+    ceiling: float = inf
+    beyond: str = ""
 
     def answer(self, limit: float) -> Answer:
         """Say whether the number stays below a limit."""
@@ -183,18 +191,46 @@ class Heat(Limited):
         """Return the temperature of the surroundings, K."""
         return scene.heating.ambient
 
+    def reduced(self, scene: Scene) -> Bound | Unknown:
+        """Return the temperature, which is not known beyond the lower melting point of the two bodies."""
+        found = super().reduced(scene)
+        return found if isinstance(found, Unknown) else _solid_metal(scene, found)
+
     def solid(self, levels: Sequence[LevelRun]) -> Bound | None:
         """Return the limit and the half-width of as many levels as a default run has.
 
-        Finer cells heat more: two levels of t5b told 415 to 507 K where three gave 513 K.
+        Finer cells heat more: two levels of t5b told 415 to 507 K where three gave 513 K. Where the last one
+        melts a body, the least is the melting point if the one before does so too.
         """
-        return super().solid(levels) if len(levels) >= LEVELS else None
+        if len(levels) < LEVELS:
+            return None
+        scene = levels[-1].cases[0].scene
+        *_, before, last = (_melts(level.outcome.heat.rise) for level in levels)
+        if last:
+            return _solid_metal(scene, Bound(inf, inf if before else self.base(scene), inf))
+        found = super().solid(levels)
+        return None if found is None else _solid_metal(scene, found)
 
     def meshed(self, scene: Scene) -> tuple[Scene, Scene | None]:
         """Return the scene with its heat followed."""
         plain, _ = super().meshed(scene)
         on = {*Case(plain).active, "contact-heating"}
         return replace(plain, effects=tuple(name for name in NAMES if name in on)), None
+
+
+def _melts(rise: Num) -> bool:
+    return isinstance(rise, Unknown) and rise.reason.endswith(MELTS)
+
+
+def _solid_metal(scene: Scene, bound: Bound) -> Bound:
+    """Return a temperature that is not known beyond the lower melting point, K."""
+    ceiling, name = first_melting(scene)
+    if bound.high < ceiling:
+        return bound
+    beyond = (
+        f"{name} begins to melt at {ceiling:.0f} K, and beyond that conduction of heat alone does not hold"
+    )
+    return Bound(min(bound.value, ceiling), min(bound.low, ceiling), inf, bound.alike, ceiling, beyond)
 
 
 class Force(Limited):

@@ -81,7 +81,11 @@ class LimitVerdict:
         """What an undecided answer lacks, empty of a decided one."""
         if self.answer != "undecided":
             return ""
+        if self.hopeless and self.bound is not None:
+            return f"a limit that can be judged: {self.bound.beyond}."
         if self.bound is not None and self.bound.answer(self.limit) == "undecided":
+            if self.bound.beyond:
+                return "a smaller error: the limit lies within that of the number."
             high = _in_unit(self.criterion, self.bound.high)
             return (
                 f"a smaller error: the limit lies within that of the number; or a limit of at least {high}."
@@ -91,9 +95,17 @@ class LimitVerdict:
         return UNCONFIRMED
 
     @property
+    def hopeless(self) -> bool:
+        """Whether the number is not known up to the limit, by any model."""
+        return self.bound is not None and self.limit >= self.bound.ceiling
+
+    @property
     def margin(self) -> float | None:
-        """How far the number stays below the limit at the worst place with its error, SI; below 0: beyond."""
-        if self.bound is None:
+        """How far the number stays below the limit at the worst place with its error, SI; below 0: beyond.
+
+        None where no number is known, or none beyond a ceiling.
+        """
+        if self.bound is None or (self.bound.beyond and self.bound.answer(self.limit) != "no"):
             return None
         return self.limit - (self.bound.low if self.bound.answer(self.limit) == "no" else self.bound.high)
 
@@ -138,7 +150,9 @@ def judge(
     found = {} if lacking and fidelity != "modal" else _scanned(scenes, criterion)
     known = {place: one for place, one in found.items() if isinstance(one, Bound)}
     why = next((one.reason for one in found.values() if isinstance(one, Unknown)), "")
-    worst = max(known, key=lambda place: known[place].value, default=(0.5,) * len(intervals))
+    worst = max(
+        known, key=lambda place: (known[place].value, known[place].low), default=(0.5,) * len(intervals)
+    )
     mildest = min(known, key=lambda place: known[place].value, default=worst)
     bound, by = known.get(worst), "the reduced model"
     answer = _together([one.answer(limit) for one in known.values()], bool(why) or not known)
@@ -254,8 +268,16 @@ def _in_unit(criterion: Criterion, number: float) -> str:
 
 def _told(criterion: Criterion, bound: Bound) -> str:
     """Return a number between its least and most, in the unit of its criterion."""
-    low, high = (_in_unit(criterion, end) for end in (bound.low, bound.high))
-    return f"{_in_unit(criterion, bound.value)} ({low} to {high})"
+    value, low = _in_unit(criterion, bound.value), _in_unit(criterion, bound.low)
+    if bound.beyond:
+        least = "at least " if bound.value == bound.ceiling else ""
+        return f"{least}{value} ({low} or more; {bound.beyond})"
+    return f"{value} ({low} to {_in_unit(criterion, bound.high)})"
+
+
+def _plain(bound: Bound) -> dict[str, Any]:
+    """Return a bound as plain JSON: what is infinite is null."""
+    return {name: None if value == inf else value for name, value in asdict(bound).items()}
 
 
 def document(v: LimitVerdict, command: str) -> dict[str, Any]:
@@ -264,17 +286,17 @@ def document(v: LimitVerdict, command: str) -> dict[str, Any]:
     over = " and ".join(f"{key} from {ends}" for key, ends in v.intervals.items())
     where = f", {over}" if over else ""
     box = [[f"Does {of.called} stay below {_in_unit(of, v.limit)}{where}?", f"{v.answer.upper()}."]]
-    if bound is not None and v.margin is not None:
+    if bound is not None:
         at = ", ".join(f"{key} {value}" for key, value in v.worst.items())
-        size = _in_unit(of, abs(v.margin))
+        size = "" if v.margin is None else _in_unit(of, abs(v.margin))
         far = {
-            "yes": f"at least {size} below",
-            "no": f"at least {size} above",
-            "undecided": f"up to {size} above",
+            "yes": f", at least {size} below the limit",
+            "no": f", at least {size} above the limit",
+            "undecided": f", up to {size} above the limit" if size else "",
         }
         worst = "At the worst place" if v.least is not None else "Where all have their middle values"
         place = f"{worst}, {at}:" if at else "Here:"
-        box.append([place, f"{_told(of, bound)}, {far[bound.answer(v.limit)]} the limit, by {v.by}."])
+        box.append([place, f"{_told(of, bound)}{far[bound.answer(v.limit)]}, by {v.by}."])
     if v.least is not None and over:
         box.append([f"Of {v.places} places of the reduced model", f"the least has {_in_unit(of, v.least)}."])
     lacking = [f"At some places the reduced model has no answer: {v.not_known}"] if v.not_known else []
@@ -287,11 +309,11 @@ def document(v: LimitVerdict, command: str) -> dict[str, Any]:
         "answer": v.answer,
         "margin": v.margin,
         "worst": dict(v.worst),
-        "bound": None if bound is None else asdict(bound),
+        "bound": None if bound is None else _plain(bound),
         "rests_on": v.by,
         "box": box,
         "missing": v.missing or None,
-        "next_step": next_step(command, v.more),
+        "next_step": next_step(command, {} if v.hopeless else v.more),
         "basis": [
             ["case", case_sentence(v.scene)],
             *([f"step {number}", f"{step}."] for number, step in enumerate(v.steps, 1)),

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from fem_impact.case.bodies import Bodies
 from fem_impact.tables.text import plain
-from rigid import LIMIT, behaves_rigidly
+from rigid import LIMIT, Projectile, behaves_rigidly
 
 ROUND = (
     "The contact is estimated as that of a round tip, but a flat face lands all at once: in two runs on "
@@ -22,6 +22,7 @@ class Screening:
     ovalling : period of the ovalling of a hollow body's wall, s; 0 of a solid one
     gamma : slenderness l / d^1.3815, m^-0.3815 (Eq 29)
     straight, flat : whether the rod strikes along its axis, and whether it lands on a flat face
+    widest : largest diameter or width, m, of a body that is no solid round rod of one; 0 of such a rod
     """
 
     period: float
@@ -30,6 +31,7 @@ class Screening:
     gamma: float
     straight: bool
     flat: bool
+    widest: float
 
     @property
     def ratio(self) -> float:
@@ -39,6 +41,10 @@ class Screening:
     @property
     def published(self) -> str:
         """What the published limit, gamma <= 26.45 m^-0.3815, says."""
+        if self.widest:
+            return (
+                f"the published limit {LIMIT:g} is of solid round rods of one diameter: it says nothing here"
+            )
         if self.straight:  # it is about e that does not change with the inclination
             return f"the published limit {LIMIT:g} is for inclined rods: it says nothing of a straight impact"
         rigid = bool(behaves_rigidly(self.gamma))
@@ -48,9 +54,11 @@ class Screening:
     @property
     def sentence(self) -> str:
         """Both numbers in one sentence."""
+        widest = f" from the largest width, {plain(1e3 * self.widest)} mm" if self.widest else ""
         told = (
             f"T1/tau = {self.ratio:.2f} (first bending period {plain(self.period * 1e6)} us, estimated "
-            f"contact {plain(self.duration * 1e6)} us), gamma = {self.gamma:.1f} m^-0.3815: {self.published}"
+            f"contact {plain(self.duration * 1e6)} us), gamma = {self.gamma:.1f} m^-0.3815{widest}: "
+            f"{self.published}"
         )
         if self.flat:
             return f"{told}. {ROUND}"
@@ -71,4 +79,5 @@ def screening(bodies: Bodies) -> Screening:
         float(bodies.body.gamma),
         bodies.scene.impact.angle == 0,
         bodies.contact.lands_flat,
+        0.0 if isinstance(bodies.body, Projectile) else bodies.body.diameter,
     )

@@ -29,7 +29,8 @@ def halves(bodies: Bodies) -> Halves:
     values = thermal(bodies)
     for key, value in values.items():
         if value is None:
-            remedy = "State it, or leave contact-heating out of effects."
+            forced = "contact-heating" in bodies.scene.effects
+            remedy = f"State it{', or leave contact-heating out of effects' if forced else ''}."
             raise SceneError("is not known: the material states none.", key=f"heating.{key}", remedy=remedy)
     known = {key: value for key, value in values.items() if value is not None}
     rod, barrier = bodies.contact.rod, bodies.contact.barrier

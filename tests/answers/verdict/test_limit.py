@@ -4,6 +4,7 @@ import json
 from dataclasses import replace
 from math import pi, sqrt
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -18,6 +19,7 @@ from fem_impact.cli.main import main
 from fem_impact.errors import SceneError, UsageError
 from fem_impact.modal.motion import ROW
 from fem_impact.outcome.keys import Unknown
+from fem_impact.run.common import MELTS
 from fem_impact.run.modal import closed
 
 ANGLE = {"impact.angle": ("20 deg", "60 deg")}
@@ -129,8 +131,30 @@ def test_an_even_flux_heats_two_half_spaces_as_the_closed_form_says(scene):
 def test_heat_of_a_metal_that_states_no_conduction_is_refused(scene):
     metal = "projectile.material", {"name": "mine", "E": "200 GPa", "nu": 0.3, "rho": "7800 kg/m3"}
     unknown = fem_impact.replace(scene, *metal)
-    with pytest.raises(SceneError, match="rod_conductivity"):
+    with pytest.raises(SceneError, match="rod_conductivity") as refused:
         judge(unknown, LIMITED["heat"], 600.0)
+    assert "leave" not in str(refused.value)  # the question needs the heat, whatever effects say
+
+
+def test_a_temperature_beyond_the_melting_point_is_at_least_that(scene):
+    """Both bodies melt from 1700 K on: no larger limit can be judged, by the reduced model or by levels."""
+    hot = fem_impact.replace_all(scene, {"impact.v_n": "-20 m/s", "impact.v_t": "-12 m/s"})
+    found = judge(hot, LIMITED["heat"], 3000.0, {}, "modal")
+    told = document(found, "")
+    assert found.answer == "undecided" and found.margin is None and told["next_step"] is None
+    assert "plate-steel begins to melt at 1700 K" in told["missing"] and "at least 1700 K (" in str(
+        told["box"]
+    )
+    assert json.loads(json.dumps(told, allow_nan=False))["bound"]["high"] is None
+    assert judge(hot, LIMITED["heat"], 300.0, {}, "modal").answer == "no"
+
+    melted = Unknown(f"at least 1700 K; rod-steel begins to {MELTS}")
+    for rises, low in (((400.0, melted, melted), 1700.15), ((400.0, 1000.0, melted), 293.15)):
+        levels = [
+            SimpleNamespace(cases=[Case(hot)], outcome=SimpleNamespace(heat=SimpleNamespace(rise=rise)))
+            for rise in rises
+        ]
+        assert LIMITED["heat"].solid(levels).low == pytest.approx(low)
 
 
 def test_heat_by_finite_elements_follows_the_contact(scene):

@@ -673,6 +673,8 @@ def test_the_published_limit_says_nothing_of_a_straight_impact():
     straight = replace_all(load("t5b"), {"impact.angle": "0 deg", "impact.v_t": "0 m/s"})
     assert "nothing of a straight impact" in screening(Case(straight).bodies).sentence
     assert "rebounds as a rigid body" in screening(Case(load("t5b")).bodies).sentence
+    tube = screening(Case(load("tube")).bodies).sentence
+    assert "from the largest width, 19 mm: the published limit 26.45 is of solid round rods" in tube
 
 
 def test_a_face_that_lands_flat_is_judged_by_the_reduced_model():
