@@ -9,6 +9,7 @@ from meshes.block import (
     with_free_bottom,
     with_rows_at,
     with_thin_skin,
+    with_wide_edges,
 )
 from meshes.cut import without_slices
 from meshes.errors import ClosedEndError, MeshError, MissingReaderError
@@ -72,6 +73,7 @@ __all__ = [
     "with_rows_at",
     "with_thin_rows",
     "with_thin_skin",
+    "with_wide_edges",
     "without_slices",
     "write",
 ]

@@ -23,6 +23,7 @@ __all__ = [
     "with_free_bottom",
     "with_rows_at",
     "with_thin_skin",
+    "with_wide_edges",
 ]
 
 # Columns at the ends of a contact: how many times narrower they are, cells to each side of an end in which
@@ -126,6 +127,22 @@ def with_columns_at(mesh: HexMesh, columns: FloatArray, places: FloatArray) -> H
     """
     points = mesh.points.copy()
     points[:, 0] = np.interp(points[:, 0], columns, places)
+    return replace(mesh, points=np.asarray(mesh.tie @ points))
+
+
+def with_wide_edges(mesh: HexMesh, margin: float, widest: float) -> HexMesh:
+    """Widen the columns of a block evenly towards its sides, over a ``margin``, m, inside them.
+
+    At the sides they are ``widest`` times as wide, and the margin is (1 + widest) / 2 times as wide. The side
+    b = 0, the plane of symmetry, stays.
+    """
+    points = mesh.points.copy()
+    for axis in (0, 1):
+        x = points[:, axis]
+        low, high = float(x.min()) + margin if axis == 0 else 0.0, float(x.max()) - margin
+        out = np.maximum(x - high, 0.0), np.maximum(low - x, 0.0)
+        up, down = (0.5 * (widest - 1.0) * way**2 / margin for way in out)
+        points[:, axis] += up - down
     return replace(mesh, points=np.asarray(mesh.tie @ points))
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from fem_impact.arrays import Array
 from fem_impact.case.bodies import Bodies
-from fem_impact.case.plates import rows_through
+from fem_impact.case.plates import rows_through, widening
 from fem_impact.case.recorded import AnyZones
 from fem_impact.case.zones import Corners, zones_of
 from fem_impact.errors import SceneError
@@ -29,10 +29,10 @@ def block_of(bodies: Bodies, zones: AnyZones) -> Corners:
     """Return the corners of the barrier's block, before its rows are moved.
 
     It holds all layers, is `AROUND` times as much wider than its fine zone, and has rows as high as wide. A
-    plate that is meshed through its thickness goes on to its edges instead.
+    plate that is meshed through its thickness goes on to its edges instead, before its cells widen.
     """
     if zones.edges:
-        low, high = zones.block(zones.edges)
+        low, high = zones.block(2 * zones.edges / (1 + widening(bodies, zones.base)))
         return np.array([*low[:2], -rows_through(bodies, zones.base) * zones.base]), high
     ends = interfaces(bodies)
     low, high = zones.block(max(bodies.scene.accuracy.block_margin, AROUND * ends.max(initial=0.0)))

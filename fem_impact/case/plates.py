@@ -8,6 +8,7 @@ from fem_impact.arrays import Array
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.effects.barrier import compliance_share
 from fem_impact.errors import SceneError
+from fem_impact.physics.contact import pressure_speed
 from fem_impact.physics.plate import contact_time, least_span, plate_waves, zener_number
 
 # of e, by a half-space under the contact: above it that is told, and finite elements mesh the plate through
@@ -18,6 +19,9 @@ MOST_ZENER = 2.0  # up to it `contact_time` is no shorter than Zener's contact, 
 # of a plate before refinement: above the first its cells are twice as large and split once more at the
 # contact, as long as `ROWS` of them are no flatter than `FLATTEST`; the second takes about 1 GB
 MANY_CELLS, MOST_CELLS = 5e4, 3e5
+# cells times the passages of a pressure wave through one of them while the plate is touched, above which they
+# widen towards its edges; how many times wider they become at most, and least cells in a bending wave there
+MANY_PASSAGES, WIDEST, PER_WAVE = 2.5e7, 4.0, 12.0
 
 
 def half_space_error(bodies: Bodies) -> float:
@@ -130,6 +134,20 @@ def doublings(bodies: Bodies, edge: float) -> int:
         count += 1
 
 
+def widening(bodies: Bodies, base: float) -> float:
+    """Return how many times wider than ``base``, m, at the contact cells are at the edges of a plate.
+
+    It is 1 but for a plate that is meshed through and would take long with equal cells.
+    """
+    speed, reach = plate_waves(bodies.contact)
+    time = contact_time(bodies.contact)
+    cells = 2 * (reach / base) ** 2 * rows_through(bodies, base)
+    if cells * pressure_speed(bodies.barrier.material) * time / base <= MANY_PASSAGES:
+        return 1.0
+    shortest = 2 / math.sqrt(3) * speed * time  # of three times the frequency 1 / (2 time) of that speed
+    return min(max(shortest / (PER_WAVE * base), 1.0), WIDEST)
+
+
 def require_plate(bodies: Bodies, meshed_through: bool) -> None:
     """Refuse a plate too thin for a local contact, or too narrow for its bending waves (SceneError)."""
     barrier, estimate = bodies.barrier, bodies.estimate
@@ -174,9 +192,10 @@ def require_plate_mesh(bodies: Bodies, base: float, block: tuple[Array, Array]) 
     low, high = block
     cells = math.prod((high - low) / base)
     if cells > MOST_CELLS:
+        reach = plate_waves(bodies.contact)[1]
         raise SceneError(
-            f"needs a mesh of {cells:.2g} cells: to {-low[0] * 1e3:.3g} mm beside the contact, from where "
-            f"bending waves are back after it, with cells {base * 1e3:.3g} mm wide, as the plate is thick.",
+            f"needs a mesh of {cells:.2g} cells: to {reach * 1e3:.3g} mm beside the contact, from where "
+            f"bending waves are back after it, with cells {base * 1e3:.3g} mm wide at the contact.",
             key="barrier.thickness",
             value=value,
             remedy="Give a thicker plate, or a projectile that touches it for a shorter time.",

@@ -22,6 +22,7 @@ from fem_impact.case.layers import block_of, moved_rows
 from fem_impact.case.zones import BUFFER, Ways, Zones, zones_of
 from fem_impact.errors import SceneError
 from fem_impact.physics.contact import pressure_speed
+from fem_impact.physics.plate import contact_time
 from fem_impact.scene.material import Material
 from fem_impact.scene.own_mesh import OwnMesh
 from fem_impact.scene.units import format_quantity
@@ -84,7 +85,7 @@ def run_size(slots: ModelSpec, bodies: Bodies, zones: Zones) -> RunSize:
     yielding += _yielding_block(zones) if any(slots.barrier_laws) else 0.0
     step, latest = _step(bodies, zones, slots), bodies.max_time
     touch, swing = UNTIL_APART
-    apart = touch * bodies.estimate.duration + swing * bodies.bending_period
+    apart = touch * contact_time(bodies.contact) + swing * bodies.bending_period
     elements = rod + barrier
     steps, most = min(apart, latest) / step, latest / step
     modes = modes_time(bodies, rod) if slots.vibrating else 0.0

@@ -11,6 +11,7 @@ from fem_impact.arrays import Array, Bools
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.cells import body_cell
 from fem_impact.case.layers import block_of, moved_rows
+from fem_impact.case.plates import widening
 from fem_impact.case.recorded import AnyZones, RecordedZones
 from fem_impact.case.size import no_rest
 from fem_impact.case.zones import BUFFER, Zones
@@ -208,7 +209,10 @@ def _block(bodies: Bodies, zones: AnyZones) -> HexMesh:
     if columns is not None:
         coarse = meshes.with_columns_at(coarse, *columns)
     if zones.edges:
-        coarse = meshes.with_free_bottom(coarse)
+        widest = widening(bodies, base)
+        coarse = meshes.with_free_bottom(
+            meshes.with_wide_edges(coarse, 2 * zones.edges / (1 + widest), widest)
+        )
     block = meshes.with_thin_skin(coarse, h, zones.skin_rows)
     if bodies.barrier.layers or zones.edges:
         block = meshes.with_rows_at(block, rows, depths)

@@ -8,8 +8,9 @@ from fem_impact.case.case import Case
 from fem_impact.case.cells import body_cell
 from fem_impact.case.layers import block_of
 from fem_impact.case.limits import not_reduced
-from fem_impact.case.plates import contact_width, half_space_error
+from fem_impact.case.plates import contact_width, half_space_error, widening
 from fem_impact.errors import SceneError
+from fem_impact.fem.geometry import build_geometry
 from fem_impact.outcome.limitation import texts
 from fem_impact.physics.plate import least_span
 from fem_impact.run.simulate import simulate
@@ -86,6 +87,17 @@ def test_a_plate_of_many_cells_has_larger_ones_away_from_the_contact():
     assert fine.zones.base == 4 * body_cell(fine.bodies) <= 5e-3
     assert fine.zones.barrier_size == pytest.approx(fine.scene.accuracy.tip_size, rel=0.5)
     assert fine.size.barrier < 1e5
+
+
+def test_cells_of_a_plate_that_is_touched_for_long_widen_towards_its_edges():
+    """The edges stay where they are; the shipped plate keeps equal cells."""
+    assert widening((bodies := Case.of(load("plate-10mm")).bodies), body_cell(bodies)) == 1.0
+    case = Case.of(replace_all(load("plate-10mm"), {"barrier.thickness": "4 mm"}))
+    bodies, zones = case.bodies, case.zones
+    assert 2.0 < widening(bodies, zones.base) <= 4.0
+    mesh = build_geometry(bodies, zones, 0.0, True).barrier
+    assert mesh.points[:, 0].min() == pytest.approx(zones.block(zones.edges)[0][0])
+    assert len(mesh.cells) == pytest.approx(case.size.barrier, rel=0.1) and len(mesh.cells) < 6000
 
 
 def test_a_plate_of_too_many_cells_is_refused():

@@ -103,3 +103,17 @@ def test_columns_drawn_to_ends_near_a_side_stay_in_the_block():
     columns, places = meshes.drawn_to_ends((-0.7e-3, 0.3e-3), 0.25e-3, (-1e-3, 1e-3))
     for along in (columns, places):
         assert along[[0, -1]] == pytest.approx([-1e-3, 1e-3]) and (np.diff(along) > 0.0).all()
+
+
+def test_columns_widen_evenly_towards_the_sides(fine):
+    margin, widest = 1.5e-3, 3.0
+    wide = meshes.with_wide_edges(fine, margin, widest)
+    (low, _, _), (high, side, _) = wide.points.min(axis=0), wide.points.max(axis=0)
+    more = 0.5 * (widest - 1.0) * margin
+    assert (low, high, side) == pytest.approx((LOW[0] - more, HIGH[0] + more, HIGH[1] + more))
+    inside = (np.abs(fine.points[:, 0] - 0.5 * (LOW[0] + HIGH[0])) < 0.5 * (HIGH[0] - LOW[0]) - margin) & (
+        fine.points[:, 1] < HIGH[1] - margin
+    )
+    assert inside.any() and (wide.points[inside] == fine.points[inside]).all()
+    assert (wide.points[fine.points[:, 1] == 0.0, 1] == 0.0).all()
+    assert np.abs(wide.tie @ wide.points - wide.points).max() < 1e-15

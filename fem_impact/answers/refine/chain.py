@@ -14,12 +14,17 @@ from contextlib import nullcontext
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from itertools import pairwise
-from math import ceil
 from pathlib import Path
 
-from fem_impact.answers.refine.budget import LONGER, about_s, in_turns, longest_s, turns
+from fem_impact.answers.refine.budget import about_s, in_turns, longest_s, turns
 from fem_impact.answers.refine.extrapolate import UNRESOLVED, level_limits, quantity_limits
-from fem_impact.answers.refine.forecast import MIDDLE, LevelProgress, OverBudgetError, now, require_pilot
+from fem_impact.answers.refine.forecast import (
+    MIDDLE,
+    LevelProgress,
+    enough_s,
+    now,
+    require_pilot,
+)
 from fem_impact.answers.refine.level import STAMP, LevelRun, simulate_level
 from fem_impact.answers.refine.level_meshes import LevelMeshes, steps_between
 from fem_impact.answers.refine.quantities import TARGETED
@@ -51,7 +56,9 @@ MOST_REPEATS = 2  # of a level, each with twice the room
 # levels beyond those asked for, where the last has not resolved the contact: it would have no numbers
 MORE = 1
 BUDGET = 600.0  # s of wall time for all levels, unless stated
-LATE = 1.3  # of the budget, beyond which a level that has begun is given up
+# of the budget, beyond which a level that has begun is given up: all ends within 1.3 times, as the clock is
+# not looked at while matrices are assembled and results written
+LATE = 1.2
 LEAST_BUDGET = 5.0  # s: a smaller budget still gives a quick scene its first level
 MOST_FINER = 3  # splits beyond those that resolve the contact, where a band decides
 Decides = Callable[[Sequence[LevelRun]], bool]
@@ -205,10 +212,16 @@ class LevelChain:
             if self.spent_s + self.forecast_s(splits) <= self.budget_s:
                 return splits
         if self.options.progress is not None:
-            told = f"Level {len(self.done) + 1} would take about {about_s(self.forecast_s(splits))}"
-            used = f"{about_s(self.spent_s)} of the budget of {about_s(self.budget_s)} are used up"
-            self.options.progress(Notice(f"{told}; {used}: the run ends with level {len(self.done)}."))
+            self.options.progress(Notice(f"The run ends with level {len(self.done)}. {self._not_begun}"))
         return None
+
+    @property
+    def _not_begun(self) -> str:
+        """Say that the budget does not hold the next level, and which does; empty where none is wanted."""
+        if self.failed or self.following is None:
+            return ""
+        used = f"{about_s(self.spent_s)} of the budget of {about_s(self.budget_s)} are used up"
+        return f"{used}. {self.advice[0]}"
 
     @property
     def counted(self) -> int:
@@ -275,7 +288,10 @@ class LevelChain:
             ]
             try:
                 runs = in_turns(work, self.workers)
-            except OverBudgetError as late:  # what ended in smaller zones is better than a coarser level
+            except (
+                SceneError,
+                RunError,
+            ) as late:  # what ended in smaller zones is better than none
                 if kept is None:
                     raise
                 level = replace(kept, wall_s=now() - begun, late=str(late))
@@ -313,9 +329,10 @@ class LevelChain:
         out = self.options.out and self._place(number, repeats, run)
         later = steps_between(splits, max(self.finest, splits))
         name = f"{self.scene.id}, level {number}" + f" of {number + len(later)}" * bool(self.done)
-        progress = LevelProgress(show, name, limit_s=self._limit_s, begun=begun)
+        progress = LevelProgress(show, name, used_s=self.spent_s, limit_s=self._limit_s, begun=begun)
         if self.done:
             before = self.done[-1].outcome.cost
+            progress.load = before.whole_wall / max(before.whole_cpu, 1e-3)
             progress.duration_s = known(before.steps) * known(before.min_step)
             progress.halvings = [fine - coarse for coarse, fine in pairwise([splits, *later])]
             progress.turns = turns(self._runs, self.workers)
@@ -330,7 +347,7 @@ class LevelChain:
         cut = beyond[0].stopped if beyond else self.failed
         ended = f"The numbers are those of level {len(upto)}: level {len(upto) + 1} was cut off. {cut}"
         outcome = self._without_unresolved(counted)
-        said, missed = outcome.validity, ""
+        said, missed = outcome.validity, self._not_begun
         if self.scene.accuracy.target:
             errors = self._errors
             missed = self._missed(errors)
@@ -386,7 +403,7 @@ class LevelChain:
         if then is None:
             return "No finer level is tried.", None
         more_s = self.forecast_s(then)
-        enough = ceil(self.spent_s + LONGER * more_s)
+        enough = enough_s(self.spent_s, more_s)
         return f"{name} takes about {about_s(more_s)} more: for it give a budget of {enough} s.", enough
 
     def _without_unresolved(self, counted: LevelRun) -> Outcome:

@@ -25,6 +25,7 @@ VIBRATION = KEY_TABLE["E_vib_over_E_0"]
 MeshNumbers = Mapping[str, float] | Unknown
 """Numbers by the key of an outcome that they are about, or why there are none."""
 UNRESOLVED = Unknown("the last level did not resolve the contact; accuracy.levels = 4 adds a finer one")
+ALONE = Unknown("one level alone tells no error; a larger budget adds a finer one")
 
 # Lowest order of convergence in the band of two meshes. Over thirteen sets and nine quantities, 82 % of
 # such bands contain the limit of all three meshes, and all of them do within the band of that limit; the
@@ -136,8 +137,10 @@ def level_limits(levels: Sequence[MeshRuns]) -> tuple[MeshNumbers, MeshNumbers]:
     `fem_impact.answers.refine.ringing`; that of the vibration energy is no less than its runs allow. Shares
     that flow and friction take have bands alike, see `SHARE`.
     """
-    if len(levels) < 2 or not levels[-1].resolved:
+    if not levels[-1].resolved:
         return UNRESOLVED, UNRESOLVED
+    if len(levels) < 2:
+        return ALONE, ALONE
     sizes, wide = [level.size for level in levels], [level.wide for level in levels]
     limits, bands = dict[str, float](), dict[str, float]()
     for key in KEYS:

@@ -6,8 +6,8 @@ levels are forecast from it by what halving the cells costs.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from math import inf
-from time import perf_counter
+from math import ceil, floor, inf, log10
+from time import perf_counter, process_time
 
 from fem_impact.answers.refine.budget import LONGER, about_s
 from fem_impact.case.case import Case
@@ -27,11 +27,17 @@ MIDDLE = GROWTH[1]
 # may be much shorter than the estimate
 PILOT = 0.33
 WORTH = 10.0  # s: a time left that is told in a sentence of its own
+SEEN = 1.0  # s of processor time after which what a level shows of the load counts as much as the one before
 
 
 def now() -> float:
     """Return the time, s, on a clock that stands still while kernels are compiled, once on a machine."""
     return perf_counter() - COMPILING.wall
+
+
+def worked() -> float:
+    """Return the processor time, s, of this process without that of compilation."""
+    return process_time() - COMPILING.cpu
 
 
 class OverBudgetError(RunError):
@@ -66,10 +72,17 @@ def require_pilot(pilot: Case, limit_s: float) -> None:
         raise OverBudgetError(f"{told} {_for_two(size.time)}")
 
 
+def enough_s(used_s: float, level_s: float) -> int:
+    """Return a budget, s, of two digits that holds a level of about ``level_s``, s, after ``used_s``, s."""
+    least = used_s + LONGER * level_s
+    unit = 10 ** max(floor(log10(max(least, 1.0))) - 1, 0)
+    return int(ceil(least / unit) * unit)
+
+
 def _for_two(pilot_s: float) -> str:
     """Say which budget holds two levels, by the time of the first, s."""
-    enough = about_s(pilot_s * (1 + LONGER * MIDDLE))
-    return f"For it and a finer one, which tell the error of each number, give a budget of {enough}."
+    enough = enough_s(pilot_s, MIDDLE * pilot_s)
+    return f"For it and a finer one, which tell the error of each number, give a budget of {enough} s."
 
 
 @dataclass
@@ -83,9 +96,12 @@ class LevelProgress:
     halvings : of each later level, as far as known; None on the pilot, which tells no time
     turns : runs of the level one after the other
     duration_s : of the impact on the level before, s, from which the steps are forecast; 0 on the pilot
+    used_s : wall time, s, of the levels before
     limit_s : wall time, s, after which the level is given up
-    own_s : forecast of one run on the mesh that stands, s
+    load : wall time over processor time of the level before
+    own_s : forecast of one run on the mesh that stands, s of wall time
     begun : when the level began, by `now`
+    since : `now` and `worked` at the first report of this run, which may be in another process
     """
 
     show: Callable[[Progress | Notice], None] | None
@@ -93,22 +109,27 @@ class LevelProgress:
     halvings: Sequence[int] | None = None
     turns: int = 1
     duration_s: float = 0.0
+    used_s: float = 0.0
     limit_s: float = inf
+    load: float = 1.0
     own_s: float = 0.0
     begun: float = field(default_factory=lambda: now())
+    since: tuple[float, float] | None = None
 
     def __call__(self, progress: Progress | Notice) -> None:
         """Take one report; raise OverBudgetError where the level takes too long, or surely will."""
         if isinstance(progress, Notice):
             return self._tell(progress)
-        left_s = progress.eta_s
+        left_s, setup_s = progress.eta_s, self._busy * progress.setup_s
         if progress.step == 0 and left_s is not None:  # the mesh stands, and no step has shown the pace
+            left_s *= self._busy
             self.own_s = left_s * (self.duration_s / progress.end_time_s if self.duration_s else 1.0)
             least_s = (OWN[0] if self.duration_s else PILOT) * self.own_s
-            self._require_time(self.own_s, max(least_s, OWN[0] * progress.setup_s))
+            self._require_time(self.own_s, max(least_s, OWN[0] * setup_s))
+        elif progress.step == 0:
+            self._require_time(self.own_s or setup_s, OWN[0] * setup_s)
         else:
-            about_left_s = left_s if progress.step else self.own_s or progress.setup_s or None
-            self._require_time(about_left_s, OWN[0] * progress.setup_s)
+            self._require_time(self._left_s(progress))
         if self.halvings is None or left_s is None:
             return self._tell(replace(progress, note=self.name, eta_s=None))
         own = [left_s + (self.turns - 1) * self.own_s] * len(OWN)
@@ -125,14 +146,35 @@ class LevelProgress:
         if self.show is not None:
             self.show(progress)
 
-    def _require_time(self, left_s: float | None, least_s: float = 0.0) -> None:
+    @property
+    def _busy(self) -> float:
+        """Wall time that a second of processor time takes now, s: 1 where nothing else runs."""
+        clocks = now(), worked()
+        self.since = self.since or clocks
+        spent_s, worked_s = (at - before for at, before in zip(clocks, self.since, strict=True))
+        return max(1.0, (spent_s + SEEN * self.load) / (worked_s + SEEN))
+
+    def _left_s(self, progress: Progress) -> float:
+        """Return about the wall time, s, that is left after some steps.
+
+        While the bodies touch it follows from the duration that the level before showed, on a pilot from the
+        mesh, and is at least half of what is spent.
+        """
+        if progress.eta_s is not None:
+            return progress.eta_s
+        spent_s, whole_s = now() - self.begun, self.own_s
+        if self.duration_s:
+            whole_s = spent_s * self.duration_s / progress.time_s
+        return max(whole_s - spent_s, 0.5 * spent_s)
+
+    def _require_time(self, left_s: float, least_s: float = 0.0) -> None:
         """Raise OverBudgetError where the limit does not hold what is spent and ``least_s``, s, more."""
         spent_s = now() - self.begun
         if spent_s + least_s <= self.limit_s:
             return
-        told = f"It was given up after {about_s(spent_s)}, as the budget does not hold it"
-        if left_s is None:
-            raise OverBudgetError(f"{told}.")
+        told = f"It was given up after {about_s(spent_s)}, as the budget does not hold it: it takes about"
         whole_s = spent_s + left_s
-        pilot = "" if self.duration_s else f" The coarsest level gave no number. {_for_two(whole_s)}"
-        raise OverBudgetError(f"{told}: it takes about {about_s(whole_s)}.{pilot}")
+        more = f"For it give a budget of {enough_s(self.used_s, whole_s)} s."
+        if not self.duration_s:
+            more = f"The coarsest level gave no number. {_for_two(whole_s)}"
+        raise OverBudgetError(f"{told} {about_s(whole_s)}. {more}")

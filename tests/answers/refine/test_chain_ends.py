@@ -63,6 +63,19 @@ def test_a_smaller_step_follows_where_the_budget_does_not_hold_the_larger(level)
     assert steps == {3: level.splits + 1, 4: level.splits + 1}
 
 
+def test_a_pilot_alone_keeps_its_numbers_and_tells_the_budget_of_a_second_level(level):
+    told = []
+    scene = replace(FREE, accuracy=replace(FREE.accuracy, unresolved="report"))
+    resolved = replace(level, wall_s=10.0, record=replace(level.record, resolved=True))
+    levels = LevelChain(Case(scene), RunOptions(progress=told.append), budget_s=20.0, done=[resolved])
+    outcome = levels.run()
+    assert known(outcome.restitution.edge.e) == known(level.outcome.restitution.edge.e)
+    assert "one level alone" in outcome.validity.mesh_band.reason
+    (said,) = [one.text for one in outcome.validity.limitations if "give a budget of" in one.text]
+    assert "10 s of the budget of 20 s are used up. Level 2, finer, takes about" in said
+    assert said in told[-1].text
+
+
 def test_smaller_cells_do_not_follow_crushed_ones(level):
     levels = LevelChain(Case(FREE), done=[level])
     assert levels._next is not None
@@ -84,21 +97,21 @@ def test_each_repeat_has_twice_the_room_of_the_one_before(level, monkeypatch):
     assert rooms == [(k * level.record.rod.reach, k * level.record.barrier.spread) for k in (1.0, 2.0, 4.0)]
 
 
-@pytest.mark.parametrize("ends", [True, False])
-def test_what_left_its_zones_counts_where_the_budget_holds_no_repeat(level, ends, monkeypatch):
+@pytest.mark.parametrize(("ends", "error"), [(True, OverBudgetError), (True, SceneError), (False, RunError)])
+def test_what_left_its_zones_counts_where_no_repeat_comes_to_its_end(level, ends, error, monkeypatch):
     ran = []
 
     def left(scene, fidelity, options, case):
         ran.append(scene)
         if len(ran) > 1:
-            raise OverBudgetError("It was given up.")
+            raise error("It was given up.")
         validity = replace(level.outcome.validity, finished=ends)
         return replace(level.outcome, validity=validity), replace(level.record, left=True)
 
     monkeypatch.setattr(level_module, "simulate_recorded", left)
     levels = LevelChain(Case(QUICK), done=[level])
     if not ends:
-        with pytest.raises(OverBudgetError):
+        with pytest.raises(error):
             levels._run_level(2)
         return
     levels._run_level(2)
