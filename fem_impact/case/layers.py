@@ -16,6 +16,8 @@ FLATTEST = 0.5  # least height of the cells of a layer over their height without
 # half-space springs of a layer are too stiff at its sides: 8 mm of steel on aluminium gave 9 % less under a
 # static load than a layered half-space (Burmister 1945) with 6 mm around, 4 % with 12 mm and 2 % with 24 mm
 AROUND = 1.5
+# share of a free barrier's mass that its block has at most, and how many times smaller its margin is tried
+MOST_OF_BARRIER, SMALLER = 0.5, 0.8
 UNDER = 2.0  # rows of the base's cells under the last layer, at least
 WIDE = 2.0  # estimated radii of the contact, under which a layer is told to be thin
 
@@ -28,14 +30,21 @@ def interfaces(bodies: Bodies) -> Array:
 def block_of(bodies: Bodies, zones: AnyZones) -> Corners:
     """Return the corners of the barrier's block, before its rows are moved.
 
-    It holds all layers, is `AROUND` times as much wider than its fine zone, and has rows as high as wide. A
-    plate that is meshed through its thickness goes on to its edges instead, before its cells widen.
+    It holds all layers, is `AROUND` times as much wider than its fine zone, and has rows as high as wide. Of
+    a light free barrier it is no more than a half, as far as it can be. A plate that is meshed through its
+    thickness goes on to its edges instead, before its cells widen.
     """
     if zones.edges:
         low, high = zones.block(2 * zones.edges / (1 + widening(bodies, zones.base)))
         return np.array([*low[:2], -rows_through(bodies, zones.base) * zones.base]), high
-    ends = interfaces(bodies)
-    low, high = zones.block(max(bodies.scene.accuracy.block_margin, AROUND * ends.max(initial=0.0)))
+    ends, whole = interfaces(bodies), bodies.barrier.mass
+    margin = max(bodies.scene.accuracy.block_margin, AROUND * ends.max(initial=0.0))
+    low, high = zones.block(margin)
+    if whole is not None:
+        most = MOST_OF_BARRIER * whole / (2 * bodies.barrier.material.rho)
+        while np.prod(high - low) > most and margin > zones.base:
+            margin *= SMALLER
+            low, high = zones.block(margin)
     if len(ends):
         deep = max(-float(low[2]), float(ends[-1]) + UNDER * zones.base + zones.rise)
         low = np.array([low[0], low[1], -ceil(deep / zones.base) * zones.base])

@@ -8,8 +8,6 @@ from fem_impact.arrays import Array
 from fem_impact.errors import SceneError
 from fem_impact.scene.barrier import Barrier
 
-REMEDY = "Give a smaller accuracy.block_margin, or the effect barrier-rigid."
-
 
 class RestOfBarrier(NamedTuple):
     """Half of the rest: its mass, kg; its mass centre (t, n), m; its inertia about it, kg m2.
@@ -35,10 +33,11 @@ def rest_of(barrier: Barrier, mass: Array, x: Array) -> RestOfBarrier:
     block, whole = 2 * float(mass.sum()) / 3, barrier.mass or 0.0
     if whole <= block:
         raise SceneError(
-            f"is less than that of its meshed block, {block:.3g} kg.",
+            f"is less than the {block:.3g} kg of metal that deforms around the contact: so small a body does "
+            "not bear it as a half-space does.",
             key="barrier.mass",
             value=f"{whole:.3g} kg",
-            remedy=REMEDY,
+            remedy="Give the effect barrier-rigid: it stays a rigid body of that mass.",
         )
     rest = 0.5 * (whole - block)
     if barrier.inertia is None:
@@ -53,6 +52,6 @@ def rest_of(barrier: Barrier, mass: Array, x: Array) -> RestOfBarrier:
             "kg m2.",
             key="barrier.inertia",
             value=f"{barrier.inertia:.3g} kg m2",
-            remedy=REMEDY,
+            remedy="Give a smaller accuracy.block_margin, or the effect barrier-rigid.",
         )
     return RestOfBarrier(rest, stated + shift, 0.5 * barrier.inertia - taken)

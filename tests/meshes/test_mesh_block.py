@@ -106,14 +106,15 @@ def test_columns_drawn_to_ends_near_a_side_stay_in_the_block():
 
 
 def test_columns_widen_evenly_towards_the_sides(fine):
-    margin, widest = 1.5e-3, 3.0
+    margin, widest = 4e-3, 3.0
     wide = meshes.with_wide_edges(fine, margin, widest)
     (low, _, _), (high, side, _) = wide.points.min(axis=0), wide.points.max(axis=0)
     more = 0.5 * (widest - 1.0) * margin
     assert (low, high, side) == pytest.approx((LOW[0] - more, HIGH[0] + more, HIGH[1] + more))
-    inside = (np.abs(fine.points[:, 0] - 0.5 * (LOW[0] + HIGH[0])) < 0.5 * (HIGH[0] - LOW[0]) - margin) & (
-        fine.points[:, 1] < HIGH[1] - margin
-    )
-    assert inside.any() and (wide.points[inside] == fine.points[inside]).all()
-    assert (wide.points[fine.points[:, 1] == 0.0, 1] == 0.0).all()
+    t, b = fine.points[:, 0], fine.points[:, 1]
+    inside = (t > LOW[0] + margin) & (t < HIGH[0] - margin) & (b < HIGH[1] - margin) & ~fine.is_hanging
+    assert inside.any() and wide.points[inside] == pytest.approx(fine.points[inside], abs=1e-15)
+    line = np.sort(wide.points[(fine.points[:, 1:] == 0.0).all(axis=1), 0])
+    assert line[-1] - line[-2] == pytest.approx(5e-3)  # of 2 mm, 1 to 3 times as wide along the margin
+    assert (wide.points[b == 0.0, 1] == 0.0).all()
     assert np.abs(wide.tie @ wide.points - wide.points).max() < 1e-15

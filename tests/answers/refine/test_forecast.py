@@ -136,6 +136,7 @@ def test_a_run_tells_its_range_when_the_second_mesh_stands():
     told = []
     scene = replace_all(load("quick"), {"save.frames": 0})
     LevelChain(Case(scene), RunOptions(progress=told.append)).run()
+    told = [one for one in told if isinstance(one, Progress)]
     assert all(one.eta_s is None for one in told if "level 1" in one.note)
     second = [one for one in told if "level 2 of 3" in one.note]
     stands = next(one for one in second if "are made" in one.contact)
