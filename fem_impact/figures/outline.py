@@ -1,4 +1,4 @@
-"""A projectile drawn in text or as a picture: its section in the plane of motion, tip to the left."""
+"""A projectile drawn in text or as a picture: its section in the plane of motion, or a user's own mesh."""
 
 from __future__ import annotations
 
@@ -14,7 +14,8 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes
 
-    from fem_impact.arrays import Array
+    from fem_impact.arrays import Array, Ints
+    from meshes import HexMesh
     from rigid import Body
 
 
@@ -74,8 +75,6 @@ def draw(
 
     Raises
     ------
-    MissingLibraryError
-        matplotlib is not installed.
     OutputPathError
         The place cannot be written.
     """
@@ -124,3 +123,64 @@ def mark(axes: Axes, touch: tuple[float, float], centre: tuple[float, float], wh
     axes.axhline(0.0, color=QUIET, linewidth=0.7, dashes=(12, 3, 2, 3), label="axis")
     axes.plot(1e3 * touch[1], -1e3 * touch[0], "v", color=PALETTE["vermilion"], label="touches first")
     axes.plot(1e3 * centre[1], -1e3 * centre[0], "P", color=INK, label=f"mass centre{where}")
+
+
+MESH_HEIGHT = 3.6  # inches
+
+
+def draw_mesh(
+    half: HexMesh,
+    centre: tuple[float, float],
+    touch: tuple[float, float],
+    of: Ints,
+    names: Sequence[str],
+    path: Path,
+    width: float = WIDTH,
+) -> None:
+    """Draw the half of a mesh from the side, tip to the left, and its whole from the tip.
+
+    Parameters
+    ----------
+    half : the half y >= 0, its tip at z = 0
+    centre : (x, z), m, of its mass
+    touch : (x, z), m, of the point that touches first; it lies on the lower side
+    of, names : which of the materials ``names`` each cell (m,) is of
+    path, width : PNG or SVG file, and how wide it is, inches
+
+    Raises
+    ------
+    OutputPathError
+        The place cannot be written.
+    """
+    from meshes import SKIN, SYMMETRY, owners
+
+    mm, tags, cells = 1e3 * half.points, half.face_tag, owners(half)
+    # faces (k, 4) and the cell (k,) that each belongs to
+    side, front = ((half.faces[tags == tag], cells[tags == tag]) for tag in (SYMMETRY, SKIN))
+    with figure(path, MESH_HEIGHT, width) as drawn:
+        wide = max(1.0, float(np.ptp(mm[:, 2]) / max(np.ptp(mm[:, 0]), 2 * mm[:, 1].max())))
+        left, right = drawn.subplots(1, 2, width_ratios=(min(wide, 4.0), 1.0))
+        _fill(left, mm[side[0]][:, :, [2, 0]] * [1, -1], of[side[1]], names)
+        mark(left, touch, centre)
+        left.set(aspect="equal", xlabel="z, from the tip, mm", ylabel="-x, mm")
+        corners = mm[front[0]]
+        normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
+        seen = normal[:, 2] < 0.0
+        order = np.argsort(-corners[seen][:, :, 2].mean(axis=1))  # those nearest to the barrier last
+        for sign in (1, -1):
+            _fill(right, corners[seen][order][:, :, [1, 0]] * [sign, -1], of[front[1][seen][order]], ())
+        right.axvline(0.0, color=QUIET, linewidth=0.7, dashes=(12, 3, 2, 3))
+        right.autoscale_view()
+        right.set(aspect="equal", xlabel="y, mm")
+        drawn.legend(loc="outside upper center", ncols=int(width / 2))
+
+
+def _fill(axes: Axes, polygons: Array, of: Ints, names: Sequence[str]) -> None:
+    """Fill polygons (k, 4, 2), mm, in the colours of their materials, with a word for each of ``names``."""
+    from matplotlib.collections import PolyCollection
+
+    colours = [PALETTE[FILLS[int(number) % len(FILLS)]] for number in of]
+    axes.add_collection(PolyCollection(list(polygons), facecolors=colours, edgecolors=INK, linewidths=0.3))
+    for number, name in enumerate(names):
+        axes.fill([], [], facecolor=PALETTE[FILLS[number % len(FILLS)]], edgecolor=INK, label=name)
+    axes.autoscale_view()

@@ -144,8 +144,8 @@ def draw_waves(result_dir: str | Path, out: str | Path | None = None) -> Path:
     ------
     ResultError
         The folder holds no waves.h5, or a damaged one.
-    MissingLibraryError, OutputPathError
-        matplotlib is not installed; the place cannot be written.
+    OutputPathError
+        The place cannot be written.
     """
     folder = Path(result_dir)
     return draw(waves_picture(read_waves(folder / "waves.h5")), folder / "waves.svg" if out is None else out)

@@ -53,8 +53,6 @@ def draw(picture: Picture, path: str | Path) -> Path:
 
     Raises
     ------
-    MissingLibraryError
-        matplotlib is not installed.
     OutputPathError
         The place cannot be written.
     """

@@ -8,7 +8,6 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from fem_impact.errors import MissingLibraryError
 from fem_impact.figures.panels import Mark
 from fem_impact.files.atomic import atomic_path, write_text
 from fem_impact.tables.table import Cell, Table
@@ -74,15 +73,11 @@ def figure(path: Path, height: float, width: float = WIDTH) -> Iterator[Figure]:
 
     Raises
     ------
-    MissingLibraryError
-        matplotlib is not installed.
     OutputPathError
         The place cannot be written.
     """
-    try:
-        import matplotlib
-    except ImportError as error:
-        raise MissingLibraryError("Figures need matplotlib: pip install matplotlib.") from error
+    import matplotlib
+
     with matplotlib.rc_context(_STYLE):
         drawn = new_figure(height, width)
         yield drawn

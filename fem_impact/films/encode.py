@@ -13,16 +13,13 @@ import sys
 from collections.abc import Callable, Iterable, Iterator
 from functools import cache, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from PIL import Image, features
 
 from fem_impact.errors import MissingLibraryError, OutputPathError
 from fem_impact.files.atomic import atomic_path, make_directory
-
-if TYPE_CHECKING:
-    from PIL.Image import Image
-
 
 SUFFIXES = (".mp4", ".webp", ".gif", ".png")
 """Formats that can be asked for; ``.png`` makes a folder of numbered frames."""
@@ -46,8 +43,6 @@ def best_suffix() -> str:
     """Return the suffix of the best format that is available here."""
     if _has_ffmpeg():
         return ".mp4"
-    from PIL import features
-
     return ".webp" if features.check("webp") else ".gif"
 
 
@@ -98,18 +93,18 @@ def _write_mp4(frames: Iterator[np.ndarray], path: Path, fps: int) -> None:
 
 
 def _animate(
-    frames: Iterator[np.ndarray], path: Path, fps: int, prepare: Callable[[Image], Image], **options: Any
+    frames: Iterator[np.ndarray],
+    path: Path,
+    fps: int,
+    prepare: Callable[[Image.Image], Image.Image],
+    **options: Any,
 ) -> None:
-    from PIL import Image
-
     pictures = (prepare(Image.fromarray(frame)) for frame in frames)
     first = next(pictures)
     first.save(path, save_all=True, append_images=pictures, duration=round(1000 / fps), loop=0, **options)
 
 
 def _write_folder(frames: Iterable[np.ndarray], folder: Path) -> Path:
-    from PIL import Image
-
     if folder.is_dir():
         for old in folder.glob("frame_*.png"):
             old.unlink()

@@ -7,11 +7,12 @@ from dataclasses import dataclass, replace
 from functools import partial
 from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.figure import Figure
+from PIL import Image, ImageDraw
 
-from fem_impact.errors import MissingLibraryError, ResultError
+from fem_impact.errors import ResultError
 from fem_impact.figures.style import INK, QUIET
 from fem_impact.films import frame
 from fem_impact.films.encode import best_suffix, encode, require_gl
@@ -21,10 +22,6 @@ from fem_impact.films.movement import FPS, WHOLE, Span, film_times, read_movemen
 from fem_impact.films.views import CloseView, Overlay, RodPicture, needed_height
 from fem_impact.outcome.record import Outcome
 from fem_impact.tables.history import read_history
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-    from PIL.Image import Image
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,22 +80,12 @@ def render(
     movement, left_out = read_movement(folder)
     times = film_times(movement, field, span)
     motion = prepare(movement, field, times)
-    require_libraries()
+    require_gl()
     path, notes = target(folder, out)
     title, made, curve, missing = context(folder)
     background = frame.FilmBackground.make(layout, motion, title, made, curve, times)
     film = encode(_frames(motion, background, times), path, FPS)
     return RenderResult(film, (*notes, *left_out, *missing), len(times))
-
-
-def require_libraries() -> None:
-    """Check that a film can be drawn here; raises MissingLibraryError."""
-    try:
-        import matplotlib  # noqa: F401
-        import PIL  # noqa: F401
-    except ImportError as error:
-        raise MissingLibraryError(f"A film needs {error.name}: pip install {error.name}.") from error
-    require_gl()
 
 
 def target(folder: Path, out: str | Path | None, stem: str = "film") -> tuple[Path, list[str]]:
@@ -179,7 +166,7 @@ def render_side_by_side(
     read = [read_movement(folder) for folder in folders]
     movements = [movement for movement, _ in read]
     motions = _on_one_scale([prepare(m, "strain", film_times(m, "strain", WHOLE)) for m in movements])
-    require_libraries()
+    require_gl()
     path, notes = target(folders[0], out, "film-side-by-side")
     titles, made, curves, missing = zip(*map(context, folders), strict=True)
     times = film_times(max(movements, key=lambda movement: movement.end), "strain", span)
@@ -212,7 +199,7 @@ class PairBackground:
     """
 
     layout: SideBySideLayout
-    base: Image
+    base: Image.Image
     strips: tuple[frame.Strip, ...]
     ends: tuple[float, ...]
 
@@ -243,8 +230,6 @@ class PairBackground:
 
     def compose(self, pictures: Sequence[np.ndarray], time: float) -> np.ndarray:
         """Return one frame ``(height, width, 3) uint8`` from the views at ``time`` in s."""
-        from PIL import Image, ImageDraw
-
         image = self.base.copy()
         pen = ImageDraw.Draw(image)
         for drawn, view in zip(pictures, self.layout.views, strict=True):

@@ -7,19 +7,19 @@ import io
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from textwrap import fill
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+from matplotlib.font_manager import findfont
+from PIL import Image, ImageDraw, ImageFont
 
 from fem_impact.figures.style import INK, PALETTE, QUIET
 from fem_impact.files.waves import Waves
 from fem_impact.films.layout import Frame, FrameLayout, Rectangle
 from fem_impact.films.motion import FIELDS, FilmData
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-    from PIL.Image import Image
-
 
 CLOSE_WIDTH = 0.45
 """Width of the close-up in diameters of the rod."""
@@ -52,7 +52,7 @@ class FilmBackground:
     """
 
     layout: FrameLayout
-    base: Image
+    base: Image.Image
     strip: Strip
     profile: StrainProfile | None
 
@@ -97,8 +97,6 @@ class FilmBackground:
 
         ``overlay`` draws over the rod with a pen; a second of the film shows ``slow`` s of motion.
         """
-        from PIL import Image, ImageDraw
-
         frame = self.base.copy()
         frame.paste(Image.fromarray(rod), self.layout.rod.corner)
         if close is not None:
@@ -116,8 +114,6 @@ class FilmBackground:
 
 def blank(frame: Frame) -> Figure:
     """Return an empty figure of the size of a frame."""
-    from matplotlib.figure import Figure
-
     return Figure(figsize=(frame.width / 100, frame.height / 100), dpi=100, facecolor="white")
 
 
@@ -149,9 +145,6 @@ def _caption(drawn: Figure, layout: FrameLayout, view: Rectangle, text: str) -> 
 
 def colour_bar(drawn: Figure, frame: Frame, view: Rectangle, field: str, span: tuple[float, float]) -> None:
     """Draw the colours of a field under a view."""
-    from matplotlib.cm import ScalarMappable
-    from matplotlib.colors import Normalize
-
     shown = FIELDS[field]
     axes = drawn.add_axes(frame.share(view.left + 130, view.top + view.height + 14, view.width - 200, 10))
     colours = ScalarMappable(Normalize(*span), shown.colours)
@@ -167,10 +160,8 @@ def below(drawn: Figure, frame: Frame, view: Rectangle, text: str, colour: str) 
     drawn.text(*place, text, fontsize=9, color=colour, va="top")
 
 
-def picture(drawn: Figure) -> Image:
+def picture(drawn: Figure) -> Image.Image:
     """Return a figure as an image."""
-    from PIL import Image
-
     stream = io.BytesIO()
     drawn.savefig(stream, format="png", dpi=100)
     return Image.open(stream).convert("RGB")
@@ -184,9 +175,6 @@ def write(pen: Any, place: tuple[int, int], text: str, size: int = 22) -> None:
 @functools.cache
 def font(size: int) -> Any:
     """Return the font of the words that change from frame to frame; ``size`` in px."""
-    from matplotlib.font_manager import findfont
-    from PIL import ImageFont
-
     return ImageFont.truetype(findfont("DejaVu Sans"), size)
 
 

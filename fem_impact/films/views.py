@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from PIL import Image
 
 from fem_impact.figures.style import INK, PALETTE, QUIET
 from fem_impact.films.frame import CLOSE_WIDTH, font
@@ -63,8 +64,6 @@ class _View:
         data["colour"] = colours[self.nodes if len(colours) == len(points) else self.cells]
 
     def _picture(self) -> np.ndarray:
-        from PIL import Image
-
         self.plotter.render()
         return np.asarray(Image.fromarray(self.plotter.screenshot(return_img=True)).reduce(FINER))
 

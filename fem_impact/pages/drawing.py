@@ -3,8 +3,7 @@
 from pathlib import Path
 
 from fem_impact.case.case import Case
-from fem_impact.figures.meshed import draw_mesh
-from fem_impact.figures.outline import draw
+from fem_impact.figures.outline import draw, draw_mesh
 from fem_impact.figures.style import WIDTH
 from rigid import Faceted
 
@@ -18,8 +17,6 @@ def draw_projectile(case: Case, path: Path, width: float = WIDTH) -> None:
 
     Raises
     ------
-    MissingLibraryError
-        matplotlib is not installed.
     OutputPathError
         The place cannot be written.
     """

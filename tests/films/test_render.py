@@ -274,7 +274,7 @@ def test_side_by_side_film_moves_in_every_view(result, tmp_path):
     ],
 )
 def test_a_forged_result_is_refused_before_anything_is_drawn(tmp_path, monkeypatch, harm, reason):
-    monkeypatch.setattr("fem_impact.films.film.require_libraries", lambda: pytest.fail("drawing begins"))
+    monkeypatch.setattr("fem_impact.films.film.require_gl", lambda: pytest.fail("drawing begins"))
     fields = result_maker.write_fields(tmp_path / "fields.vtkhdf", frames=2, across=4, along=6)
     with h5py.File(fields.path, "r+") as file:
         harm(file["VTKHDF"])

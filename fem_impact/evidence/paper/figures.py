@@ -17,7 +17,5 @@ def draw_figure(number: int, out: str | Path) -> Drawn:
     ------
     OutputPathError
         The place cannot be written.
-    MissingLibraryError
-        matplotlib is not installed.
     """
     return FIGURES[number](Path(out))
