@@ -10,19 +10,24 @@ Equation numbers are those of Averill, Ingram, Holborn and Battersby (see ``expe
 
 from . import shapes
 from .arms import Arms, corner_arms, point_arms
-from .centre import impulse_centre
-from .closure import closure_defect
-from .coefficients import Coefficients, coefficients, impulse_ratio, restitution
+from .coefficients import Coefficients, coefficients, impulse_centre, impulse_ratio, restitution
 from .drop import GRAVITY, drop_velocities
 from .errors import DataError, ImpactError, RigidError, ShapeError, TooLongError
 from .faceted import Faceted
 from .finite import FreeMotion, solve_free
 from .general import General
-from .losses import Losses, PredictedLosses, kinetic_energy, losses, predicted_losses
+from .losses import (
+    Losses,
+    PredictedLosses,
+    closure_defect,
+    kinetic_energy,
+    losses,
+    pinned_loss,
+    predicted_losses,
+)
 from .massive import Motion, critical_ratio, phi, solve
 from .nose import SHAPES, Nose
 from .path import End, SlidingPath, interval_ratio, painleve_threshold, path_over_speed, sliding_path
-from .pinned import pinned_loss
 from .projectile import Projectile
 from .slenderness import LIMIT, LIMIT_MM, behaves_rigidly, in_millimetres, slenderness
 from .touch import Touch

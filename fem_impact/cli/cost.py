@@ -73,7 +73,7 @@ def cost(options: Options) -> int:
     out = checked_out(options.out or Path("results") / "cost" / scene.id)
     from fem_impact.answers.cost.document import text_table
     from fem_impact.evidence.studies.cost_report import answers, scene_report
-    from fem_impact.files.lock import directory_lock
+    from fem_impact.files.atomic import directory_lock
 
     with directory_lock(out):
         study = _measured(scene, out, options, budget or inf)
@@ -123,8 +123,7 @@ def _paper(options: Options, names: tuple[str, ...]) -> int:
     from fem_impact.answers.cost.document import summarise
     from fem_impact.answers.report import Request, publish
     from fem_impact.evidence.studies.cost_report import paper_report, scene_report
-    from fem_impact.files.atomic import write_text
-    from fem_impact.files.lock import directory_lock
+    from fem_impact.files.atomic import directory_lock, write_text
     from fem_impact.pages.write import page
     from fem_impact.scene.types import MEASURED_SETS
 

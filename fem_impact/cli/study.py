@@ -124,7 +124,7 @@ def study(options: Options) -> int:
 
 def _report(options: Options, out: Path) -> int:
     """Write one page over the studies in the parent directory of ``out``."""
-    from fem_impact.files.lock import directory_lock
+    from fem_impact.files.atomic import directory_lock
     from fem_impact.pages.all_page import write_all
 
     with directory_lock(out):
@@ -138,7 +138,7 @@ def _report(options: Options, out: Path) -> int:
 def carry_out(module: str, options: Options, request: Request) -> int:
     """Run a study by its module of `fem_impact.evidence` and print its result, or estimate its time."""
     from fem_impact.evidence.runner import estimate_study
-    from fem_impact.files.lock import directory_lock
+    from fem_impact.files.atomic import directory_lock
     from fem_impact.jobs.executors import LocalProcesses, on_scheduler
 
     page = asked_page(options)

@@ -1,7 +1,8 @@
-"""Atomic files: written beside the target, synced, then renamed to it in one step."""
+"""Atomic files, written beside the target, synced and renamed in one step; the lock on their directory."""
 
 import errno
 import os
+import socket
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -90,3 +91,47 @@ def unwritable(path: Path, error: OSError) -> OutputPathError:
     full = "free some space or " if error.errno in (errno.ENOSPC, errno.EDQUOT) else ""
     why = error.strerror or str(error)
     return OutputPathError(f"{path}: cannot be written ({why}); {full}choose another place.")
+
+
+LOCK = ".lock"
+_NO_LOCKS = (errno.ENOLCK, errno.ENOTSUP, errno.EOPNOTSUPP, errno.ENOSYS)
+
+
+@contextmanager
+def directory_lock(out: Path) -> Iterator[None]:
+    """Make a directory and keep every other process and thread from writing results to it.
+
+    The operating system locks the file `LOCK`, which names the owner, and releases it when the process ends,
+    also when it is killed. A thread may lock a directory twice. On a file system without locks nothing is
+    locked.
+
+    Raises
+    ------
+    OutputPathError
+        Another process or thread writes to the directory, or it cannot be made.
+    """
+    from filelock import FileLock, Timeout  # 20 ms, for which no help text should wait
+
+    path = make_directory(out).resolve() / LOCK
+    # one object a path, which counts how often each thread has locked it. A second attempt is made where the
+    # previous owner removes the file between its opening and its locking here
+    lock = FileLock(path, timeout=0.1, is_singleton=True, fallback_to_soft=False)
+    try:
+        lock.acquire()
+        if lock.lock_counter == 1:
+            path.write_text(f"process {os.getpid()} on {socket.gethostname()}", encoding="utf-8")
+    except Timeout:
+        owner = path.read_text("utf-8", "replace") if path.exists() else ""
+        raise OutputPathError(
+            f"{path.parent}: {owner or 'another process'} is writing its results there. Wait for its end, or "
+            "choose another directory (out)."
+        ) from None
+    except OSError as error:
+        if error.errno not in _NO_LOCKS:
+            raise unwritable(path, error) from error
+    try:
+        yield
+    finally:
+        if lock.lock_counter <= 1:
+            path.unlink(missing_ok=True)
+        lock.release()

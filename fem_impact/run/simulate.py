@@ -79,7 +79,7 @@ def simulate_recorded(
     tests_of(scene)  # own tests that cannot be read are refused before any work
     if options.out is None:
         return _compute(case, replace(options, resume=False))
-    from fem_impact.files.lock import directory_lock
+    from fem_impact.files.atomic import directory_lock
     from fem_impact.files.run_directory import remove_drafts, remove_scene_alone
 
     out = options.out

@@ -1,11 +1,24 @@
 """The published measurements as data: tables, measured sets and their statistics."""
 
-from .angle_scatter import drawn_losses
-from .angles import AtAngle, angle_sets, at_angle, critical_ratio_against_angle, loss_against_angle
+from .angles import (
+    AtAngle,
+    angle_sets,
+    at_angle,
+    critical_ratio_against_angle,
+    drawn_losses,
+    loss_against_angle,
+)
 from .audit import AuditRecord, audit, audit_statistics, column_arms
-from .correlation import Correlation, correlation, correlations
 from .sets import MeasuredSet, derived_columns, measured_set, measured_sets, set_ids
-from .statistics import Statistic, covariance_of_means, of_mean, statistic
+from .statistics import (
+    Correlation,
+    Statistic,
+    correlation,
+    correlations,
+    covariance_of_means,
+    of_mean,
+    statistic,
+)
 from .tables import printed_statistics, table
 
 __all__ = [

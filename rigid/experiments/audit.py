@@ -13,8 +13,7 @@ from numpy.typing import ArrayLike
 from ..arrays import Floats, floats
 from ..coefficients import coefficients
 from ..losses import losses
-from ..uncertainty import sensitivities
-from ..uncertainty.estimate import MOTION
+from ..uncertainty import MOTION, sensitivities
 from .sets import MeasuredSet, measured_sets
 from .statistics import statistic
 from .tables import decimals, printed_statistics, statistic_decimals

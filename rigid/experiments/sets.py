@@ -16,7 +16,7 @@ from ..coefficients import coefficients
 from ..errors import DataError
 from ..losses import losses
 from ..massive import solve
-from ..uncertainty.estimate import MOTION
+from ..uncertainty import MOTION
 from .statistics import Statistic, covariance_of_means, statistic
 from .tables import table
 

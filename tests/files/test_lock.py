@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from fem_impact.errors import OutputPathError
-from fem_impact.files.lock import LOCK, directory_lock
+from fem_impact.files.atomic import LOCK, directory_lock
 from fem_impact.options import RunOptions
 from fem_impact.outcome.record import Outcome
 from fem_impact.run.simulate import simulate
@@ -21,7 +21,7 @@ from fem_impact.scene.shipped import load
 HOLDER = """
 import sys
 from pathlib import Path
-from fem_impact.files.lock import directory_lock
+from fem_impact.files.atomic import directory_lock
 with directory_lock(Path(sys.argv[1])):
     print("locked", flush=True)
     sys.stdin.read()

@@ -14,7 +14,7 @@ from fem_impact.answers.refine.quantities import QUANTITIES
 from fem_impact.answers.refine.work import Levels, LevelsJob
 from fem_impact.case.case import Case
 from fem_impact.errors import RunError, SceneError
-from fem_impact.files.lock import directory_lock
+from fem_impact.files.atomic import directory_lock
 from fem_impact.jobs.executors import LocalProcesses
 from fem_impact.jobs.job import Failure, Job, Work
 from fem_impact.jobs.run import run_jobs, stored_results

@@ -20,8 +20,7 @@ from fem_impact.errors import RunError
 from fem_impact.evidence.studies.inputs import UNCERTAIN_INPUTS, sample_values
 from rigid import Errors
 from rigid.experiments import MeasuredSet, derived_columns, measured_set
-from rigid.uncertainty import sensitivities
-from rigid.uncertainty.estimate import MOTION
+from rigid.uncertainty import MOTION, sensitivities
 
 SPARE = 1.3  # runs over coefficients that a surface of second order needs
 
