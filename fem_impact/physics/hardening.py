@@ -8,7 +8,7 @@ from math import log, log1p, sqrt
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from fem_impact.arrays import Array
 from fem_impact.physics.contact import ContactEstimate
@@ -94,8 +94,8 @@ class PowerLaw(NamedTuple):
 class Pieces(NamedTuple):
     """Points (k,) of `TabulatedHardening` as compiled code reads them: plastic strain, and stress in Pa."""
 
-    strain: NDArray[np.float64]
-    stress: NDArray[np.float64]
+    strain: Array
+    stress: Array
 
 
 FlowCurve = PowerLaw | Pieces
@@ -120,7 +120,7 @@ class Hardening:
         if self.slope < 0 or self.exponent < 0:
             raise ValueError("A softening material has no unique answer on any mesh: slope, exponent >= 0.")
 
-    def flow_stress(self, plastic_strain: ArrayLike) -> NDArray[np.float64]:
+    def flow_stress(self, plastic_strain: ArrayLike) -> Array:
         """Return the flow stress, Pa, at equivalent plastic strains of any shape."""
         strain = np.asarray(plastic_strain, dtype=np.float64)
         return np.asarray(self.yield_stress * (1 + self.slope * strain) ** self.exponent)
@@ -169,7 +169,7 @@ class TabulatedHardening:
         strain, stress = np.array(self.points).T
         return Pieces(np.ascontiguousarray(strain), np.ascontiguousarray(stress))
 
-    def flow_stress(self, plastic_strain: ArrayLike) -> NDArray[np.float64]:
+    def flow_stress(self, plastic_strain: ArrayLike) -> Array:
         """Return the flow stress, Pa, at equivalent plastic strains of any shape."""
         return np.asarray(np.interp(np.asarray(plastic_strain, dtype=np.float64), *self.curve))
 

@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 from math import ceil, cos, inf, log2, pi, sin, sqrt
 
 import numpy as np
-from numpy.typing import NDArray
 
 import meshes
+from fem_impact.arrays import Array, Ints
 from fem_impact.case.plates import ROWS
 from fem_impact.evidence.problems import setups
 from fem_impact.evidence.problems.bodies import Block, FreeBody, body_model, placed
@@ -147,7 +147,7 @@ def sphere_model(
     )
 
 
-def _denser(points: NDArray[np.float64], cells: NDArray[np.int64], p: Values) -> NDArray[np.float64]:
+def _denser(points: Array, cells: Ints, p: Values) -> Array:
     """Return densities (cells,) over rho with which half the ball has a ball's mass, moment and centre.
 
     Flat cells inside the round skin lack volume, and masses at their corners lie too far out: the moment is

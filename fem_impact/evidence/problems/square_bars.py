@@ -32,10 +32,9 @@ from math import cos, radians, sin, sqrt
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 import meshes
-from fem_impact.arrays import Array
+from fem_impact.arrays import Array, Bools, Ints
 from fem_impact.evidence.problems import setups
 from fem_impact.evidence.problems.problem import Check, Solved, Values, defaults, within
 from fem_impact.evidence.references.bricks import Bar, rebound, spring_force, wall_stress
@@ -49,7 +48,7 @@ from fem_impact.solid.state import State
 from meshes import OUTER, SKIN, HexMesh
 
 
-def node_areas(mesh: HexMesh, faces: NDArray[np.bool_]) -> Array:
+def node_areas(mesh: HexMesh, faces: Bools) -> Array:
     """Return the area (n,), m2, that each node has in some of the outer faces (k,)."""
     corners = mesh.faces[faces]
     a, b = (mesh.points[corners[:, 2 + i]] - mesh.points[corners[:, i]] for i in (0, 1))
@@ -74,7 +73,7 @@ class NodeSprings:
     effect: ClassVar[str] = "contact"
     accounts: ClassVar[tuple[str, ...]] = ()
     moving: ClassVar[tuple[str, ...]] = ("anchor",)
-    nodes: NDArray[np.int64]
+    nodes: Ints
     stiffness: Array
     stick: float
     f: float

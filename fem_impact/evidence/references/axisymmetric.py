@@ -12,9 +12,8 @@ from dataclasses import dataclass, field
 from math import pi, sqrt
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fem_impact.arrays import Array
+from fem_impact.arrays import Array, Ints
 
 CORNERS = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
 GAUSS = CORNERS / sqrt(3)
@@ -148,7 +147,7 @@ class Body:
     metal: Metal
     x: Array
     v: Array
-    corners: NDArray[np.int64]
+    corners: Ints
     strength: Array | float = 1.0
     mass: Array = field(init=False)
     force: Array = field(init=False)
@@ -185,7 +184,7 @@ class Body:
         self.time, self.steps = self.time + self.dt, self.steps + 1
 
 
-def grid(r: Array, z: Array) -> tuple[Array, NDArray[np.int64]]:
+def grid(r: Array, z: Array) -> tuple[Array, Ints]:
     """Return points (n, 2), row by row from the first z, and corners (4, m) of the cells between them."""
     up, out = np.meshgrid(z, r, indexing="ij")
     n = np.arange(out.size).reshape(out.shape)

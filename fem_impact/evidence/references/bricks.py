@@ -10,11 +10,10 @@ from itertools import product
 from math import atan2, cos, sin, sqrt
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 from scipy.sparse.linalg import eigsh
 
-from fem_impact.arrays import Array
+from fem_impact.arrays import Array, Ints
 
 CORNERS = np.array(list(product((-1.0, 1.0), repeat=3)))
 GAUSS = CORNERS / sqrt(3)
@@ -81,7 +80,7 @@ class Bar:
         for name, value in (("counts", counts), ("edges", size / counts), ("points", points)):
             object.__setattr__(self, name, value)
 
-    def corners(self) -> NDArray[np.int64]:
+    def corners(self) -> Ints:
         """Return the nodes (m, 8) of all bricks."""
         number = np.arange(len(self.points)).reshape([n + 1 for n in self.counts])
         x, y, z = (np.arange(n) for n in self.counts)

@@ -21,7 +21,6 @@ from math import ceil, log2, pi, sqrt
 
 import numpy as np
 import skfem
-from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 from scipy.sparse.linalg import splu
 from skfem.helpers import ddot, div, sym_grad
@@ -149,9 +148,7 @@ def end_law(
     return np.array([0.0, *force]), np.array([0.0, *approach])
 
 
-def _history(
-    law: Callable[[float], float], impedance: float, speed: float, dt: float, delay: int
-) -> NDArray[np.float64]:
+def _history(law: Callable[[float], float], impedance: float, speed: float, dt: float, delay: int) -> Array:
     """Return the contact force (n,), N, at times k dt until the end separates, by Heun's method."""
     force, d = [0.0], 0.0
     while True:
