@@ -7,7 +7,7 @@ from fem_impact.errors import SceneError
 from fem_impact.scene import fields
 from fem_impact.scene.checks import check_choice, check_text
 from fem_impact.scene.material import FLOWS, RATES, Flow, Material, Rate, SkinSpec, TableFlow
-from fem_impact.scene.tables import Table, check_keys, needed, numbers_of, within
+from fem_impact.scene.tables import Table, check_keys, needed, numbers_of, values_of, within
 from fem_impact.scene.units import parse_number, parse_quantity
 
 NO_VALUES = ("law", "family")
@@ -56,8 +56,7 @@ def _rate(table: Table) -> Rate:
 
 
 def _skin(table: Table) -> SkinSpec:
-    shape = {"shape": table["shape"]} if "shape" in table else {}
-    return SkinSpec(**numbers_of(table, fields.SKIN, ("shape",)), **shape)
+    return SkinSpec(**values_of(table, fields.SKIN, ("shape",)))
 
 
 def _flow(table: Table) -> Flow:

@@ -19,7 +19,16 @@ from fem_impact.scene.projectile import Face, ProjectileSpec, Region, Segment
 from fem_impact.scene.strikes import Following
 from fem_impact.scene.surface import Surface
 from fem_impact.scene.surface_table import of_known, pair_surface, read_surface
-from fem_impact.scene.tables import UNKNOWN_KEY, Table, check_keys, listed, needed, numbers_of, within
+from fem_impact.scene.tables import (
+    UNKNOWN_KEY,
+    Table,
+    check_keys,
+    listed,
+    needed,
+    numbers_of,
+    values_of,
+    within,
+)
 from fem_impact.scene.units import parse_number, parse_quantity, parse_share
 
 _LARGEST_FILE = 1_000_000
@@ -101,45 +110,26 @@ def _parse(text: str, source: str) -> dict[str, Any]:
 SMOOTH = Surface("custom", 0.0, 0.0, 0.0, "no surface is stated and no friction effect named")
 SEGMENT = '{to = "50 mm", material = "rod-steel"}'
 ROD = ("length", "diameter", "tip_radius")
-_TOP = (
-    "id",
-    "title",
-    "measured",
-    "restitution",
-    "effects",
-    "projectile",
-    "barrier",
-    "surface",
-    "impact",
-    "accuracy",
-    "save",
-    "heating",
-    "strikes",
-)
+OPTIONAL = ("accuracy", "save", "heating", "strikes")
+"""Sections that may be left out."""
 
 
 def read_scene(data: Table) -> types.Scene:
     """Make a scene from its tables; keys in messages are dotted from the top."""
     if not isinstance(data, Mapping):
         raise SceneError("a scene must be a table of tables.", value=data)
-    check_keys(data, _TOP)
+    check_keys(data, ("id", "title", "measured", "restitution", "effects", *PARTS))
     effects = check_names(data.get("effects", "auto"), "effects")
     # only a list of effects without friction needs no surface
     rubs = "friction" in effects or ("auto" in effects and "-friction" not in effects)
     restitution = parse_number(data["restitution"], "restitution") if "restitution" in data else None
-    parts: dict[str, Callable[[], Any]] = {
-        "id": lambda: needed(data, "id", '"my-rod", a name for the scene'),
-        "projectile": lambda: within(data, "projectile", _projectile),
-        "barrier": lambda: within(data, "barrier", _barrier),
-        "surface": lambda: within(data, "surface", read_surface) if "surface" in data else None,
-        "impact": lambda: within(data, "impact", _impact),
-        "accuracy": lambda: within(data, "accuracy", _accuracy, {}),
-        "save": lambda: within(data, "save", _save, {}),
-        "heating": lambda: within(
-            data, "heating", lambda t: types.Heating(**numbers_of(t, fields.HEATING)), {}
-        ),
-        "strikes": lambda: within(data, "strikes", _strikes, {}),
+    parts: dict[str, Callable[[], Any]] = {"id": lambda: needed(data, "id", '"my-rod", a name for the scene')}
+    parts |= {
+        name: partial(within, data, name, read_part, {} if name in OPTIONAL else None)
+        for name, read_part in PARTS.items()
     }
+    if "surface" not in data:
+        parts["surface"] = lambda: None
     # all parts read; of several complaints a misspelt key comes before what is missing for it
     read: dict[str, Any] = {}
     complaints: list[SceneError] = []
@@ -163,10 +153,6 @@ def read_scene(data: Table) -> types.Scene:
     )
     _check_measured(scene)
     return scene
-
-
-def _strikes(table: Table) -> Following:
-    return Following(table.get("fidelity", ""), **numbers_of(table, fields.STRIKES, ("fidelity",)))
 
 
 def _check_measured(scene: types.Scene) -> None:
@@ -333,14 +319,11 @@ def _rod(table: Table, own: dict[str, Any]) -> ProjectileSpec:
 
 
 def _barrier(table: Table) -> Barrier:
-    words = ("boundary", "support")
-    numbers = numbers_of(table, fields.BARRIER, ("material", "layers", *words))
-    given = {key: table[key] for key in words if key in table}
+    given = values_of(table, fields.BARRIER, ("boundary", "support"), ("material", "layers"))
     if "layers" in table:
-        given["layers"] = listed(
-            table["layers"], "layers", _layer, '{thickness = "2 mm", material = "rod-steel"}'
-        )
-    return Barrier(within(table, "material", read_material), **numbers, **given)
+        example = '{thickness = "2 mm", material = "rod-steel"}'
+        given["layers"] = listed(table["layers"], "layers", _layer, example)
+    return Barrier(within(table, "material", read_material), **given)
 
 
 def _impact(table: Table) -> Impact:
@@ -349,17 +332,10 @@ def _impact(table: Table) -> Impact:
     given = {p.key for p in known if {p.key, p.si_key} & set(table)}
     shown = [*(p.key for p in known), "until"]
     check_keys(table, (*shown, *(p.si_key for p in known)), shown)
-    way, words = the_way(given), {key: table[key] for key in ("until",) if key in table}
-    if way == WAYS[2]:
-        return Impact(**numbers_of(table, (*fields.IMPACT, fields.SLOPE), words), **words)
-    made = Impact.dropped if way == WAYS[0] else Impact.thrown
+    way = the_way(given)
+    made = {WAYS[0]: Impact.dropped, WAYS[1]: Impact.thrown}.get(way, Impact)
     stated = (fields.ANGLE, fields.OMEGA, fields.SLOPE, *(p for p in known if p.key in way))
-    return made(**numbers_of(table, stated, words), **words)
-
-
-def _save(table: Table) -> types.Save:
-    words = {key: table[key] for key in ("fields",) if key in table}
-    return types.Save(**numbers_of(table, fields.SAVE, ("fields",)), **words)
+    return made(**values_of(table, stated, ("until",)))
 
 
 def _accuracy(table: Table | str) -> types.Accuracy:
@@ -367,19 +343,31 @@ def _accuracy(table: Table | str) -> types.Accuracy:
     if isinstance(table, str):
         return types.Accuracy(**_wanted(table, ""))
     choices = ("element", "yielding_element", "fine_zone", "unresolved")
-    numbers = numbers_of(table, fields.ACCURACY, (*choices, "target"))
-    numbers |= {key: table[key] for key in choices if key in table}
+    stated = values_of(table, fields.ACCURACY, choices, ("target",))
     if "target" not in table:
-        return types.Accuracy(**numbers)
+        return types.Accuracy(**stated)
     for key in fields.MESH:
         if key in table:
             raise SceneError(
                 "stands beside a target, which chooses the mesh.", key=key, remedy="Keep one of the two."
             )
-    return types.Accuracy(**numbers, **_wanted(table["target"], "target"))
+    return types.Accuracy(**stated, **_wanted(table["target"], "target"))
 
 
 def _wanted(text: Any, key: str) -> dict[str, Any]:
     """Read a wanted error such as ``"2 %"``, or ``"e 2 %"`` of one number alone."""
     of, _, share = text.partition(" ") if isinstance(text, str) and text[:1].isalpha() else ("", "", text)
     return {"target": parse_share(share, key), "target_of": of or None}
+
+
+PARTS: Mapping[str, Callable[[Any], Any]] = {
+    "projectile": _projectile,
+    "barrier": _barrier,
+    "surface": read_surface,
+    "impact": _impact,
+    "accuracy": _accuracy,
+    "save": lambda table: types.Save(**values_of(table, fields.SAVE, ("fields",))),
+    "heating": lambda table: types.Heating(**numbers_of(table, fields.HEATING)),
+    "strikes": lambda table: Following(**values_of(table, fields.STRIKES, ("fidelity",))),
+}
+"""What reads each section of a scene."""

@@ -46,6 +46,14 @@ def numbers_of(
     return {f.key: _number(table, f, (instead or {}).get(f.key, f.default)) for f in wanted}
 
 
+def values_of(
+    table: Table, wanted: tuple[Parameter, ...], words: Iterable[str], others: Iterable[str] = ()
+) -> dict[str, Any]:
+    """Read the numbers of one table, as `numbers_of` does, and those of its ``words`` that stand in it."""
+    stated = {key: table[key] for key in words if key in table}
+    return numbers_of(table, wanted, (*others, *words)) | stated
+
+
 def _number(table: Table, field: Parameter, default: Any) -> Any:
     if field.si_key and field.si_key in table:
         if field.key in table:
