@@ -333,9 +333,9 @@ def _impact(table: Table) -> Impact:
     shown = [*(p.key for p in known), "until"]
     check_keys(table, (*shown, *(p.si_key for p in known)), shown)
     way = the_way(given)
-    made = {WAYS[0]: Impact.dropped, WAYS[1]: Impact.thrown}.get(way, Impact)
+    made: dict[tuple[str, ...], Callable[..., Impact]] = {WAYS[0]: Impact.dropped, WAYS[1]: Impact.thrown}
     stated = (fields.ANGLE, fields.OMEGA, fields.SLOPE, *(p for p in known if p.key in way))
-    return made(**values_of(table, stated, ("until",)))
+    return made.get(way, Impact)(**values_of(table, stated, ("until",)))
 
 
 def _accuracy(table: Table | str) -> types.Accuracy:
