@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from fem_impact.figures.panels import Panel, Picture, Series, ShadedMap, half_widths, numbers
+from fem_impact.figures.panels import LOOKS, Panel, Picture, Series, ShadedMap, half_widths, numbers
 from fem_impact.figures.style import INK, QUIET, colour_of, label_sides
 from fem_impact.tables.text import markup, plain, with_band
 
@@ -18,43 +18,6 @@ WIDE = 2
 
 GRID, SHADE = "#e2e5e9", "#eef2f6"
 RED_BLUE = [[0.0, "#053061"], [0.25, "#4393c3"], [0.5, "#f7f7f7"], [0.75, "#d6604d"], [1.0, "#67001f"]]
-
-LOOKS: dict[str, dict[str, Any]] = {
-    "line": {"mode": "lines", "line": {"width": 2}},
-    "thin": {"mode": "lines", "line": {"width": 1, "dash": "4px,3px"}},
-    "dashed": {"mode": "lines", "line": {"width": 2, "dash": "7px,3px"}},
-    "points": {"mode": "markers", "marker": {"size": 6}},
-    "rings": {"mode": "markers", "marker": {"size": 9, "symbol": "circle-open"}},
-    "joined": {"mode": "lines+markers", "line": {"width": 1.5}, "marker": {"size": 5}},
-    "diamonds": {"mode": "markers", "marker": {"size": 8, "symbol": "diamond-open"}},
-    "squares": {"mode": "markers", "marker": {"size": 7, "symbol": "square"}},
-    "triangles": {"mode": "markers", "marker": {"size": 8, "symbol": "triangle-up"}},
-    "crosses": {"mode": "markers", "marker": {"size": 7, "symbol": "x-thin-open"}},
-    "interval": {"mode": "markers", "marker": {"size": 1}},
-    "spread": {"mode": "markers", "marker": {"size": 1}},
-    "area": {"mode": "lines", "line": {"width": 0}, "stackgroup": "areas"},
-}
-BAND = {"interval": {"thickness": 4, "width": 0}, "spread": {"thickness": 1, "width": 0}}
-CURVES = {"line", "thin", "dashed", "area"}
-"""Looks of which one label tells all values at the place of the pointer."""
-
-SIGNS = {
-    "line": "━",
-    "thin": "╌",
-    "dashed": "╍",
-    "points": "●",
-    "rings": "○",
-    "joined": "●",
-    "diamonds": "◇",
-    "squares": "■",
-    "triangles": "▲",
-    "crosses": "×",
-    "interval": "▬",
-    "spread": "─",
-    "area": "■",
-    "bars": "■",
-}
-"""How the legend shows each look."""
 
 
 def live(picture: Picture) -> dict[str, Any]:
@@ -86,7 +49,7 @@ def live(picture: Picture) -> dict[str, Any]:
 
 def _legend(picture: Picture) -> list[list[str]]:
     named = {
-        series.label: [SIGNS[series.drawn], colour_of(series.colour, at), markup(series.label)]
+        series.label: [LOOKS[series.drawn]["sign"], colour_of(series.colour, at), markup(series.label)]
         for panel in reversed(picture.panels)
         for at, series in reversed([*enumerate(panel.series)])
         if series.label
@@ -111,7 +74,8 @@ def _trace(series: Series, at: int, panel: Panel) -> dict[str, Any]:
         return trace | bar | (texts if series.texts else {})
     look = LOOKS[series.drawn]
     trace |= {"type": "scatter"} | {
-        name: part | {"color": colour} if isinstance(part, dict) else part for name, part in look.items()
+        name: part | {"color": colour} if isinstance(part, dict) else part
+        for name, part in look["live"].items()
     }
     if series.texts:
         trace |= {"text": list(map(markup, series.texts))}
@@ -130,15 +94,14 @@ def _trace(series: Series, at: int, panel: Panel) -> dict[str, Any]:
             for value, half in pairs
         ]
         band = {"type": "data", "array": numbers(half_widths(series), DIGITS), "color": colour}
-        trace["error_x" if panel.horizontal else "error_y"] = band | BAND.get(
-            series.drawn, {"thickness": 1.2, "width": 3}
-        )
+        band |= look.get("band", {"thickness": 1.2, "width": 3})
+        trace["error_x" if panel.horizontal else "error_y"] = band
     return trace
 
 
 def _hover(label: str, series: Series, panel: Panel) -> str:
     """Return the words at the pointer: the series, and both values with their labels, units and band."""
-    if series.drawn in CURVES and _curves(panel):
+    if "curve" in LOOKS[series.drawn] and _curves(panel):
         return "%{y:.4g}"
     x, y = ("%{x:.4g}", "%{y:.4g}")
     if panel.horizontal:
@@ -150,7 +113,7 @@ def _hover(label: str, series: Series, panel: Panel) -> str:
 
 
 def _curves(panel: Panel) -> bool:
-    return panel.shaded is None and all(series.drawn in CURVES for series in panel.series)
+    return panel.shaded is None and all("curve" in LOOKS[series.drawn] for series in panel.series)
 
 
 def _map(shaded: ShadedMap, panel: Panel) -> dict[str, Any]:

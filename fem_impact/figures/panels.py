@@ -4,8 +4,10 @@ A `Picture` is described once; `still` draws it as SVG or PNG, `live` for a page
 """
 
 import math
+import tomllib
 from dataclasses import dataclass
-from typing import Literal
+from importlib.resources import files
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -31,6 +33,11 @@ Look = Literal[
 """Rings are wider than points, so that both are seen where they agree. Areas and bars of a panel are stacked.
 Of an interval and of a spread only the band is drawn, thick and thin. Joined points have no line where
 there are three or fewer of them: two or three values show no course."""
+
+LOOKS: dict[str, dict[str, Any]] = tomllib.loads(
+    files("fem_impact.figures").joinpath("looks.toml").read_text(encoding="utf-8")
+)
+"""How each look is drawn, and its sign in a legend."""
 
 FEW = 3
 COLUMNS = ("panel", "series", "x_label", "y_label", "x", "y", "band")

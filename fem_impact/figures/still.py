@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fem_impact.figures.panels import Panel, Picture, Series, ShadedMap
+from fem_impact.figures.panels import LOOKS, Panel, Picture, Series, ShadedMap
 from fem_impact.figures.style import INK, QUIET, colour_of, figure, label_sides
 from fem_impact.files.atomic import write_text
 from fem_impact.tables.text import formula
@@ -24,20 +24,6 @@ LETTERS = 110
 SAMPLE = 8
 """Width of the sample and the space of a legend entry, letters."""
 
-LOOKS: dict[str, dict[str, Any]] = {
-    "line": {"linestyle": "-", "linewidth": 1.4},
-    "thin": {"linestyle": (0, (4, 2)), "linewidth": 0.7},
-    "dashed": {"linestyle": (0, (5, 1.5)), "linewidth": 1.4},
-    "points": {"linestyle": "none", "marker": "o", "markersize": 3.6},
-    "rings": {"linestyle": "none", "marker": "o", "markersize": 5.6, "mfc": "none"},
-    "joined": {"linestyle": "-", "linewidth": 1.0, "marker": "o", "markersize": 3.2},
-    "diamonds": {"linestyle": "none", "marker": "D", "markersize": 4.6, "mfc": "none"},
-    "squares": {"linestyle": "none", "marker": "s", "markersize": 4.6},
-    "triangles": {"linestyle": "none", "marker": "^", "markersize": 5.0},
-    "crosses": {"linestyle": "none", "marker": "x", "markersize": 5.0},
-    "interval": {"linestyle": "none", "elinewidth": 3.2, "capsize": 0.0},
-    "spread": {"linestyle": "none", "elinewidth": 1.0, "capsize": 0.0},
-}
 ERROR = {"capsize": 1.8, "elinewidth": 0.9, "capthick": 0.9}
 """How the band of a point looks."""
 
@@ -149,7 +135,7 @@ def _series(axes: Axes, series: Series, colour: str, below: np.ndarray, horizont
             axes.bar_label(bars, list(map(formula, series.texts)), padding=4, fontsize=8.5)
         below[at] += np.nan_to_num(widths)
         return below
-    look = LOOKS[series.drawn]
+    look = LOOKS[series.drawn]["still"]
     if series.band is None:
         axes.plot(series.x, series.y, color=colour, label=label, **look)
     else:
