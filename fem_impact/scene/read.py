@@ -110,6 +110,8 @@ def _parse(text: str, source: str) -> dict[str, Any]:
 SMOOTH = Surface("custom", 0.0, 0.0, 0.0, "no surface is stated and no friction effect named")
 SEGMENT = '{to = "50 mm", material = "rod-steel"}'
 ROD = ("length", "diameter", "tip_radius")
+TOP = ("id", "title", "measured", "restitution", "effects")
+"""Keys of a scene above its sections, `PARTS`."""
 OPTIONAL = ("accuracy", "save", "heating", "strikes")
 """Sections that may be left out."""
 
@@ -118,7 +120,7 @@ def read_scene(data: Table) -> types.Scene:
     """Make a scene from its tables; keys in messages are dotted from the top."""
     if not isinstance(data, Mapping):
         raise SceneError("a scene must be a table of tables.", value=data)
-    check_keys(data, ("id", "title", "measured", "restitution", "effects", *PARTS))
+    check_keys(data, (*TOP, *PARTS))
     effects = check_names(data.get("effects", "auto"), "effects")
     # only a list of effects without friction needs no surface
     rubs = "friction" in effects or ("auto" in effects and "-friction" not in effects)

@@ -208,8 +208,8 @@ def test_the_table_of_friction_is_the_data():
 
 
 def test_every_key_at_the_top_of_a_scene_is_on_its_page():
-    from fem_impact.scene.read import _TOP
+    from fem_impact.scene.read import PARTS, TOP
 
     tables = {"projectile", "barrier", "surface", "impact", "save", "heating"}
     text = PAGES["docs/reference/scene.md"].partition("## Numbers")[0]
-    assert set(re.findall(r"^\| `(\w+)` \|", text, re.MULTILINE)) == set(_TOP) - tables
+    assert set(re.findall(r"^\| `(\w+)` \|", text, re.MULTILINE)) == set((*TOP, *PARTS)) - tables
