@@ -126,5 +126,5 @@ def test_the_page_over_all_sets_counts_what_levels_reach():
     assert price.cells("error, %") == ["20", "10", "5", "2"]
     for name in ("e", "E_vib"):
         assert price.cells(f"{name}: reached in") == ["2 of 2", "2 of 2", "2 of 2", "1 of 2"]
-        assert price.cells(f"{name}: median, s") == ["10", "10", "10", "30"]
+        assert price.cells(f"{name}: median, s") == ["25", "25", "25", "30"]
     assert settings.cells("3 levels") == ["4 / 4, 10 s (default)"] * 2
