@@ -14,12 +14,13 @@ import scipy.sparse as sp
 
 from fem_impact.arrays import Array, Bools, Ints
 from fem_impact.case.case import Case
+from fem_impact.case.plates import widening
 from fem_impact.fem.eigen import MassStiffness, RodModes, rod_modes
 from fem_impact.fem.elements import Kind, element_stiffness, lame_constants, lumped_mass
 from fem_impact.fem.geometry import POINTS, Geometry, build_geometry
 from fem_impact.fem.hexmodes import dummy_element
 from fem_impact.fem.layout import DofLayout, MassPoints, number
-from fem_impact.fem.mass_scaling import crossing_times, mass_factors, reference_time, scaled_rod
+from fem_impact.fem.mass_scaling import LEAST, crossing_times, mass_factors, reference_time, scaled_rod
 from fem_impact.fem.rest import RestOfBarrier, rest_of
 from fem_impact.fem.slices import SliceOperator
 from fem_impact.fem.sparse import assemble, assemble_mass, tie_operator
@@ -268,7 +269,10 @@ class MeshedBodies:
         rod, crossing = self.true_rod, crossing_of(self.true_rod, self.materials["rod"])
         reference = self.reference_time
         place, wanted = rod.points[rod.mesh.cells], self.scene.accuracy.mass_scaling
-        mass, scaling = scaled_rod(rod.mass, place, self.nose, crossing, reference, wanted)
+        zones, bodies = self.case.zones, self.case.bodies
+        long = zones.edges > 0 and widening(bodies, zones.base) > 1  # it takes many steps
+        least = LEAST if long and wanted > 1 else 1.0
+        mass, scaling = scaled_rod(rod.mass, place, self.nose, crossing, reference, wanted, least)
         return replace(rod, mass=mass), scaling
 
     @property

@@ -24,6 +24,7 @@ LOW = 0.65
 MOST_REMOVED = 0.6  # largest share of a cell's mass that may be taken off
 ROUND_OFF = 1e-12  # of the rod's mass
 BACK = 0.9  # over the last mass scaling tried, where the rod could not make up for that
+LEAST = 0.15  # scaling at which thin rows of a rod, a quarter as high as its cells, gain no mass
 
 
 def reference_time(zones: AnyZones, materials: dict[str, Material]) -> float:
@@ -48,7 +49,13 @@ def mass_factors(crossing: Array, wanted: float) -> Array:
 
 
 def scaled_rod(
-    mass: Array, place: Array, free: Bools, crossing: Array, reference: float, scaling: float
+    mass: Array,
+    place: Array,
+    free: Bools,
+    crossing: Array,
+    reference: float,
+    scaling: float,
+    least: float = 1.0,
 ) -> tuple[Array, float]:
     """Add mass to a free rod's small cells and take as much off its large ones.
 
@@ -64,17 +71,18 @@ def scaled_rod(
     crossing : (m,), s, as `crossing_times` gives it; reference : s, as `reference_time`
     scaling : largest one to try, 1 or more: free cells get so much mass that a wave takes at least
         reference sqrt(scaling) to cross each
+    least : smallest one to try; below 1 it concerns thin rows alone
 
     Returns
     -------
     masses : (m, 8) of each cell at its nodes, kg
-    reached : the scaling that they have, at most the one asked for; 1 where nothing was changed
+    reached : the scaling that they have, at least 1 and at most the one asked for
     """
     moments = np.stack(
         [np.ones(mass.shape), place[:, :, 0], place[:, :, 2], (place[:, :, ::2] ** 2).sum(axis=2)]
     )
     moments /= np.abs(moments).max(axis=(1, 2))[:, None, None]
-    while scaling > 1.0:
+    while scaling > least:
         wanted = reference * sqrt(scaling)
         added = mass * (free * (mass_factors(crossing, wanted) - 1))[:, None]
         shapes = free * (1 - np.minimum(1.0, wanted / crossing) ** 2) * moments.mean(axis=2)
@@ -83,6 +91,6 @@ def scaled_rod(
         parts = np.linalg.lstsq(lost, gained, rcond=None)[0]
         share, missed = parts @ shapes, np.abs(lost @ parts - gained).max()
         if np.abs(share).max() <= MOST_REMOVED and missed <= ROUND_OFF * mass.sum():
-            return mass + added - share[:, None] * mass, scaling
+            return mass + added - share[:, None] * mass, max(scaling, 1.0)
         scaling *= BACK
     return mass, 1.0

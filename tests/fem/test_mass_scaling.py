@@ -81,3 +81,15 @@ def test_scaled_masses_hardly_move_the_result_and_are_told():
     assert (true.cost.mass_scaling, true.energy.added_mass > 0) == (1.0, True)  # thin rows of the barrier
     assert 2.0 < heavy.cost.mass_scaling < 4.0  # what the short nose can make up for
     assert true.energy.added_mass < heavy.energy.added_mass < 5e-3
+
+
+def test_thin_rows_gain_mass_where_the_rod_can_make_up_for_no_more():
+    """Asked for: a scaling of 4, or 0.15 at least; the cells that are large enough give the mass."""
+    place = np.random.default_rng(0).random((60, 8, 3))
+    mass, crossing = np.ones((60, 8)), np.where(np.arange(60) < 6, 0.3e-9, 1.2e-9)
+    asked = mass, place, np.ones(60, bool), crossing, 1e-9, 4.0
+    assert (scaled_rod(*asked)[0] == mass).all()
+    heavy, factor = scaled_rod(*asked, least=0.15)
+    assert factor == 1.0 and heavy.sum() == pytest.approx(mass.sum(), rel=1e-12)
+    slowed = crossing * np.sqrt(heavy.mean(axis=1))
+    assert slowed[:6].min() > 0.5e-9 and heavy[6:].min() >= 1 - MOST_REMOVED

@@ -18,13 +18,7 @@ from pathlib import Path
 
 from fem_impact.answers.refine.budget import about_s, in_turns, longest_s, turns
 from fem_impact.answers.refine.extrapolate import UNRESOLVED, level_limits, quantity_limits
-from fem_impact.answers.refine.forecast import (
-    MIDDLE,
-    LevelProgress,
-    enough_s,
-    now,
-    require_pilot,
-)
+from fem_impact.answers.refine.forecast import MIDDLE, LevelProgress, enough_s, now, require_pilot
 from fem_impact.answers.refine.level import STAMP, LevelRun, simulate_level
 from fem_impact.answers.refine.level_meshes import LevelMeshes, steps_between
 from fem_impact.answers.refine.quantities import TARGETED
@@ -42,7 +36,6 @@ from fem_impact.outcome.record import Outcome
 from fem_impact.outcome.strike_text import levels_told
 from fem_impact.outcome.strikes import Strikes
 from fem_impact.progress import Notice
-from fem_impact.run.resolution import NOT_RESOLVED, without
 from fem_impact.run.simulate import begin
 from fem_impact.scene.impact import FIRST
 from fem_impact.scene.types import Scene
@@ -345,15 +338,15 @@ class LevelChain:
         short = self.meshes.lacking(counted.splits, counted.record, self.finest)
         cut = beyond[0].stopped if beyond else self.failed
         ended = f"The numbers are those of level {len(upto)}: level {len(upto) + 1} was cut off. {cut}"
-        outcome = self._without_unresolved(counted)
+        outcome = counted.outcome if self.scene.accuracy.unresolved == "report" else counted.withheld
         said, missed = outcome.validity, self._not_begun
         if self.scene.accuracy.target:
-            errors = self._errors
-            missed = self._missed(errors)
+            errors, none = self._errors, bands if isinstance(bands, Unknown) else UNRESOLVED
+            missed = self._missed(errors, none)
             said = replace(
                 said,
                 accuracy_target=self.scene.accuracy.target,
-                achieved_error=max(errors.values()) if errors else UNRESOLVED,
+                achieved_error=max(errors.values()) if errors else none,
                 achieved_wall=self.spent_s,
             )
         validity = replace(
@@ -383,12 +376,12 @@ class LevelChain:
 
         return with_spread(upto[-1].cases[0], strikes, upto[-2].outcome.strikes)
 
-    def _missed(self, errors: Mapping[str, float]) -> str:
-        """Say why the wanted error is not reached, and what more would cost; empty where it is."""
+    def _missed(self, errors: Mapping[str, float], none: Unknown) -> str:
+        """Say why the wanted error is not reached, or why there is ``none``, and what more would cost."""
         if self._reached(errors):
             return ""
         reached = [f"{name} is known to {plain(100 * error, 2)} %" for name, error in errors.items()]
-        told = " and ".join(reached) or UNRESOLVED.reason
+        told = " and ".join(reached) or none.reason
         wanted = 100 * (self.scene.accuracy.target or 0.0)
         return f"The wanted {wanted:.3g} % is not reached: {told}. {self.advice[0]}"
 
@@ -404,11 +397,3 @@ class LevelChain:
         more_s = self.forecast_s(then)
         enough = enough_s(self.spent_s, more_s)
         return f"{name} takes about {about_s(more_s)} more: for it give a budget of {enough} s.", enough
-
-    def _without_unresolved(self, counted: LevelRun) -> Outcome:
-        """Return a level's outcome without the numbers that a scene withholds where they are not resolved."""
-        outcome = counted.outcome
-        if counted.record.resolved or self.scene.accuracy.unresolved == "report":
-            return outcome
-        reasons = [one.text for one in outcome.validity.limitations if one.text.startswith(NOT_RESOLVED)]
-        return without(outcome, Unknown(reasons[0])) if reasons else outcome

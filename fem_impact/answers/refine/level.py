@@ -11,6 +11,7 @@ from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.record import Outcome
 from fem_impact.run.program import stamp
+from fem_impact.run.resolution import NOT_RESOLVED, without
 from fem_impact.run.simulate import simulate_recorded
 from fem_impact.solid.stepguard import THIN_CRUSHED
 
@@ -87,6 +88,13 @@ class LevelRun:
     def cut_off(self) -> list[Outcome]:
         """Its runs that did not see the bodies part."""
         return [one for one in self.outcomes if isinstance(one.motion.V_n, Unknown)]
+
+    @property
+    def withheld(self) -> Outcome:
+        """Its outcome, without the numbers that a contact gives which is not resolved."""
+        told = [one.text for one in self.outcome.validity.limitations if one.text.startswith(NOT_RESOLVED)]
+        resolved = self.record.resolved or not told
+        return self.outcome if resolved else without(self.outcome, Unknown(told[0]))
 
     @property
     def stopped(self) -> str:
