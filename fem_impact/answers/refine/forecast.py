@@ -140,7 +140,9 @@ class LevelProgress:
         told = replace(progress, note=self.name, eta_s=about, eta_range_s=(least, most))
         self._tell(told)
         if progress.step == 0 and about > WORTH:
-            self._tell(Notice(f"{self.name}: {left_text(told)}."))
+            dear = now() - self.begun + about > self.limit_s
+            more = f" For all of it give a budget of {enough_s(self.used_s, about)} s." * dear
+            self._tell(Notice(f"{self.name}: {left_text(told)}.{more}"))
 
     def _tell(self, progress: Progress | Notice) -> None:
         if self.show is not None:
