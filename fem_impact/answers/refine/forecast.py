@@ -120,9 +120,10 @@ class LevelProgress:
         """Take one report; raise OverBudgetError where the level takes too long, or surely will."""
         if isinstance(progress, Notice):
             return self._tell(progress)
-        left_s, setup_s = progress.eta_s, self._busy * progress.setup_s
+        left_s, busy = progress.eta_s, self._busy
+        setup_s = busy * progress.setup_s
         if progress.step == 0 and left_s is not None:  # the mesh stands, and no step has shown the pace
-            left_s *= self._busy
+            left_s *= busy
             self.own_s = left_s * (self.duration_s / progress.end_time_s if self.duration_s else 1.0)
             least_s = (OWN[0] if self.duration_s else PILOT) * self.own_s
             self._require_time(self.own_s, max(least_s, OWN[0] * setup_s))
