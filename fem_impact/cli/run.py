@@ -84,9 +84,8 @@ def run(options: Options) -> int:
     """Compute one scene, write its results and print them."""
     if options.until:
         options.changes = [*options.changes, f"impact.until={options.until}"]
-    begun = perf_counter()
+    begun = perf_counter()  # a large mesh file takes seconds to read, a busy machine to import what computes
     scene = changed_scene(options.scene, options.changes)
-    read_s = perf_counter() - begun  # a large mesh file takes seconds
     if options.resume and options.fidelity in ("rigid", "modal"):
         problem = f"is for finite elements only: a {options.fidelity} run takes seconds."
         raise UsageError(problem, key="--resume", remedy="Leave it out.")
@@ -108,7 +107,7 @@ def run(options: Options) -> int:
         with told_kept(out, options), closing(chosen_meter(options)) as meter:
             run_options = RunOptions(out, meter, options.resume, options.checkpoint)
             fidelity = options.fidelity or None
-            outcome = simulate(scene, fidelity, run_options, cores(), budget, case, read_s)
+            outcome = simulate(scene, fidelity, run_options, cores(), budget, case, perf_counter() - begun)
     except KeyboardInterrupt:
         way = (
             "--resume goes on from the last checkpoint."

@@ -266,7 +266,7 @@ class LevelChain:
         """Run a level, again with more room where it needs that, and add it to what is done."""
         last = bool(self.done) and splits >= self.finest
         scene = self.meshes.at(splits)
-        before = known = self.done[-1].record if self.done else self.meshes.expected(splits)
+        before = known = self.done[-1].found if self.done else self.meshes.expected(splits)
         if last:
             scene = replace(scene, save=self.scene.save)
         scenes, begun, room = self._sharing(scene), now(), 1.0

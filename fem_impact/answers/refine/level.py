@@ -85,6 +85,11 @@ class LevelRun:
         )
 
     @property
+    def found(self) -> ContactRecord:
+        """What the next level's mesh follows: without thin cells after one without, as small ones fold sooner."""
+        return replace(self.record, crushed=bool(self.without_thin))
+
+    @property
     def cut_off(self) -> list[Outcome]:
         """Its runs that did not see the bodies part."""
         return [one for one in self.outcomes if isinstance(one.motion.V_n, Unknown)]

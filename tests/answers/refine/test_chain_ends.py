@@ -133,6 +133,8 @@ def test_a_level_whose_thin_rows_are_crushed_runs_again_without_them(level, monk
     levels._run_level(2)
     assert rows[0] > 0 and rows[1:] == [0] and not levels.done[-1].record.crushed
     assert "no thin rows and columns" in levels.done[-1].without_thin and not level.without_thin
+    levels._run_level(3)  # as smaller cells are crushed sooner
+    assert len(rows) == 3 and rows[-1] == 0
 
 
 def test_a_step_falls_less_far_where_a_mesh_has_thin_rows_to_lose(level):
