@@ -45,8 +45,9 @@ from fem_impact.tables.text import plain
 # shifts of a meshed barrier's grid along t, in cells at the contact, at which a level runs: one or both
 GRID_OFFSETS = (0.0, 0.5)
 MOST_REPEATS = 2  # of a level, each with twice the room
-# levels beyond those asked for, where the last has not resolved the contact: it would have no numbers
-MORE = 1
+MORE = (
+    2  # levels at most beyond those asked for, where the last has not resolved the contact: it has no numbers
+)
 BUDGET = 600.0  # s of wall time for all levels, unless stated
 # of the budget, beyond which a level that has begun is given up: all ends within 1.3 times, as the clock is
 # not looked at while matrices are assembled and results written
@@ -280,11 +281,8 @@ class LevelChain:
             ]
             try:
                 runs = in_turns(work, self.workers)
-            except (
-                SceneError,
-                RunError,
-            ) as late:  # what ended in smaller zones is better than none
-                if kept is None:
+            except (SceneError, RunError) as late:
+                if kept is None:  # what ended in smaller zones is better than none
                     raise
                 level = replace(kept, wall_s=now() - begun, late=str(late))
                 break

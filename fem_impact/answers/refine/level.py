@@ -86,7 +86,7 @@ class LevelRun:
 
     @property
     def found(self) -> ContactRecord:
-        """What the next level's mesh follows: without thin cells after one without, as small ones fold sooner."""
+        """What the next level's mesh follows; without thin cells after one without: small ones fold soon."""
         return replace(self.record, crushed=bool(self.without_thin))
 
     @property

@@ -40,14 +40,16 @@ def test_two_levels_are_two(level):
     assert levels.finest > level.splits
 
 
-def test_one_more_level_runs_where_the_last_resolved_nothing(level):
+def test_two_more_levels_run_where_the_last_resolved_nothing(level):
     levels = LevelChain(Case(FREE), done=[level])
     finest = levels.finest
     levels.done = [replace(level, splits=splits) for splits in range(finest - 2, finest + 1)]
     assert levels._next == finest + 1
+    levels.done.append(replace(level, splits=finest + 1))
+    assert levels._next == finest + 2
     resolved = replace(levels.done[-1], record=replace(level.record, resolved=True))
     assert LevelChain(Case(FREE), done=[*levels.done[:2], resolved])._next is None
-    levels.done.append(replace(level, splits=finest + 1))
+    levels.done.append(replace(level, splits=finest + 2))
     assert levels._next is None
 
 
