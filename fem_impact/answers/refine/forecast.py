@@ -166,7 +166,7 @@ class LevelProgress:
         if progress.eta_s is not None:
             return progress.eta_s
         spent_s, whole_s = now() - self.begun, self.own_s
-        if self.duration_s:
+        if self.duration_s and progress.time_s:
             whole_s = spent_s * self.duration_s / progress.time_s
         return max(whole_s - spent_s, 0.5 * spent_s)
 
