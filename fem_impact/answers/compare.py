@@ -1,6 +1,5 @@
 """Computed against measured quantities of a measured set, with computed energies that cannot be measured."""
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -90,14 +89,6 @@ def measured_value(outcome: Outcome, name: str) -> tuple[Num, float | None]:
     return OTHERS[name][1](outcome) if name in OTHERS else outcome.estimate(name)
 
 
-def _quantities(measured: Iterable[str]) -> tuple[ComparedQuantity, ...]:
-    """Return all compared quantities: those of a camera, others that the tests hold, those none can see."""
-    usual = {quantity.measured for quantity in MEASURED}
-    more = [ComparedQuantity(n, KEY_TABLE[n], n) for n in measured if n in KEY_TABLE and n not in usual]
-    other = [ComparedQuantity(n, Key(n, "number", OTHERS[n][0], ""), n) for n in measured if n in OTHERS]
-    return (*MEASURED, *more, *other, *UNSEEN)
-
-
 def compare(outcome: Outcome, tests: MeasuredTests | None = None) -> list[ComparisonRow]:
     """Return one row a quantity of an outcome beside tests; without them beside the set of its scene's id.
 
@@ -106,7 +97,11 @@ def compare(outcome: Outcome, tests: MeasuredTests | None = None) -> list[Compar
     """
     set_id, rows = outcome.provenance.scene_id, []
     statistics = (tests or measured_set(set_id)).statistics()
-    for quantity in _quantities(statistics):
+    # those of a camera, others that the tests hold, those none can see
+    usual = {quantity.measured for quantity in MEASURED}
+    more = [ComparedQuantity(n, KEY_TABLE[n], n) for n in statistics if n in KEY_TABLE and n not in usual]
+    other = [ComparedQuantity(n, Key(n, "number", OTHERS[n][0], ""), n) for n in statistics if n in OTHERS]
+    for quantity in (*MEASURED, *more, *other, *UNSEEN):
         key, (model, band) = quantity.key, measured_value(outcome, quantity.key.name)
         computed = {"set": set_id, "quantity": quantity.name, "unit": key.unit, "model": or_none(model)}
         measured = statistics.get(quantity.measured or "")

@@ -124,8 +124,9 @@ def sweep(
         ]
         place = Path(out) if out is not None else Path(spare)
         make_directory(place)
-        # an executor that is lent stays open
-        with directory_lock(place), nullcontext(executor) if executor else _engine(workers) as engine:
+        # an executor that is lent stays open; one run at a time needs no other process
+        own = ThreadPoolExecutor(1) if workers == 1 else LocalProcesses(workers)
+        with directory_lock(place), nullcontext(executor) if executor else own as engine:
             done = run_jobs(jobs, place / STORE, meter, engine)
             results = Results(vary, tuple(row_of(case, done.get(case.name)) for case in every))
             if out is not None:
@@ -157,11 +158,6 @@ def _without_heat(scene: Scene) -> dict[str, str]:
     return {key.name: why for key in KEYS if key.path[0] == "heat"}
 
 
-def _engine(workers: int) -> Executor:
-    """Return this process for one run at a time, else local processes."""
-    return ThreadPoolExecutor(1) if workers == 1 else LocalProcesses(workers)
-
-
 def cases_digest(scene: Scene, vary: Mapping[str, Sequence[Any]], fidelity: str) -> str:
     """Return the SHA-256 of what a sweep computes: scene, values and fidelity."""
     return checksum({"scene": digest(scene), "vary": dict(vary), "fidelity": fidelity})
@@ -178,26 +174,20 @@ def publish_sweep(
     drawn = [name for name in columns if KEY_TABLE[name].kind == "number"] if columns else list(SHOWN)
     runs = {row.case.name: row.outcome or Failure(row.case.name, row.reason) for row in results}
     effects = {name for row in results if row.outcome for name in row.outcome.provenance.effects}
+    whole, brief = results.table(), results.brief(columns)
+    caption = "All cases" if len(whole) <= MOST_ROWS else f"The first {MOST_ROWS} of {len(whole)} cases"
     report = StudyReport(
         "sweep",
         f"Sweep: {title}",
         [*_findings(results, drawn), *_not_known(results, columns or SHORT), *_cells(results), EXPLAINED],
         pictures=_pictures(results, drawn),
-        sheets=[_sheet(results, columns)],
+        sheets=[Sheet("sweep", caption, whole, brief=replace(brief, rows=brief.rows[:MOST_ROWS]))],
         sources=sorted(effects),
     )
     published = publish(report, Request(out, line=line, cases=cases), runs)
     if find_spec("pyarrow"):
         results.to_dataframe().to_parquet(out / "sweep.parquet")
     return published
-
-
-def _sheet(results: Results, columns: Sequence[str]) -> Sheet:
-    """Return the table of all columns; the summary shows the chosen ones, or those known of `SHORT`."""
-    whole, brief = results.table(), results.brief(columns)
-    brief = replace(brief, rows=brief.rows[:MOST_ROWS])
-    caption = "All cases" if len(whole) <= MOST_ROWS else f"The first {MOST_ROWS} of {len(whole)} cases"
-    return Sheet("sweep", caption, whole, brief=brief)
 
 
 def _not_known(results: Results, columns: Sequence[str]) -> list[str]:

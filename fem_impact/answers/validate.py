@@ -24,7 +24,7 @@ from fem_impact.errors import SceneError, UsageError
 from fem_impact.options import FIDELITIES, RunOptions
 from fem_impact.outcome.keys import Num, Unknown, known
 from fem_impact.progress import CaseProgress, silent, watched
-from fem_impact.run.tests import NUMBERS, MeasuredTests, tests_of
+from fem_impact.run.tests import NUMBERS, tests_of
 from fem_impact.scene.shipped import bare, named, replace_all
 from fem_impact.scene.types import Scene
 from fem_impact.scene.write import to_dict
@@ -36,6 +36,8 @@ FOLLOWS = ("E_ln_over_E_0", "E_lt_over_E_0", "E_r_over_E_0")
 MOVES = ("V_n", "V_t", "e_t")
 """Quantities that follow from e, mu and Omega, and are no further evidence in the joint statement; velocities
 and their ratio are where neither e nor mu is measured."""
+KEYS = {q.measured: q.key.name for q in MEASURED if q.measured}
+"""Keys of an outcome by the names of measured numbers."""
 FRICTION = "surface.friction"
 CORNERS = 256  # of the intervals, tried before any run
 Ends = tuple[Any, Any] | str
@@ -134,8 +136,8 @@ def validate(
     if quick not in FIDELITIES:
         remedy = f"Known: {', '.join(FIDELITIES)}."
         raise UsageError("is no fidelity.", key="inputs_by=", value=inputs_by, remedy=remedy)
-    names, at = _measured(tests), {q.measured: q.key.name for q in MEASURED if q.measured}
-    keys = [at.get(name, name) for name in names]
+    names = [name for name in tests.statistics() if name in KEYS or name in NUMBERS]
+    keys = [KEYS.get(name, name) for name in names]
     with watched(options.progress) as meter:
         options = replace(options, progress=meter)
         compared, nominal = (simulate(scene, by, options) for by in (fidelity, quick))
@@ -242,12 +244,6 @@ def _friction(scene: Scene) -> dict[str, Ends]:
         remedy = "State one, such as impact.angle=44,46deg."
         raise UsageError("is missing: no input of the scene is uncertain.", key="uncertain=", remedy=remedy)
     return {FRICTION: (surface.friction_low, surface.friction_high)}
-
-
-def _measured(tests: MeasuredTests) -> list[str]:
-    """Return the measured numbers that can be compared, by their names in the tests."""
-    compared = {q.measured for q in MEASURED if q.measured}
-    return [n for n in tests.statistics() if n in compared or n in NUMBERS]
 
 
 def interval_of(scene: Scene, key: str, ends: Ends) -> Interval:

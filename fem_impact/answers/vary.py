@@ -1,9 +1,10 @@
 """Values of a sweep, with units, and the scenes that all their combinations make."""
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
+from math import prod
 from typing import Any
 
 from fem_impact.errors import FemImpactError, SceneError, UsageError
@@ -53,9 +54,14 @@ def cases(scene: Scene, vary: Mapping[str, Iterable[Any]]) -> list[Variation]:
     SceneError, UsageError
         Nothing varies, there are too many combinations, or each of them is refused.
     """
-    by_key = listed(vary)
+    by_key, every = listed(vary), list[Variation]()
     _check(by_key)
-    every = list(_made(scene, by_key))
+    for number, values in enumerate(product(*by_key.values()), 1):
+        name, changes = f"case-{number:05d}", dict(zip(by_key, values, strict=True))
+        try:
+            every.append(Variation(name, changes, replace_all(scene, changes, source="")))
+        except FemImpactError as error:
+            every.append(Variation(name, changes, None, str(error)))
     if all(case.scene is None for case in every):
         which = "The only combination" if len(every) == 1 else f"Each of the {len(every)} combinations"
         raise SceneError(f"{which} is refused: {every[0].refused}", key="vary=")
@@ -67,21 +73,10 @@ def _check(vary: Mapping[str, Sequence[Any]]) -> None:
         raise UsageError(
             "names no values.", key="vary=", remedy='Give some, as {"impact.angle": ["15 deg", "30 deg"]}.'
         )
-    count = 1
-    for values in vary.values():
-        count *= len(values)
+    count = prod(map(len, vary.values()))
     if count > MOST:
         remedy = f"Give at most {MOST}, or several sweeps."
         raise UsageError(f"makes {count} combinations.", key="vary=", remedy=remedy)
-
-
-def _made(scene: Scene, vary: Mapping[str, Sequence[Any]]) -> Iterator[Variation]:
-    for number, values in enumerate(product(*vary.values()), 1):
-        by_key = dict(zip(vary, values, strict=True))
-        try:
-            yield Variation(f"case-{number:05d}", by_key, replace_all(scene, by_key, source=""))
-        except FemImpactError as error:
-            yield Variation(f"case-{number:05d}", by_key, None, str(error))
 
 
 def measure(value: Any) -> tuple[float | str, str]:

@@ -144,6 +144,11 @@ def _layout(panel: Panel) -> dict[str, Any]:
     x = x[np.isfinite(x)]
     low, high = (float(x.min()), float(x.max())) if len(x) else (0.0, 1.0)
     shapes = [_line("x", mark.at) for mark in panel.marks] + [_line("y", level.at) for level in panel.levels]
+    shade = {"fillcolor": SHADE, "line": {"width": 0}, "layer": "below"}
+    shapes += [
+        {"type": "rect", "x0": part.start, "x1": part.end, "y0": 0, "y1": 1, "yref": "paper", **shade}
+        for part in panel.intervals
+    ]
     return {
         "font": {"size": 12, "color": INK},
         "margin": {"l": 10, "r": 10, "t": 34, "b": 10},  # the buttons of a figure stand above it
@@ -156,7 +161,7 @@ def _layout(panel: Panel) -> dict[str, Any]:
         | _names("y", panel)
         | _decades("y", panel)
         | ({"scaleanchor": "x"} if panel.equal else {}),
-        "shapes": shapes + [_rectangle(part.start, part.end) for part in panel.intervals],
+        "shapes": shapes,
         "annotations": [
             *(
                 _note(mark.label, x=mark.at, xanchor=side, textangle=-90, y=1, yref="paper", yanchor="top")
@@ -222,11 +227,6 @@ def _line(across: str, at: float) -> dict[str, Any]:
     ends = {"x0": at, "x1": at, "y0": 0, "y1": 1} if across == "x" else {"x0": 0, "x1": 1, "y0": at, "y1": at}
     domain = {"yref": "paper"} if across == "x" else {"xref": "paper"}
     return {"type": "line", **ends, **domain, "line": look}
-
-
-def _rectangle(start: float, end: float) -> dict[str, Any]:
-    place = {"x0": start, "x1": end, "y0": 0, "y1": 1, "yref": "paper"}
-    return {"type": "rect", **place, "fillcolor": SHADE, "line": {"width": 0}, "layer": "below"}
 
 
 def _note(text: str, **place: Any) -> dict[str, Any]:

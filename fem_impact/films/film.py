@@ -9,14 +9,13 @@ from itertools import chain
 from pathlib import Path
 
 import numpy as np
-from matplotlib.figure import Figure
 from PIL import Image, ImageDraw
 
 from fem_impact.errors import ResultError
 from fem_impact.figures.style import INK, QUIET
 from fem_impact.films import frame
 from fem_impact.films.encode import best_suffix, encode, require_gl
-from fem_impact.films.layout import FrameLayout, Rectangle, SideBySideLayout
+from fem_impact.films.layout import FrameLayout, SideBySideLayout
 from fem_impact.films.motion import FilmData, prepare
 from fem_impact.films.movement import FPS, WHOLE, Span, film_times, read_movement, slow_motion
 from fem_impact.films.views import CloseView, Overlay, RodPicture, needed_height
@@ -165,7 +164,10 @@ def render_side_by_side(
     folders = [Path(result) for result in results]
     read = [read_movement(folder) for folder in folders]
     movements = [movement for movement, _ in read]
-    motions = _on_one_scale([prepare(m, "strain", film_times(m, "strain", WHOLE)) for m in movements])
+    motions = [prepare(m, "strain", film_times(m, "strain", WHOLE)) for m in movements]
+    # all have the widest colour range and the smallest magnification
+    top, peak = max(motion.far[1] for motion in motions), min(motion.peak for motion in motions)
+    motions = [replace(motion, far=(-top, top), peak=peak) for motion in motions]
     require_gl()
     path, notes = target(folders[0], out, "film-side-by-side")
     titles, made, curves, missing = zip(*map(context, folders), strict=True)
@@ -175,13 +177,6 @@ def render_side_by_side(
     film = encode(_side_by_side_frames(background, motions, times), path, FPS)
     left_out = [left_out for _, left_out in read]
     return RenderResult(film, (*notes, *chain(*left_out, *missing)), len(times))
-
-
-def _on_one_scale(motions: Sequence[FilmData]) -> list[FilmData]:
-    """Give all motions the widest colour range and the smallest magnification."""
-    top = max(motion.far[1] for motion in motions)
-    peak = min(motion.peak for motion in motions)
-    return [replace(motion, far=(-top, top), peak=peak) for motion in motions]
 
 
 @dataclass(frozen=True, slots=True)
@@ -219,7 +214,10 @@ class PairBackground:
         limits = frame.limits_of(curves)
         strips = []
         for title, curve, view, place in zip(titles, curves, layout.views, layout.strips, strict=True):
-            _title(drawn, layout, view, title)
+            at = (view.left / layout.width, 1 - (view.top - 2) / layout.height)
+            lines, points = frame.fitted(title, view.width, 9.5, 7.0)
+            title_of = drawn.text(*at, lines, fontsize=points, color=INK, va="bottom", linespacing=1.1)
+            title_of.set_parse_math(False)
             strips.append(frame.Strip.draw(drawn, layout, place, curve, limits))
         middle = layout.views[len(layout.views) // 2]
         frame.colour_bar(drawn, layout, middle, "strain", motions[0].far)
@@ -241,12 +239,6 @@ class PairBackground:
                 frame.write(pen, place, f"over at {end * 1e6:.0f} µs", 13)
         frame.clock(pen, self.layout, time)
         return np.asarray(image)
-
-
-def _title(drawn: Figure, layout: SideBySideLayout, view: Rectangle, title: str) -> None:
-    place = (view.left / layout.width, 1 - (view.top - 2) / layout.height)
-    lines, points = frame.fitted(title, view.width, 9.5, 7.0)
-    drawn.text(*place, lines, fontsize=points, color=INK, va="bottom", linespacing=1.1, parse_math=False)
 
 
 def _side_by_side_frames(

@@ -202,7 +202,11 @@ class ProjectileSpec:
     def __post_init__(self) -> None:
         check_numbers(self, fields.PROJECTILE)
         if self.shape is None:
-            _check_tip_name(self.tip)
+            # the published tips need no import of the rigid package, which would slow every command
+            if self.tip not in ("A", "B", "plain"):
+                from fem_impact.scene.tips import tips
+
+                check_choice(self.tip, tuple(tips()), "tip")
             if self.tip_radius > self.diameter / 2:
                 raise SceneError(
                     f"is larger than the rod's radius ({self.diameter * 500:.3g} mm).",
@@ -238,14 +242,6 @@ def _rigid_body(rod: ProjectileSpec) -> Body:
     if rod.is_rod:
         return Projectile(rod.length, rod.diameter, rod.tip, rod.tip_radius, rod.material.rho)
     return rod.body()
-
-
-def _check_tip_name(tip: str) -> None:
-    if tip in ("A", "B", "plain"):
-        return  # the published ones need no import of the rigid package, which would slow every command
-    from fem_impact.scene.tips import tips
-
-    check_choice(tip, tuple(tips()), "tip")
 
 
 def _check_segments(rod: ProjectileSpec) -> None:

@@ -52,7 +52,9 @@ def stated_by_length(shape: str, stated: Collection[str]) -> bool:
     """Return whether the form of a nose is stated by its length; refuse both ways, or none (SceneError)."""
     check_choice(shape, tuple(NEEDS), "shape")
     form = next((key for key in NEEDS[shape] if key in REPLACED), "")
-    keys = {key: [name for name in stated if name in (key, *_si(key))] for key in (form, BY_LENGTH) if form}
+    # a size counts by its key and by that with its SI unit
+    names = {size.key: (size.key, size.si_key or size.key) for size in SIZES}
+    keys = {key: [name for name in stated if name in names[key]] for key in (form, BY_LENGTH) if form}
     if form and len([key for key in keys if keys[key]]) != 1:
         both = bool(keys[form])
         raise SceneError(
@@ -61,12 +63,6 @@ def stated_by_length(shape: str, stated: Collection[str]) -> bool:
             remedy=f"Give {form} or {BY_LENGTH}, one of them.",
         )
     return bool(form and keys[BY_LENGTH])
-
-
-def _si(key: str) -> tuple[str, ...]:
-    """Return the name of a size with its SI unit, if it has one."""
-    name = next(size.si_key for size in SIZES if size.key == key)
-    return (name,) if name else ()
 
 
 def refuse_tip(stated: Mapping[str, Any]) -> None:

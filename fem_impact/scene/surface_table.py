@@ -21,9 +21,13 @@ def read_surface(table: Table) -> Surface | None:
     """Read a surface; that of the pair, which is None, follows from both materials."""
     check_keys(table, ("state", "source", *(f.key for f in fields.SURFACE), LAW))
     state = needed(table, "state")
-    if state == "custom":
-        return _custom_surface(table)
-    return None if state == "pair" else of_known(partial(library.surface, state), table)
+    if state != "custom":
+        return None if state == "pair" else of_known(partial(library.surface, state), table)
+    f = needed(table, "friction", "0.3, Coulomb's coefficient")
+    interval = {"friction_low": f, "friction_high": f}
+    numbers = numbers_of(table, fields.SURFACE, ("state", "source", LAW), interval)
+    source = needed(table, "source", '"our own tests", where the friction is known from')
+    return Surface(state="custom", source=source, sliding_law=_sliding_law(table), **numbers)
 
 
 def of_known(surface: Callable[[], Surface], table: Table) -> Surface:
@@ -40,30 +44,19 @@ def of_known(surface: Callable[[], Surface], table: Table) -> Surface:
     return replace(known, sliding_law=_sliding_law(table))
 
 
-def _custom_surface(table: Table) -> Surface:
-    f = needed(table, "friction", "0.3, Coulomb's coefficient")
-    numbers = numbers_of(
-        table, fields.SURFACE, ("state", "source", LAW), {"friction_low": f, "friction_high": f}
-    )
-    source = needed(table, "source", '"our own tests", where the friction is known from')
-    return Surface(state="custom", source=source, sliding_law=_sliding_law(table), **numbers)
-
-
 def _sliding_law(table: Table) -> SlidingLaw | None:
     """Return the law of friction over speed, by its name or from its table; None where none is stated."""
     stated = table.get(LAW)
     if stated is None:
         return None
     try:
-        return library.sliding_law(stated) if isinstance(stated, str) else _own_law(stated)
+        if isinstance(stated, str):
+            return library.sliding_law(stated)
+        if not isinstance(stated, Mapping):
+            raise SceneError("must be a name or a table.", remedy=f"Write {LAW} = {EXAMPLE}.")
+        return law_of(stated)
     except SceneError as error:
         raise error.under(LAW) from None
-
-
-def _own_law(table: object) -> SlidingLaw:
-    if not isinstance(table, Mapping):
-        raise SceneError("must be a name or a table.", remedy=f"Write {LAW} = {EXAMPLE}.")
-    return law_of(table)
 
 
 OWN = 'surface = { state = "custom", friction = 0.3, source = "our own tests" }'

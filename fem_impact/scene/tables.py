@@ -1,7 +1,7 @@
 """Tables of a scene as stated: their numbers, inner tables and keys, with complaints that name the place."""
 
 from collections.abc import Callable, Iterable, Mapping
-from typing import Any, NoReturn, TypeVar
+from typing import Any, TypeVar
 
 from fem_impact.errors import SceneError, did_you_mean
 from fem_impact.scene import fields
@@ -61,8 +61,12 @@ def _number(table: Table, field: Parameter, default: Any) -> Any:
                 f"is given twice, here and as {field.si_key}.", key=field.key, remedy="Keep one."
             )
         return parse_number(table[field.si_key], field.si_key)
+    if field.key not in table and default is None and not field.derived:
+        how = "with its unit" if field.dimension else "as a bare number"
+        remedy = f"Give it {how}; `fem-impact scenes` lists complete scenes."
+        raise SceneError(f"is missing: the {field.meaning}.", key=field.key, remedy=remedy)
     if field.key not in table:
-        return default if default is not None or field.derived else _stated(field)
+        return default
     value = table[field.key]
     if field.dimension:
         return parse_quantity(value, field.dimension, field.key)
@@ -117,10 +121,3 @@ def check_keys(table: Table, known: Iterable[str], shown: Iterable[str] = ()) ->
                 else did_you_mean(near, known, f"Known here: {', '.join(shown or known)}.")
             )
             raise SceneError(UNKNOWN_KEY, key=str(key), remedy=remedy)
-
-
-def _stated(field: Parameter) -> NoReturn:
-    """Refuse a table without a number that nothing else stands for."""
-    how = "with its unit" if field.dimension else "as a bare number"
-    remedy = f"Give it {how}; `fem-impact scenes` lists complete scenes."
-    raise SceneError(f"is missing: the {field.meaning}.", key=field.key, remedy=remedy)

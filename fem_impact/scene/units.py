@@ -13,6 +13,7 @@ from fem_impact.errors import SceneError, UsageError, did_you_mean
 _NUMBER = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 _QUANTITY = re.compile(rf"\s*({_NUMBER})\s*(\D.*)?", re.DOTALL)
 _LONGEST = 64
+SPELLINGS = {"³": "3", "^3": "3", "°": "deg", "µ": "u", "μ": "u"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +92,10 @@ def parse_quantity(value: Any, dimension: str, key: str) -> float:
         endless = value.strip().lower().lstrip("+-").startswith(("nan", "inf"))
         problem = "must be a finite number." if endless else f"cannot be read as {dim.name}."
         raise SceneError(problem, key=key, value=value, remedy=remedy)
-    number, symbol = match.group(1), _plain(match.group(2) or "")
+    # the usual spellings of a unit are one
+    number, symbol = match[1], (match[2] or "").strip().replace(" ", "")
+    for other, letter in SPELLINGS.items():
+        symbol = symbol.replace(other, letter)
     if symbol.startswith(","):
         raise SceneError("has a decimal comma; write a decimal point.", key=key, value=value, remedy=remedy)
     if not symbol:
@@ -164,12 +168,6 @@ def _scaled(value: float, unit: Unit) -> str:
 def _digits(number: Decimal) -> str:
     """Write everyday sizes without an exponent."""
     return f"{number:f}" if -7 < number.adjusted() < 9 else f"{number}"
-
-
-def _plain(symbol: str) -> str:
-    """Fold the usual spellings of a unit into one."""
-    folded = symbol.strip().replace(" ", "").replace("³", "3").replace("^3", "3").replace("°", "deg")
-    return folded.replace("µ", "u").replace("μ", "u")
 
 
 def _kind(value: Any) -> str:

@@ -111,7 +111,13 @@ def body_model(body: FreeBody) -> Model:
     if body.driven:
         inverse[: layout.rod_size] = 0.0
     drawn = MassPoints.of_rod(body.mesh, parts[0].mass, body.rho)
-    x, v = _start(body, parts, layout, drawn)
+    x, v = np.zeros(layout.size), np.zeros(layout.size)
+    x[layout.dummy] = dummy_element()
+    for part in parts:
+        x[part.places] = part.points
+    v[layout.rod] = body.velocity
+    for vector in (x, v):
+        drawn.condense(layout.slices_of(vector))
     zones = [
         build.yielding_zone(part, law, layout)
         for part, law in zip(parts, (body.law, block.law if block else None), strict=False)
@@ -152,17 +158,6 @@ def body_model(body: FreeBody) -> Model:
         steps=steps,
         start=(x, v),
     )
-
-
-def _start(body: FreeBody, parts: list[Meshed], layout: DofLayout, drawn: MassPoints) -> tuple[Array, Array]:
-    x, v = np.zeros(layout.size), np.zeros(layout.size)
-    x[layout.dummy] = dummy_element()
-    for part in parts:
-        x[part.places] = part.points
-    v[layout.rod] = body.velocity
-    for vector in (x, v):
-        drawn.condense(layout.slices_of(vector))
-    return x, v
 
 
 def _linear(

@@ -209,21 +209,17 @@ def scatter(rods: DataFrame) -> list[str]:
     rods = rods[rods.error_of_e > 0.005]
     if len(rods) < 8:
         return []
-    inclined, whole, gamma = (
-        _scatter(rods.sort_values(x).error_of_e.to_numpy())
-        for x in ("T1_over_tau", "T1_over_tau_whole", "gamma")
-    )
+    apart = []
+    for x in ("T1_over_tau", "T1_over_tau_whole", "gamma"):
+        y = rods.sort_values(x).error_of_e.to_numpy()
+        around = (y[:-4] + y[1:-3] + y[3:-1] + y[4:]) / 4  # the mean over two neighbours on each side
+        apart.append(float(np.sqrt(np.mean((y[2:-2] - around) ** 2))))
+    inclined, whole, gamma = apart
     return [
         f"Over all contacts and diameters the error of e scatters by {inclined:.3f} about one curve of "
         f"T1/tau, tau of the inclined rod, by {whole:.3f} with tau of the whole mass, and by {gamma:.3f} "
         f"about one curve of gamma ({len(rods)} rods with an error above 0.5 %)."
     ]
-
-
-def _scatter(y: Array) -> float:
-    """Return the root mean square of y about its mean over the four neighbours, two on each side."""
-    around = (y[:-4] + y[1:-3] + y[3:-1] + y[4:]) / 4
-    return float(np.sqrt(np.mean((y[2:-2] - around) ** 2)))
 
 
 def independent(rods: DataFrame) -> list[str]:

@@ -7,14 +7,15 @@ from typing import Any
 
 import numpy as np
 
-from fem_impact import Case, Scene
+from fem_impact import Case, Scene, replace_all
 from fem_impact.answers.refine.level_meshes import LevelMeshes
 from fem_impact.case.effects.plasticity import hardening_of
+from fem_impact.jobs.job import Job
 from fem_impact.physics.hardening import TABOR_STRAIN, rate_gain, tabor_stress
 from fem_impact.scene.library import intervals_of
 from fem_impact.scene.material import JohnsonCookRate
 from rigid import Errors
-from rigid.experiments import MeasuredSet
+from rigid.experiments import MeasuredSet, measured_set
 
 ANGLE = radians(0.5)  # half the range of the inclination (assumed)
 CONTACT = Errors().contact  # m, half the range of the contact point's position
@@ -145,6 +146,15 @@ def changes(scene: Scene, values: np.ndarray) -> dict[str, Any]:
         "projectile.tip_radius": f"{radius * 1e3:.9g} mm",
         "barrier.material.E": f"{backing * scene.barrier.material.E / 1e9:.9g} GPa",
     }
+
+
+def sample_jobs(name: str, scene: Scene, unit: np.ndarray, fidelity: str = "solid") -> list[Job]:
+    """Return a run of a measured set's scene for each row of a sample (n, d) of the unit cube."""
+    values = sample_values(scene, measured_set(name), unit, tests=False)
+    return [
+        Job(f"{name}-{at}", replace_all(scene, changes(scene, row)), fidelity)
+        for at, row in enumerate(values)
+    ]
 
 
 def hardened(scene: Scene, share: float) -> dict[str, Any]:

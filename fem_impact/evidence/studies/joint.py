@@ -17,12 +17,12 @@ from functools import cache
 
 import numpy as np
 
-from fem_impact import Outcome, Scene, load, replace_all
+from fem_impact import Outcome, load, replace_all
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.answers.v_and_v import COVERAGE, joint
 from fem_impact.arrays import Array
 from fem_impact.evidence.data import read_table
-from fem_impact.evidence.studies.inputs import changes, sample_values
+from fem_impact.evidence.studies.inputs import sample_jobs
 from fem_impact.evidence.studies.report_parts import asked_sets, error_panel, rests_on
 from fem_impact.evidence.studies.validated import NAMES, SHOWN, outputs, unit_sample
 from fem_impact.figures.panels import Mark, Panel, Picture, Series
@@ -99,7 +99,7 @@ def _scaled(covariance: Array, u: Array) -> Array:
 
 def plan(request: Request, results: JobResults) -> list[Job]:
     """Return runs of the reduced model: each set as stated, and over the sample of its inputs."""
-    return [job for name in asked_sets(request) for job in (_nominal(name), *_sample(name, request))]
+    return [job for name in asked_sets(request) for job in _jobs(name, request)]
 
 
 def conclude(request: Request, results: JobResults) -> StudyReport:
@@ -167,29 +167,20 @@ def _picture(found: Sequence[JointError]) -> Picture:
     return Picture("joint", caption, panels, columns=2)
 
 
-def _nominal(name: str) -> Job:
-    return Job(f"{name}-nominal", _plain(name), "modal")
-
-
-def _plain(name: str) -> Scene:
-    return replace_all(load(name), {"save.frames": 0})
-
-
-def _sample(name: str, request: Request) -> list[Job]:
-    """Return a run of the reduced model a row of the sample of a set."""
-    scene, unit = _plain(name), unit_sample(QUICK_SIZE if request.quick else SIZE)
-    values = sample_values(scene, measured_set(name), unit, tests=False)
-    return [
-        Job(f"{name}-{at}", replace_all(scene, changes(scene, row)), "modal") for at, row in enumerate(values)
-    ]
+def _jobs(name: str, request: Request) -> list[Job]:
+    """Return the run of the reduced model as a set is stated, and those of the sample of its inputs."""
+    scene = replace_all(load(name), {"save.frames": 0})
+    sample = sample_jobs(name, scene, unit_sample(QUICK_SIZE if request.quick else SIZE), "modal")
+    return [Job(f"{name}-nominal", scene, "modal"), *sample]
 
 
 def of_set(
     name: str, request: Request, results: JobResults, rows: Sequence[dict[str, float]]
 ) -> JointError | None:
     """Return the joint error of a set from S, D and uncertainties; None where its runs failed."""
-    measured, nominal = measured_set(name), results.get(_nominal(name).name)
-    runs = [run for job in _sample(name, request) if isinstance(run := results.get(job.name), Outcome)]
+    measured = measured_set(name)
+    nominal, *sample = (results.get(job.name) for job in _jobs(name, request))
+    runs = [run for run in sample if isinstance(run, Outcome)]
     if not isinstance(nominal, Outcome) or len(runs) < FEWEST:
         return None
     at_nominal = np.array(outputs(nominal, measured))[AT]

@@ -10,12 +10,12 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.stats import sobol_indices, uniform, wasserstein_distance
 
-from fem_impact import Outcome, load, replace_all
+from fem_impact import Outcome, load
 from fem_impact.answers.compare import MEASURED
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.answers.v_and_v import COVERAGE, Comparison
 from fem_impact.arrays import Array
-from fem_impact.evidence.studies.inputs import UNCERTAIN_INPUTS, changes, one_mesh, sample_values
+from fem_impact.evidence.studies.inputs import UNCERTAIN_INPUTS, one_mesh, sample_jobs
 from fem_impact.evidence.studies.report_parts import asked_sets, comparison_table, rests_on
 from fem_impact.evidence.studies.sets import set_job
 from fem_impact.evidence.studies.validated import (
@@ -62,12 +62,7 @@ def conclude(request: Request, results: JobResults) -> StudyReport:
 
 def _sample(name: str, request: Request) -> list[Job]:
     """Return one job per row of the sample of a set, on one mesh."""
-    scene, measured = one_mesh(load(name)), measured_set(name)
-    unit = unit_sample(QUICK_SIZE if request.quick else SIZE)
-    return [
-        Job(f"{name}-{at}", replace_all(scene, changes(scene, row)))
-        for at, row in enumerate(sample_values(scene, measured, unit, tests=False))
-    ]
+    return sample_jobs(name, one_mesh(load(name)), unit_sample(QUICK_SIZE if request.quick else SIZE))
 
 
 def _validated(name: str, request: Request, results: JobResults) -> ValidatedSet | None:
