@@ -136,8 +136,7 @@ def body_model(body: FreeBody) -> Model:
             impulses.append(plate_dashpots(layout, inverse, around))
         else:
             impulses.append(dashpots(parts[1], layout, inverse, around))
-    contact = _contact(body, parts, inverse, x)
-    if contact:
+    if contact := _contact(body, parts, inverse, x):
         impulses.append(contact)
     return Model(
         geometry=Geometry(body.mesh, body.points, block.mesh if block else None, 0.0, 0.0),
