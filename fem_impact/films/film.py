@@ -164,10 +164,7 @@ def render_side_by_side(
     folders = [Path(result) for result in results]
     read = [read_movement(folder) for folder in folders]
     movements = [movement for movement, _ in read]
-    motions = [prepare(m, "strain", film_times(m, "strain", WHOLE)) for m in movements]
-    # all have the widest colour range and the smallest magnification
-    top, peak = max(motion.far[1] for motion in motions), min(motion.peak for motion in motions)
-    motions = [replace(motion, far=(-top, top), peak=peak) for motion in motions]
+    motions = _on_one_scale([prepare(m, "strain", film_times(m, "strain", WHOLE)) for m in movements])
     require_gl()
     path, notes = target(folders[0], out, "film-side-by-side")
     titles, made, curves, missing = zip(*map(context, folders), strict=True)
@@ -177,6 +174,13 @@ def render_side_by_side(
     film = encode(_side_by_side_frames(background, motions, times), path, FPS)
     left_out = [left_out for _, left_out in read]
     return RenderResult(film, (*notes, *chain(*left_out, *missing)), len(times))
+
+
+def _on_one_scale(motions: Sequence[FilmData]) -> list[FilmData]:
+    """Give all motions the widest colour range and the smallest magnification."""
+    top = max(motion.far[1] for motion in motions)
+    peak = min(motion.peak for motion in motions)
+    return [replace(motion, far=(-top, top), peak=peak) for motion in motions]
 
 
 @dataclass(frozen=True, slots=True)

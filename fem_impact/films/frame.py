@@ -10,6 +10,7 @@ from textwrap import fill
 from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
@@ -183,6 +184,17 @@ def clock(pen: Any, frame: Frame, time: float) -> None:
     write(pen, (frame.width - 24, 15), f"t = {time * 1e6:.1f} µs")
 
 
+def curve_axes(drawn: Figure, frame: Frame, place: Rectangle, x: str, y: str) -> Axes:
+    """Return axes for curves at a place of a frame."""
+    axes = drawn.add_axes(frame.share(place.left, place.top, place.width, place.height))
+    axes.set_xlabel(x, fontsize=9, labelpad=1)
+    axes.set_ylabel(y, fontsize=9, labelpad=1)
+    axes.tick_params(labelsize=8, color=QUIET)
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.grid(color="#e2e5e9", linewidth=0.7)
+    return axes
+
+
 @dataclass(frozen=True, slots=True)
 class Strip:
     """A drawn force curve.
@@ -202,16 +214,11 @@ class Strip:
     @classmethod
     def draw(cls, drawn: Figure, frame: Frame, place: Rectangle, curve: Curve, limits: Limits) -> Strip:
         """Draw the curve into a figure that is as large as the frame."""
-        axes = drawn.add_axes(frame.share(place.left, place.top, place.width, place.height))
+        axes = curve_axes(drawn, frame, place, "time, µs", "normal force, kN")
         first, last, largest = limits
         axes.plot(curve[0] * 1e6, curve[1] / 1e3, color=PALETTE["blue"], linewidth=1.6)
         axes.fill_between(curve[0] * 1e6, curve[1] / 1e3, color=PALETTE["blue"], alpha=0.12, linewidth=0)
         axes.set(xlim=(first * 1e6, last * 1e6), ylim=(0.0, 1.08 * largest / 1e3))
-        axes.set_xlabel("time, µs", fontsize=9, labelpad=1)
-        axes.set_ylabel("normal force, kN", fontsize=9)
-        axes.tick_params(labelsize=8, color=QUIET)
-        axes.spines[["top", "right"]].set_visible(False)
-        axes.grid(color="#e2e5e9", linewidth=0.7)
         corners = axes.transData.transform([(first * 1e6, 0.0), (last * 1e6, largest / 1e3)])
         (left, zero), (right, top) = corners
         track = (float(left), float(right), frame.height - float(zero), frame.height - float(top))
@@ -262,26 +269,14 @@ class StrainProfile:
     ) -> StrainProfile:
         """Draw the axes into a figure that is as large as the frame, high enough for all times."""
         limit = 1.1e6 * max(float(np.abs(part).max()) for part in waves.strain(times))
-        axes = drawn.add_axes(
-            frame.share(place.left + 54, place.top + 6, place.width - 66, place.height - 48)
-        )
+        inner = Rectangle(place.left + 54, place.top + 6, place.width - 66, place.height - 48)
+        x, y = "position along the axis from the tip, mm", "axial strain, µm/m"
+        axes = curve_axes(drawn, frame, inner, x, y)
         axes.set(xlim=(0.0, 1e3 * waves.length), ylim=(-limit, limit))
-        axes.set_xlabel("position along the axis from the tip, mm", fontsize=9, labelpad=1)
-        axes.set_ylabel("axial strain, µm/m", fontsize=9, labelpad=1)
-        axes.tick_params(labelsize=8, color=QUIET)
-        axes.spines[["top", "right"]].set_visible(False)
-        axes.grid(color="#e2e5e9", linewidth=0.7)
         axes.axhline(0.0, color=QUIET, linewidth=0.7)
+        look: dict[str, Any] = {"transform": axes.transAxes, "va": "top", "fontsize": 9}
         for at, (words, colour) in enumerate(CURVES):
-            axes.text(
-                0.02,
-                0.98 - 0.06 * at,
-                words,
-                color=PALETTE[colour],
-                transform=axes.transAxes,
-                va="top",
-                fontsize=9,
-            )
+            axes.text(0.02, 0.98 - 0.06 * at, words, color=PALETTE[colour], **look)
         (left, zero), (right, top) = axes.transData.transform([(0.0, 0.0), (1e3 * waves.length, limit)])
         slope = (float(right - left) / waves.length, float(top - zero) / limit * 1e6)
         return cls(waves, (float(left), frame.height - float(zero)), slope)
