@@ -172,10 +172,7 @@ def publish(report: StudyReport, request: Request, results: Mapping[str, object]
     if _stands_another(request.out, document):
         set_aside(request.out)
     for picture in report.pictures:
-        stem = make_directory(request.out / "figures") / picture.name
-        for suffix in (".svg", ".png"):
-            draw(picture, stem.with_suffix(suffix))
-        write_text(stem.with_suffix(".json"), json.dumps(live(picture), allow_nan=False))
+        _draw(picture, make_directory(request.out / "figures"))
     for sheet in report.sheets:
         write_text(request.out / f"{sheet.name}.csv", sheet.table.csv())
     write_text(request.out / "runs.csv", Table.of(LEDGER, ledger).csv())
@@ -227,6 +224,13 @@ def _document(report: StudyReport, request: Request, results: Mapping[str, objec
         "rows": [outcome.to_dict() for outcome in report.outcomes],
         "comparison": [dict(row) for row in report.comparison],
     }
+
+
+def _draw(picture: Picture, place: Path) -> None:
+    stem = place / picture.name
+    for suffix in (".svg", ".png"):
+        draw(picture, stem.with_suffix(suffix))
+    write_text(stem.with_suffix(".json"), json.dumps(live(picture), allow_nan=False))
 
 
 def _markdown(report: StudyReport, document: Mapping[str, Any]) -> str:

@@ -9,13 +9,14 @@ from itertools import chain
 from pathlib import Path
 
 import numpy as np
+from matplotlib.figure import Figure
 from PIL import Image, ImageDraw
 
 from fem_impact.errors import ResultError
 from fem_impact.figures.style import INK, QUIET
 from fem_impact.films import frame
 from fem_impact.films.encode import best_suffix, encode, require_gl
-from fem_impact.films.layout import FrameLayout, SideBySideLayout
+from fem_impact.films.layout import FrameLayout, Rectangle, SideBySideLayout
 from fem_impact.films.motion import FilmData, prepare
 from fem_impact.films.movement import FPS, WHOLE, Span, film_times, read_movement, slow_motion
 from fem_impact.films.views import CloseView, Overlay, RodPicture, needed_height
@@ -218,10 +219,7 @@ class PairBackground:
         limits = frame.limits_of(curves)
         strips = []
         for title, curve, view, place in zip(titles, curves, layout.views, layout.strips, strict=True):
-            at = (view.left / layout.width, 1 - (view.top - 2) / layout.height)
-            lines, points = frame.fitted(title, view.width, 9.5, 7.0)
-            title_of = drawn.text(*at, lines, fontsize=points, color=INK, va="bottom", linespacing=1.1)
-            title_of.set_parse_math(False)
+            _title(drawn, layout, view, title)
             strips.append(frame.Strip.draw(drawn, layout, place, curve, limits))
         middle = layout.views[len(layout.views) // 2]
         frame.colour_bar(drawn, layout, middle, "strain", motions[0].far)
@@ -243,6 +241,12 @@ class PairBackground:
                 frame.write(pen, place, f"over at {end * 1e6:.0f} µs", 13)
         frame.clock(pen, self.layout, time)
         return np.asarray(image)
+
+
+def _title(drawn: Figure, layout: SideBySideLayout, view: Rectangle, title: str) -> None:
+    place = (view.left / layout.width, 1 - (view.top - 2) / layout.height)
+    lines, points = frame.fitted(title, view.width, 9.5, 7.0)
+    drawn.text(*place, lines, fontsize=points, color=INK, va="bottom", linespacing=1.1, parse_math=False)
 
 
 def _side_by_side_frames(
