@@ -3,8 +3,6 @@
 MP4 needs imageio-ffmpeg; the others are WebP, GIF and a folder of PNG files.
 """
 
-from __future__ import annotations
-
 import importlib.util
 import itertools
 import os

@@ -24,19 +24,17 @@ class DeclaredSweep:
     scenes : function of the request to the scenes by name
     variants : function of a scene's name and the scene to its variants by name: changed scene and fidelity
     report : function of the `Runs` to the study's report
-    label : name of a job by ``scene`` and ``variant``
     """
 
     scenes: Callable[[Request], Mapping[str, Scene]]
     variants: Callable[[str, Scene], Mapping[str, tuple[Scene, str]]]
     report: Callable[[Runs], StudyReport]
-    label: str = "{scene}-{variant}"
 
     def jobs(self, request: Request) -> dict[str, dict[str, Job]]:
         """Return the jobs by scene and variant."""
         return {
             name: {
-                variant: Job(self.label.format(scene=name, variant=variant), *changed)
+                variant: Job(f"{name}-{variant}", *changed)
                 for variant, changed in self.variants(name, scene).items()
             }
             for name, scene in self.scenes(request).items()
