@@ -12,10 +12,10 @@ from . import shapes
 from .arms import Arms, corner_arms, point_arms
 from .coefficients import Coefficients, coefficients, impulse_centre, impulse_ratio, restitution
 from .drop import GRAVITY, drop_velocities
-from .errors import DataError, ImpactError, RigidError, ShapeError, TooLongError
 from .faceted import Faceted
 from .finite import FreeMotion, solve_free
 from .general import General
+from .inputs import DataError, ImpactError, RigidError, ShapeError, TooLongError
 from .losses import (
     Losses,
     PredictedLosses,

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .arrays import Floats, floats
+from .inputs import Floats, floats
 from .touch import on_side
 
 

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from .arrays import Floats
+from .inputs import Floats
 
 
 def chord(outline: Floats, alpha: float, height: float) -> tuple[float, float]:

@@ -6,8 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .arms import Arms
-from .arrays import Floats, floats
-from .errors import refuse
+from .inputs import Floats, floats, refuse
 from .massive import approach_velocity
 
 

@@ -3,8 +3,7 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .arrays import Floats, floats
-from .errors import refuse
+from .inputs import Floats, floats, refuse
 
 GRAVITY = 9.80665
 """Standard gravity, m/s2."""

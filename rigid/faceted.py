@@ -9,9 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .arms import Arms, point_arms
-from .arrays import Floats, floats
 from .chord import mirrored_chord
-from .errors import ShapeError
+from .inputs import Floats, ShapeError, floats
 from .rounds import Round, hull, rounds_of
 from .slenderness import slenderness
 from .touch import Touch, level_part, on_side, require_inclination

@@ -4,8 +4,7 @@ from typing import NamedTuple
 
 from numpy.typing import ArrayLike
 
-from .arrays import Floats, floats
-from .errors import refuse
+from .inputs import Floats, floats, refuse
 from .massive import JAM, approach_velocity, phi
 
 

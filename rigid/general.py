@@ -10,8 +10,7 @@ from dataclasses import KW_ONLY, dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .arrays import Floats, floats
-from .errors import refuse
+from .inputs import Floats, floats, refuse
 from .losses import kinetic_energy
 from .massive import Motion, approach_velocity
 

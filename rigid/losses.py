@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from numpy.typing import ArrayLike
 
-from .arrays import Floats, floats
+from .inputs import Floats, floats
 from .massive import phi
 
 

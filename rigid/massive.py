@@ -8,8 +8,7 @@ from typing import NamedTuple
 
 from numpy.typing import ArrayLike
 
-from .arrays import Floats, floats
-from .errors import refuse
+from .inputs import Floats, floats, refuse
 
 APPROACH = "the contact point must approach the barrier, but its normal velocity is {value} m/s"
 JAM = (

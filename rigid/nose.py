@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .arrays import Floats, floats
+from .inputs import Floats, floats
 
 CONE = np.radians(60.0)
 

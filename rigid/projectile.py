@@ -9,9 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .arms import Arms, corner_arms, point_arms
-from .arrays import Floats, floats
 from .chord import both_sides, mirrored_chord
-from .errors import ShapeError
+from .inputs import Floats, ShapeError, floats
 from .nose import SHAPES, Nose
 from .rounds import Round, around
 from .shapes import of_nose

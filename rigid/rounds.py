@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .arrays import Floats
+from .inputs import Floats
 
 TURN = 2.0 * math.pi
 LONG = 2.0

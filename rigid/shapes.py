@@ -5,8 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from .arrays import Floats
-from .errors import ShapeError, TooLongError
+from .inputs import Floats, ShapeError, TooLongError
 from .nose import Nose
 
 STEP = math.radians(0.5)

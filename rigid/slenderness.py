@@ -3,8 +3,7 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .arrays import Floats, floats
-from .errors import ShapeError, refuse
+from .inputs import Floats, ShapeError, floats, refuse
 
 EXPONENT = 1.3815
 LIMIT = 26.45

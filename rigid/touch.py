@@ -5,8 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .arrays import Floats
-from .errors import refuse
+from .inputs import Floats, refuse
 
 LEVEL = 1e-9
 """Share of the length within which places of a body that is stated by its sizes count as equally low."""

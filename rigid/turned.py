@@ -10,9 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .arms import Arms, point_arms
-from .arrays import Floats, floats
 from .chord import both_sides, mirrored_chord
-from .errors import ShapeError, TooLongError
+from .inputs import Floats, ShapeError, TooLongError, floats
 from .rounds import LONG, Round, cut, hull, rounds_of
 from .slenderness import slenderness
 from .touch import LEVEL, Touch, level_part, on_side, require_inclination

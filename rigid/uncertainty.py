@@ -7,9 +7,8 @@ from math import isfinite, sqrt
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .arrays import Floats
 from .coefficients import coefficients
-from .errors import DataError
+from .inputs import DataError, Floats
 
 MOTION = ("v_n", "v_t", "V_n", "V_t", "Omega")
 

@@ -5,8 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .arrays import Floats, floats
-from .errors import refuse
+from .inputs import Floats, floats, refuse
 from .losses import predicted_losses
 from .massive import JAM, critical_ratio, phi
 

@@ -6,8 +6,7 @@ from pathlib import Path
 import numpy as np
 import outcome_maker
 
-from fem_impact.files.atomic import write_text
-from fem_impact.files.digests import signed
+from fem_impact.files.atomic import signed, write_text
 from fem_impact.files.fields_write import FieldWriter
 from fem_impact.files.waves import Ringing, Waves
 from fem_impact.files.waves import write_waves as write_waves_file

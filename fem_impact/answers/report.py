@@ -13,8 +13,7 @@ from fem_impact.errors import ResultError
 from fem_impact.figures.live import live
 from fem_impact.figures.panels import Picture
 from fem_impact.figures.still import draw
-from fem_impact.files.atomic import make_directory, read_text, write_text
-from fem_impact.files.digests import read_signed, signed
+from fem_impact.files.atomic import make_directory, read_signed, read_text, signed, write_text
 from fem_impact.files.run_directory import set_aside
 from fem_impact.jobs.job import Failure
 from fem_impact.outcome.keys import or_none

@@ -20,8 +20,7 @@ from fem_impact.answers.vary import Variation, cases, in_unit, listed, measure
 from fem_impact.case.effects.heating import thermal
 from fem_impact.errors import FemImpactError, UsageError, did_you_mean
 from fem_impact.figures.panels import Panel, Picture, Series
-from fem_impact.files.atomic import directory_lock, make_directory
-from fem_impact.files.digests import checksum
+from fem_impact.files.atomic import checksum, directory_lock, make_directory
 from fem_impact.jobs.executors import LocalProcesses
 from fem_impact.jobs.job import Failure, Job
 from fem_impact.jobs.run import run_jobs

@@ -17,8 +17,7 @@ from fem_impact.arrays import Array
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.zones import SLIDE
 from fem_impact.errors import ResultError
-from fem_impact.files.atomic import write_bytes
-from fem_impact.files.digests import check_digest
+from fem_impact.files.atomic import check_digest, write_bytes
 from fem_impact.physics.contact import FLAT
 from rigid import Faceted, Projectile
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 
 from fem_impact.errors import ResultError
-from fem_impact.files.digests import check_digest
+from fem_impact.files.atomic import check_digest
 
 if TYPE_CHECKING:
     import h5py

@@ -4,8 +4,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from fem_impact.errors import OutputPathError
-from fem_impact.files.atomic import LOCK, make_directory, read_text
-from fem_impact.files.digests import CHECKSUM, DIGESTS
+from fem_impact.files.atomic import CHECKSUM, DIGESTS, LOCK, make_directory, read_text
 
 CHECKPOINT = "run.checkpoint"
 FIELDS = "fields.vtkhdf"

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fem_impact.errors import ResultError, UsageError
-from fem_impact.files.atomic import atomic_path
-from fem_impact.files.digests import check_digest
+from fem_impact.files.atomic import atomic_path, check_digest
 from fem_impact.files.fields import check_finite, check_times
 
 if TYPE_CHECKING:

@@ -17,9 +17,8 @@ from fem_impact.physics.contact import section_frequency
 from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.fields import ACCURACY
 from fem_impact.scene.impact import Impact
-from fem_impact.scene.material import Material
+from fem_impact.scene.material import Material, Surface
 from fem_impact.scene.projectile import ProjectileSpec
-from fem_impact.scene.surface import Surface
 from fem_impact.scene.types import Accuracy, Scene
 from rigid import Faceted
 

@@ -14,8 +14,7 @@ from types import MappingProxyType
 from typing import Any, ClassVar, get_type_hints
 
 from fem_impact.errors import UsageError, did_you_mean
-from fem_impact.files.atomic import read_text, write_text
-from fem_impact.files.digests import read_signed, signed
+from fem_impact.files.atomic import read_signed, read_text, signed, write_text
 from fem_impact.outcome.check import SCHEMA_VERSION, check_record
 from fem_impact.outcome.groups import (
     BarrierMotion,

@@ -18,8 +18,7 @@ from fem_impact.figures.runs import partition_picture
 from fem_impact.figures.still import draw
 from fem_impact.figures.strikes import accounts_picture, path_picture, tail_picture
 from fem_impact.figures.style import percent
-from fem_impact.files.atomic import make_directory, read_text, write_text
-from fem_impact.files.digests import signed
+from fem_impact.files.atomic import make_directory, read_text, signed, write_text
 from fem_impact.outcome.keys import Key, Unknown, or_none
 from fem_impact.outcome.record import KEY_TABLE, KEYS, Outcome, utc_now
 from fem_impact.outcome.strike_text import spread_table, strikes_table, told

@@ -8,8 +8,7 @@ from fem_impact.answers.verdict.screening import screening
 from fem_impact.answers.verdict.sentences import Line, never_covered, screening_lines
 from fem_impact.case.case import Case
 from fem_impact.errors import MissingLibraryError, ResultError
-from fem_impact.files.atomic import make_directory, read_text, write_text
-from fem_impact.files.digests import checksum, read_signed
+from fem_impact.files.atomic import checksum, make_directory, read_signed, read_text, write_text
 from fem_impact.files.run_directory import FIELDS
 from fem_impact.outcome.keys import Key, Unknown, or_none
 from fem_impact.outcome.limitation import HEAVIEST_FIRST, WRONG_NUMBERS, texts

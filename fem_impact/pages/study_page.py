@@ -13,8 +13,7 @@ import fastjsonschema
 from fem_impact.answers.report import SCHEMA
 from fem_impact.errors import ResultError
 from fem_impact.figures.runs import study_partition_picture
-from fem_impact.files.atomic import make_directory, read_text
-from fem_impact.files.digests import read_signed
+from fem_impact.files.atomic import make_directory, read_signed, read_text
 from fem_impact.outcome.keys import or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.pages import html, sections

@@ -169,8 +169,7 @@ def _followed(
 
 
 def _write(outcome: Outcome, record: ContactRecord | None, out: Path) -> None:
-    from fem_impact.files.atomic import write_text
-    from fem_impact.files.digests import write_digests
+    from fem_impact.files.atomic import write_digests, write_text
     from fem_impact.files.run_directory import BESIDE, RECORD
     from fem_impact.tables.history import CONTACTS
     from fem_impact.tables.table import Table

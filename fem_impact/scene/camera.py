@@ -9,7 +9,7 @@ import numpy as np
 from fem_impact.errors import ResultError
 from fem_impact.scene.units import Unit
 from fem_impact.scene.user_table import UserTable, in_si, read_user_table
-from rigid.arrays import Floats
+from rigid.inputs import Floats
 
 KINDS = {"v_n": "speed", "v_t": "speed", "V_n": "speed", "V_t": "speed", "Omega": "angular speed"}
 ARMS = {"d_c": "length", "d_d": "length"}

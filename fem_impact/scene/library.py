@@ -11,10 +11,9 @@ from fem_impact.errors import SceneError, did_you_mean
 from fem_impact.plugins import added, wrong
 from fem_impact.scene import fields
 from fem_impact.scene.family import family_by_words
-from fem_impact.scene.material import Material
+from fem_impact.scene.material import Material, Surface
 from fem_impact.scene.material_tables import material_of
 from fem_impact.scene.sliding import SlidingLaw, law_of
-from fem_impact.scene.surface import Surface
 from fem_impact.scene.tables import Table, needed
 from fem_impact.scene.types import MEASURED_SETS
 from fem_impact.scene.units import parse_quantity

@@ -1,14 +1,15 @@
-"""What a body is made of: elastic constants, strengths, hardness, flow curve and the law of the rate."""
+"""What a body is made of: constants, strengths, flow curve, law of the rate; the state of its surface."""
 
 from dataclasses import dataclass
 from itertools import pairwise
 from math import inf
-from typing import ClassVar, get_args
+from typing import ClassVar, Literal, get_args
 
 from fem_impact.errors import SceneError
 from fem_impact.scene import fields
 from fem_impact.scene.checks import check_choice, check_numbers, check_text
 from fem_impact.scene.family import FAMILIES
+from fem_impact.scene.sliding import SlidingLaw
 
 MOST_POINTS = 200  # of a table
 THERMAL = ("m", "melting", "reference", "heat_share")
@@ -297,3 +298,31 @@ def _check_flow(metal: Material) -> None:
     if isinstance(flow, JohnsonCookFlow) and flow.m is not None and metal.heat_capacity is None:
         remedy = "Give it, or leave out m, melting, reference and heat_share."
         raise SceneError("is missing for the heat of the flow.", key="heat_capacity", remedy=remedy)
+
+
+@dataclass(frozen=True, slots=True)
+class Surface:
+    """State of the two surfaces: Coulomb f that goes in, its interval and where they come from.
+
+    ``pair`` is that of a table of dry pairs of materials, for a scene that states no surface.
+    ``sliding_law`` is how friction changes with speed; None: it does not.
+    """
+
+    state: Literal["machined", "contaminated", "cleaned", "pair", "custom"]
+    friction: float
+    friction_low: float
+    friction_high: float
+    source: str
+    sliding_law: SlidingLaw | None = None
+
+    def __post_init__(self) -> None:
+        check_choice(self.state, ("machined", "contaminated", "cleaned", "pair", "custom"), "state")
+        check_numbers(self, fields.SURFACE)
+        check_text(self.source, "source", 1000)
+        if not self.friction_low <= self.friction <= self.friction_high:
+            raise SceneError(
+                f"lies outside its own interval, {self.friction_low:g} to {self.friction_high:g}.",
+                key="friction",
+                value=self.friction,
+                remedy="Give friction_low <= friction <= friction_high.",
+            )

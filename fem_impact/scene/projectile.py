@@ -11,9 +11,8 @@ from typing import TYPE_CHECKING
 from fem_impact.errors import SceneError
 from fem_impact.scene import fields, shapes
 from fem_impact.scene.checks import check_choice, check_numbers
-from fem_impact.scene.material import Material
+from fem_impact.scene.material import Material, Surface
 from fem_impact.scene.own_mesh import OwnMesh, cell_regions, face_regions, faceted_body
-from fem_impact.scene.surface import Surface
 
 if TYPE_CHECKING:
     from fem_impact.arrays import Array, Ints

@@ -14,10 +14,9 @@ from fem_impact.scene.barrier import Barrier, Layer
 from fem_impact.scene.checks import check_names
 from fem_impact.scene.impact import WAYS, Impact, the_way
 from fem_impact.scene.library import read_material
-from fem_impact.scene.material import Material
+from fem_impact.scene.material import Material, Surface
 from fem_impact.scene.projectile import Face, ProjectileSpec, Region, Segment
 from fem_impact.scene.strikes import Following
-from fem_impact.scene.surface import Surface
 from fem_impact.scene.surface_table import of_known, pair_surface, read_surface
 from fem_impact.scene.tables import (
     UNKNOWN_KEY,

@@ -9,9 +9,8 @@ from fem_impact.errors import SceneError
 from fem_impact.scene import fields, library
 from fem_impact.scene.family import widening
 from fem_impact.scene.library import family_of, friction_pairs
-from fem_impact.scene.material import Material
+from fem_impact.scene.material import Material, Surface
 from fem_impact.scene.sliding import EXAMPLE, SlidingLaw, law_of
-from fem_impact.scene.surface import Surface
 from fem_impact.scene.tables import Table, check_keys, needed, numbers_of
 
 LAW = "sliding_law"

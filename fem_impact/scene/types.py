@@ -15,10 +15,9 @@ from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.checks import check_choice, check_id, check_names, check_numbers, check_text
 from fem_impact.scene.fields import Fields
 from fem_impact.scene.impact import FIRST, WAYS, Impact
-from fem_impact.scene.material import Material
+from fem_impact.scene.material import Material, Surface
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.strikes import Following
-from fem_impact.scene.surface import Surface
 
 MEASURED_SETS = (
     *("t2", "t3-machined", "t3-contaminated", "t3-cleaned", "t4"),

@@ -13,13 +13,12 @@ import tomli_w
 from fem_impact.scene import fields
 from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.impact import FIRST, Impact
-from fem_impact.scene.material import Flow, Material, TableFlow
+from fem_impact.scene.material import Flow, Material, Surface, TableFlow
 from fem_impact.scene.own_mesh import OwnMesh
 from fem_impact.scene.parameter import Parameter
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.shapes import HEIGHT, RADIUS, NamedShape, Point, Profile, sizes_of
 from fem_impact.scene.sliding import written
-from fem_impact.scene.surface import Surface
 from fem_impact.scene.types import OWN, Accuracy, Scene
 
 

@@ -9,8 +9,7 @@ from typing import Self
 import numpy as np
 
 from fem_impact.errors import OutputPathError, ResultError
-from fem_impact.files.atomic import write_text
-from fem_impact.files.digests import check_digest
+from fem_impact.files.atomic import check_digest, write_text
 from fem_impact.tables.table import Plain, Table, csv_line, read_csv, row_of
 
 HISTORY = (

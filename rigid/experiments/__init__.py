@@ -8,8 +8,17 @@ from .angles import (
     drawn_losses,
     loss_against_angle,
 )
-from .audit import AuditRecord, audit, audit_statistics, column_arms
-from .sets import MeasuredSet, derived_columns, measured_set, measured_sets, set_ids
+from .sets import (
+    AuditRecord,
+    MeasuredSet,
+    audit,
+    audit_statistics,
+    column_arms,
+    derived_columns,
+    measured_set,
+    measured_sets,
+    set_ids,
+)
 from .statistics import (
     Correlation,
     Statistic,

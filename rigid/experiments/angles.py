@@ -8,9 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import Floats
 from ..coefficients import Coefficients
-from ..errors import DataError, refuse
+from ..inputs import DataError, Floats, refuse
 from ..losses import PredictedLosses, predicted_losses
 from ..massive import critical_ratio
 from .sets import MeasuredSet, measured_set

@@ -7,8 +7,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import Floats
-from ..errors import DataError
+from ..inputs import DataError, Floats
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,8 +7,7 @@ from importlib.resources import files
 
 import numpy as np
 
-from ..arrays import Floats
-from ..errors import DataError
+from ..inputs import DataError, Floats
 
 LABELS = ("series", "surface", "statistic")
 TABLES = (2, 3, 4, 5, 6)

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import Floats, floats
+from ..inputs import Floats, floats
 
 
 def interval_ratio(

@@ -9,8 +9,7 @@ from math import copysign, inf, sqrt
 
 import numpy as np
 
-from ..arrays import floats
-from ..errors import ImpactError
+from ..inputs import ImpactError, floats
 from ..massive import Motion, approach_velocity
 from .resolve import End, SlidingPath
 

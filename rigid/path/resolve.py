@@ -14,8 +14,7 @@ from enum import IntEnum
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..arrays import Floats, floats
-from ..errors import ImpactError, refuse
+from ..inputs import Floats, ImpactError, floats, refuse
 from ..massive import Motion, approach_velocity
 from .segments import Segments, segments
 

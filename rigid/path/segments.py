@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Floats
+from ..inputs import Floats
 
 NEVER = 1e12
 """Sliding that needs more than this times the approach velocity as impulse is taken never to stop."""

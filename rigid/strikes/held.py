@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Floats
+from ..inputs import Floats
 from ..rounds import Round
 from .flight import State
 from .outline import LEVEL_ANGLE

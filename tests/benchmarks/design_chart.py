@@ -26,8 +26,8 @@ from fem_impact.outcome.keys import known
 from fem_impact.outcome.record import utc_now
 from fem_impact.scene.impact import Impact
 from fem_impact.scene.library import materials
+from fem_impact.scene.material import Surface
 from fem_impact.scene.shipped import load
-from fem_impact.scene.surface import Surface
 from fem_impact.scene.types import Scene
 from fem_impact.tables.table import Table
 

@@ -6,7 +6,7 @@ import subprocess
 import pytest
 
 from fem_impact.errors import ResultError
-from fem_impact.files.digests import DIGESTS, check_digest, write_digests
+from fem_impact.files.atomic import DIGESTS, check_digest, write_digests
 from fem_impact.files.fields import read_fields
 from fem_impact.files.waves import read_waves
 from fem_impact.options import RunOptions

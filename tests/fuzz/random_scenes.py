@@ -9,9 +9,8 @@ import numpy as np
 
 from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.impact import Impact
-from fem_impact.scene.material import Material
+from fem_impact.scene.material import Material, Surface
 from fem_impact.scene.projectile import ProjectileSpec
-from fem_impact.scene.surface import Surface
 from fem_impact.scene.types import Accuracy, Save, Scene
 
 METALS = (

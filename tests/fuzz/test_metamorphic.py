@@ -15,9 +15,8 @@ from fem_impact.outcome.keys import or_none
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.impact import Impact
-from fem_impact.scene.material import Material
+from fem_impact.scene.material import Material, Surface
 from fem_impact.scene.projectile import ProjectileSpec
-from fem_impact.scene.surface import Surface
 from fem_impact.scene.types import Accuracy, Save, Scene
 
 BOUND = {"solid": 2e-3, "modal": 1e-5}  # of e, mu and each share of E_0

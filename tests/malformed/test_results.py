@@ -13,7 +13,7 @@ import fem_impact.films.film as films
 from fem_impact.answers.report import Request, Sheet, StudyReport, publish
 from fem_impact.case.case import Case
 from fem_impact.figures.panels import Panel, Picture, Series
-from fem_impact.files.digests import CHECKSUM, signed
+from fem_impact.files.atomic import CHECKSUM, signed
 from fem_impact.jobs.job import Failure
 from fem_impact.outcome.keys import keys_of
 from fem_impact.outcome.record import Outcome

@@ -147,7 +147,7 @@ def test_a_null_key_needs_a_reason(record):
 
 def test_a_record_of_an_earlier_version_is_refused_in_one_sentence():
     """Its keys are others, which is not what the user must hear."""
-    from fem_impact.files.digests import signed
+    from fem_impact.files.atomic import signed
 
     old = {"schema_version": 2, "mu": 0.5, "bands": None}
     text = json.dumps(signed(old))

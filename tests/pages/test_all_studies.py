@@ -13,7 +13,7 @@ from fem_impact.answers.report import Request, Sheet, StudyReport, publish
 from fem_impact.errors import ResultError
 from fem_impact.evidence.studies.sets import sets_report
 from fem_impact.figures.panels import Panel, Picture, Series
-from fem_impact.files.digests import read_signed, signed
+from fem_impact.files.atomic import read_signed, signed
 from fem_impact.outcome.record import Outcome
 from fem_impact.pages.all_page import write_all
 from fem_impact.pages.study_page import read_study

@@ -11,8 +11,7 @@ import pytest
 import result_maker
 
 from fem_impact.errors import ResultError
-from fem_impact.files.atomic import write_bytes
-from fem_impact.files.digests import read_signed, signed
+from fem_impact.files.atomic import read_signed, signed, write_bytes
 from fem_impact.outcome.check import SCHEMA_VERSION
 from fem_impact.pages.html import bullets, paragraph, section, table
 from fem_impact.pages.sections import contact_places, effects_section

@@ -8,7 +8,7 @@ import result_maker
 from fem_impact.answers.verdict.assess import assess
 from fem_impact.answers.verdict.sentences import document
 from fem_impact.errors import ResultError
-from fem_impact.files.digests import signed
+from fem_impact.files.atomic import signed
 from fem_impact.pages.sheet import write_sheet
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.write import digest, to_toml

@@ -3,7 +3,7 @@ import pytest
 
 from rigid import DataError, coefficients
 from rigid.experiments import audit, audit_statistics, correlation, correlations, measured_set
-from rigid.experiments.audit import _knowledge
+from rigid.experiments.sets import _knowledge
 
 ROWS = audit()
 LINES = audit_statistics()

@@ -15,11 +15,10 @@ from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.fields import Boundary, Element, FineZone, YieldingElement
 from fem_impact.scene.impact import Impact
 from fem_impact.scene.library import materials, shipped, surfaces
-from fem_impact.scene.material import Material
+from fem_impact.scene.material import Material, Surface
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.read import read_dict, read_toml
 from fem_impact.scene.shipped import load, replace, replace_all
-from fem_impact.scene.surface import Surface
 from fem_impact.scene.types import Accuracy, Save, Scene
 from fem_impact.scene.write import digest, to_dict, to_toml
 

@@ -26,8 +26,7 @@ from fem_impact.case.case import Case
 from fem_impact.case.cells import contact_edge
 from fem_impact.case.record import together
 from fem_impact.errors import ResultError, RunError, SceneError
-from fem_impact.files.atomic import directory_lock, read_text
-from fem_impact.files.digests import write_digests
+from fem_impact.files.atomic import directory_lock, read_text, write_digests
 from fem_impact.files.run_directory import BESIDE, is_resumable
 from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import Unknown, known

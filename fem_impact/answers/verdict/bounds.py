@@ -17,8 +17,8 @@ from rigid import (
     sliding_path,
     worst_case,
 )
-from rigid.arrays import Floats
 from rigid.experiments import MeasuredSet
+from rigid.inputs import Floats
 
 STEPS = 9
 """Values of e and of d_c that are searched in a `Range`."""

@@ -7,8 +7,8 @@ from typing import Any, Literal
 
 from fem_impact.errors import SceneError
 from rigid import SHAPES, Arms, Projectile, drop_velocities
-from rigid.arrays import Floats
 from rigid.experiments import MeasuredSet, measured_sets
+from rigid.inputs import Floats
 
 Surface = Literal["machined", "contaminated", "cleaned"]
 NEAR = {"length": math.log(2.0), "alpha": math.radians(20.0), "speed": math.log(2.0)}

@@ -18,7 +18,7 @@ from fem_impact.answers.verdict.bounds import (
 from fem_impact.answers.verdict.drop import RodDropInput, outside_of, unmeasured, weights_of
 from fem_impact.outcome.limitation import limitations
 from rigid import LIMIT, LIMIT_MM, Errors, behaves_rigidly, in_millimetres
-from rigid.arrays import Floats
+from rigid.inputs import Floats
 
 CONTACT = Errors().contact
 """Error of the contact point, m."""

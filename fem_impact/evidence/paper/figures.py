@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from fem_impact.evidence.paper.drawn import Drawn, Statement, canvas
 from fem_impact.figures.style import INK, PALETTE, QUIET, write_data
 from rigid import Errors, coefficients, critical_ratio, experiments, predicted_losses
-from rigid.arrays import Floats
+from rigid.inputs import Floats
 
 NAMES = {"e": "restitution e", "mu": "impulse ratio μ", "e_m": "moment restitution $e_m$"}
 COLUMNS_4 = ("test", "e", "mu", "e_m", "e_printed", "mu_printed", "e_m_printed")

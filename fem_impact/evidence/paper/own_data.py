@@ -8,8 +8,8 @@ import numpy as np
 from fem_impact.evidence.paper.audit import estimate_entry, finite, statistic_entry
 from fem_impact.scene.camera import Camera
 from rigid import Arms, Body, bootstrap, critical_ratio, first_order, impulse_centre
-from rigid.arrays import Floats
 from rigid.experiments import derived_columns, statistic
+from rigid.inputs import Floats
 
 
 def own_coefficients(

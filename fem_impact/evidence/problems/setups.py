@@ -17,11 +17,10 @@ from fem_impact.fem.flight import RigidMotion, rigid_motion
 from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.fields import Element
 from fem_impact.scene.impact import Impact
-from fem_impact.scene.material import Material
+from fem_impact.scene.material import Material, Surface
 from fem_impact.scene.own_mesh import OwnMesh
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.shapes import NamedShape
-from fem_impact.scene.surface import Surface
 from fem_impact.scene.types import Accuracy, Save
 from fem_impact.solid.build import build
 from fem_impact.solid.ledger import Ledger

@@ -26,7 +26,7 @@ from fem_impact.outcome.shares import shares
 from fem_impact.scene.fields import FlowLaw
 from fem_impact.scene.impact import Impact
 from fem_impact.scene.library import surfaces
-from fem_impact.scene.surface import Surface
+from fem_impact.scene.material import Surface
 from fem_impact.scene.types import Save
 from fem_impact.tables.table import Table
 from rigid.slenderness import EXPONENT

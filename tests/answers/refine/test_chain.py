@@ -13,7 +13,7 @@ from fem_impact.case.case import Case
 from fem_impact.case.record import ContactRecord
 from fem_impact.errors import ResultError, SceneError
 from fem_impact.fem.geometry import build_geometry
-from fem_impact.files.digests import write_digests
+from fem_impact.files.atomic import write_digests
 from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import Unknown, known
 from fem_impact.outcome.record import Outcome

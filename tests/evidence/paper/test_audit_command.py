@@ -6,7 +6,7 @@ import pytest
 
 from rigid import coefficients
 from rigid.experiments import measured_set
-from rigid.experiments.audit import recompute
+from rigid.experiments.sets import recompute
 
 
 def test_the_summary_counts_what_follows(cli):
