@@ -9,6 +9,7 @@ from fem_impact.outcome.record import KEYS, ROUND_OFF, Outcome
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.impact import FIRST
 from fem_impact.scene.types import Scene
+from fem_impact.tables.text import plain
 
 LEAST = 1e-4
 """Least change that is told, over the number."""
@@ -30,7 +31,7 @@ class FrictionSpread:
     def told(self, key: Key, scale: float = 1.0) -> str:
         """Return the changes of a number times ``scale`` as text, empty where there are none."""
         low, high = self.changes.get(key, (0.0, 0.0))
-        return f"{scale * low:+.2g} to {scale * high:+.2g}" if high > low else ""
+        return " to ".join(_signed(scale * end) for end in (low, high)) if high > low else ""
 
 
 def friction_spread(scene: Scene, fidelity: str, outcome: Outcome | None = None) -> FrictionSpread:
@@ -54,6 +55,10 @@ def friction_spread(scene: Scene, fidelity: str, outcome: Outcome | None = None)
             )
             return FrictionSpread(f"At the right: what {interval} changes, by {by}.", _changes(stated, ends))
     return FrictionSpread("", {})
+
+
+def _signed(change: float) -> str:
+    return f"{'' if change < 0 else '+'}{plain(change, 2)}"
 
 
 def _at(scene: Scene, friction: float, model: str) -> Outcome:

@@ -170,7 +170,9 @@ def _barrier(scene: Scene) -> str:
 def _surface(scene: Scene, active: Collection[str]) -> str:
     known = library.surfaces().values()
     bare = replace(scene.surface, sliding_law=None)
-    if "friction" not in active or bare in known:
+    if (
+        "friction" not in active or bare in known or scene.surface.state == "pair"
+    ):  # of which an input says more
         return ""
     f, source = scene.surface.friction, scene.surface.source
     return f"friction f = {f:g} is not the value of a shipped state of the surface ({source})"

@@ -112,6 +112,15 @@ def _hardest(strikes: Strikes) -> str:
     return f"Hardest strike: {told}{of}."
 
 
+def _time_error(strikes: Strikes) -> str:
+    """Return the error of the time to the rest, or that it has none."""
+    if strikes.end != "rests":
+        return ""
+    if isinstance(strikes.time_factor, Unknown):
+        return f" (error not known: {strikes.time_factor.reason})"
+    return f" (within a factor of {strikes.time_factor:.2g})"
+
+
 def _totals(strikes: Strikes) -> str:
     parts: tuple[tuple[str, Num], ...] = (
         ("friction", strikes.friction),
@@ -125,8 +134,8 @@ def _totals(strikes: Strikes) -> str:
     least = ROUND_OFF * known(strikes.each)[0].before
     half = or_none(strikes.friction_half) or 0.0
     rubbed = f" Friction is known to {half:.2g} J." if half > least else ""
-    time = "" if isinstance(strikes.time, Unknown) else f" after {strikes.time:.4g} s"
+    time = "" if isinstance(strikes.time, Unknown) else f" after {strikes.time:.4g} s{_time_error(strikes)}"
     gave = or_none(strikes.gravity) or 0.0
     gravity = f" Gravity gave {gave:.3g} J." if abs(gave) > least else ""
-    ends = "The last of them" if strikes.end == "bounces on" else "The end"
+    ends = "The last of them" if strikes.end in ("bounces on", "loses nothing") else "The end"
     return f"{ends} comes{time}: {sums}.{gravity}{rubbed}"

@@ -94,10 +94,16 @@ class Strikes:
     end: str | Unknown = key(
         "strikes_end",
         "",
-        "How it ends: rests, rolls on, slides on, leaves, tumbles on, bounces on, jams, or goes on.",
+        "How it ends: rests, rolls on, slides on, leaves, tumbles on, bounces on, loses nothing, jams, "
+        "or goes on.",
     )
     because: str | Unknown = key("strikes_ended_because", "", "Why it ended, as a sentence.")
     time: Num = key("strikes_time_s", "s", "From first contact to the end; to the rest of a body that rests.")
+    time_factor: Num = key(
+        "strikes_time_factor",
+        "-",
+        "Factor within which the time to the rest lies: the largest of ten rods, rigid theory beside modes.",
+    )
     way: Num = key("strikes_way_m", "m", "Way of the mass centre up the slope until then.")
     hardest_energy: int | Unknown = key(
         "strikes_hardest_by_energy", "-", f"Strike that took most from the rigid motion{_N}."

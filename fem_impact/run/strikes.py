@@ -46,9 +46,13 @@ FINISHED = {
     Finish.LEAVES: "It leaves the barrier and does not come back.",
     Finish.COUNTED: "As many strikes as asked for are done.",
     Finish.BOUNCES: "A thousand strikes do not end it: they lose too little, or a slope gives it back.",
+    Finish.LOSSLESS: "Two hundred strikes in a row lose nothing along their normal, as no law of the model "
+    "takes anything of so slow a strike: no rest can be told.",
     Finish.TUMBLES: "It tumbles down the slope faster and faster.",
     Finish.JAMS: "Friction drives it into the barrier as it slides, which rigid theory does not follow.",
 }
+RATTLE = 4.31
+"""Largest factor between the times to the rest by rigid theory and by modes, of ten rods (study strikes)."""
 SLOWEST = 1e-9  # m/s, of a body that comes down
 LEAST_BY_LAW = 1e-3
 """As `LEAST` where restitutions follow from the contact law, which knows no loss of slow strikes."""
@@ -266,6 +270,7 @@ class Followed:
             end=finish.value,
             because=FINISHED[finish],
             time=end.time,
+            time_factor=self._time_factor(finish),
             way=end.along,
             hardest_energy=_hardest([one.lost for one in each]),
             hardest_force=_hardest([one.force for one in each]),
@@ -277,6 +282,18 @@ class Followed:
             left=left,
             residual=(E_0 + self.gravity - sum(sums.values()) - self.settled - left) / E_0,
         )
+
+    def _time_factor(self, finish: Finish) -> Num:
+        """Return the factor within which the time to the rest lies, or why none is known."""
+        if finish is not Finish.RESTS:
+            return Unknown("the body was not followed to its rest")
+        if self.each[-1].fidelity != "rigid":
+            return Unknown("no model finer than modes is followed to the rest")
+        if self.case.scene.restitution is not None:
+            return Unknown("of the scene's own restitution no error is known")
+        if len(self.shape.corners) == 1:
+            return Unknown("rigid theory's rattle was compared with that of modes for rods alone")
+        return RATTLE
 
     def _record(self, strike: Strike) -> StrikeRecord:
         """Return the record of one strike of the rigid body."""

@@ -19,7 +19,8 @@ LAW = "sliding_law"
 def read_surface(table: Table) -> Surface | None:
     """Read a surface; that of the pair, which is None, follows from both materials."""
     check_keys(table, ("state", "source", *(f.key for f in fields.SURFACE), LAW))
-    state = needed(table, "state")
+    states = '"custom" beside friction and source, or "machined", "contaminated", "cleaned", "pair"'
+    state = needed(table, "state", states)
     if state != "custom":
         return None if state == "pair" else of_known(partial(library.surface, state), table)
     f = needed(table, "friction", "0.3, Coulomb's coefficient")

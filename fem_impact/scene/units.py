@@ -101,6 +101,9 @@ def parse_quantity(value: Any, dimension: str, key: str) -> float:
     if not symbol:
         raise SceneError("has no unit.", key=key, value=value, remedy=remedy)
     unit = dim.unit(symbol)
+    if unit is None and symbol.startswith(("+-", "±", "+/-")):
+        asked = f"State one value; assess and validate take an interval: --uncertain {key}=LOW,HIGH."
+        raise SceneError("states an interval.", key=key, value=value, remedy=asked)
     if unit is None:
         hint = did_you_mean(symbol, [unit.symbol for unit in dim.units], "")
         unknown_unit = f"{symbol[:20]!r} is not a unit of {dim.name} ({dim.symbols}). {hint}".rstrip()

@@ -7,6 +7,8 @@ Rules that the theory of impact does not give by itself:
 - a strike that brings along its normal less than a share ``least`` of the most with which one began does not
   rebound: its contact is held, and the body pivots, rolls or slides on it, or flies again;
 - a body on two feet of which neither moves faster than that stands on them; what it moved with is lost;
+- a body of which `LOSSLESS` strikes in a row lose nothing along their normal is followed no further to its
+  rest, of which theory tells nothing;
 - a body that has fallen so far down a slope that it is far faster than at first tumbles on.
 """
 
@@ -23,6 +25,8 @@ from .record import Approach, Finish, Phase, Sequence, Strike
 
 LEAST = 1e-4
 MOST = 1000
+LOSSLESS = 200
+"""Strikes in a row without a loss along their normal, after which a body is not followed on to its rest."""
 EVENTS = 5
 """Flights and contacts at most, over the most strikes."""
 LONGEST = 30.0
@@ -131,6 +135,7 @@ class _Course:
     settling: tuple[float, float, float] = (0.0, 0.0, 0.0)
     finish: Finish | None = None
     slips: bool = False
+    lossless: int = 0
     lifting: float = 0.0
 
     def __post_init__(self) -> None:
@@ -269,11 +274,15 @@ class _Course:
         strike = _resolved(before, e, self.pull)
         strike = self.moved(strike) if counts else strike
         (self.strikes if counts else self.small).append(strike)
+        if counts:
+            self.lossless = self.lossless + 1 if strike.e_energetic == 1.0 else 0
         self.state = strike.after
         if counts and len(self.strikes) == self.until:
             self.finish = Finish.COUNTED
         elif counts and len(self.strikes) >= self.most:
             self.finish = Finish.BOUNCES
+        elif counts and self.until is None and self.lossless >= LOSSLESS:
+            self.finish = Finish.LOSSLESS
         return None if self._speed(corner) > self.touching else corner
 
     def _stand(self, corner: int, other: int) -> int | None:

@@ -17,6 +17,7 @@ class Finish(Enum):
     LEAVES = "leaves"
     COUNTED = "goes on"
     BOUNCES = "bounces on"
+    LOSSLESS = "loses nothing"
     TUMBLES = "tumbles on"
     JAMS = "jams"
     STRONG = "strikes hard"

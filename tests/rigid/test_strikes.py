@@ -245,6 +245,10 @@ def test_a_body_that_loses_nothing_bounces_on():
     assert found.finish is Finish.BOUNCES
     assert len(found.strikes) == 50
     assert found.strikes[-1].V_n == pytest.approx(2.0, rel=1e-12)
+    ended = follow(shape, start(shape, 0.0, -2.0), 0.4 * 0.01**2, 1.0, 0.0)
+    assert (ended.finish, len(ended.strikes)) == (Finish.LOSSLESS, 200)
+    counted = follow(shape, start(shape, 0.0, -2.0), 0.4 * 0.01**2, 1.0, 0.0, until=220)
+    assert (counted.finish, len(counted.strikes)) == (Finish.COUNTED, 220)
 
 
 def test_a_ball_slides_and_then_rolls_with_five_sevenths_of_its_speed():

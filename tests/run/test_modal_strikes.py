@@ -33,6 +33,7 @@ def test_the_first_strike_is_the_first_impact(rattle):
 def test_hard_strikes_are_those_of_modes(rattle):
     s = rattle.strikes
     assert [one.fidelity for one in s.each] == ["modal"] * len(s.each)
+    assert "finer than modes" in s.time_factor.reason
     assert len(s.each) > 3
     assert s.end == "rests"
     assert s.each[s.hardest_force - 1].force == max(one.force for one in s.each)

@@ -91,7 +91,7 @@ class LimitVerdict:
                 f"a smaller error: the limit lies within that of the number; or a limit of at least {high}."
             )
         if self.not_known:
-            return f"an answer at some places of the intervals: {self.not_known}"
+            return f"an answer: {self.not_known}"
         return UNCONFIRMED
 
     @property
@@ -143,19 +143,21 @@ def judge(
     scenes = _places(scene, intervals)
     steps, notes, more = list[str](), list[str](), finite_elements(budget_s)
     lacking = not_reduced(Case(scene).bodies)
-    if lacking:
+    if lacking and fidelity != "modal":
         notes.append(LACKING.format(lacking))
     else:
         tell(f"the reduced model at {len(scenes)} places ...")
     found = {} if lacking and fidelity != "modal" else _scanned(scenes, criterion)
     known = {place: one for place, one in found.items() if isinstance(one, Bound)}
     why = next((one.reason for one in found.values() if isinstance(one, Unknown)), "")
+    why = LACKING.format(lacking) if lacking and found else why
     worst = max(
         known, key=lambda place: (known[place].value, known[place].low), default=(0.5,) * len(intervals)
     )
     mildest = min(known, key=lambda place: known[place].value, default=worst)
     bound, by = known.get(worst), "the reduced model"
     answer = _together([one.answer(limit) for one in known.values()], bool(why) or not known)
+    answer = "undecided" if lacking else answer  # its told error holds no such body
     if bound is not None:
         where = f" at the worst of {len(known)} places" if intervals else ""
         steps.append(f"{by}: {_told(criterion, bound)}{where}: {answer}")
@@ -299,7 +301,7 @@ def document(v: LimitVerdict, command: str) -> dict[str, Any]:
         box.append([place, f"{_told(of, bound)}{far[bound.answer(v.limit)]}, by {v.by}."])
     if v.least is not None and over:
         box.append([f"Of {v.places} places of the reduced model", f"the least has {_in_unit(of, v.least)}."])
-    lacking = [f"At some places the reduced model has no answer: {v.not_known}"] if v.not_known else []
+    lacking = [f"The reduced model does not answer everywhere: {v.not_known}"] if v.not_known else []
     return {
         "scene_digest": digest(v.scene),
         "versions": installed_versions(),

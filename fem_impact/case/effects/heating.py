@@ -27,11 +27,13 @@ def halves(bodies: Bodies) -> Halves:
         If neither the material nor [heating] states a property.
     """
     values = thermal(bodies)
-    for key, value in values.items():
-        if value is None:
-            forced = "contact-heating" in bodies.scene.effects
-            remedy = f"State it{', or leave contact-heating out of effects' if forced else ''}."
-            raise SceneError("is not known: the material states none.", key=f"heating.{key}", remedy=remedy)
+    if missing := [key for key, value in values.items() if value is None]:
+        forced = (
+            ", or leave contact-heating out of effects" if "contact-heating" in bodies.scene.effects else ""
+        )
+        problem = "is not known: the material states none."
+        remedy = f"State {' and '.join(missing)} in [heating], in W/(m K) and J/(kg K){forced}."
+        raise SceneError(problem, key=f"heating.{missing[0]}", remedy=remedy)
     known = {key: value for key, value in values.items() if value is not None}
     rod, barrier = bodies.contact.rod, bodies.contact.barrier
     return (

@@ -57,6 +57,13 @@ def test_a_place_without_an_answer_forbids_yes(scene):
     assert found.answer == "undecided" and found.not_known == "it slides on"
 
 
+def test_a_body_without_a_reduced_model_is_decided_by_none(monkeypatch, scene):
+    """Its told error was found on other bodies: a brass fitting's dent was 2.7 times the most of its band."""
+    monkeypatch.setattr(module, "not_reduced", lambda bodies: "a shaft that would yield")
+    found = judge(scene, Sloped(), 75.0, ANGLE, "modal")
+    assert found.answer == "undecided" and "no reduced model of a shaft" in found.missing
+
+
 def solids(monkeypatch, values):
     """Let finite elements tell a bound by the angle in degrees; return the angles at which they ran."""
     ran = []
@@ -222,7 +229,7 @@ def test_an_undecided_limit_says_what_is_missing_and_what_comes_next(scene):
     assert "or a limit of at least 0.07 kN" in found.missing
     assert document(found, "fem-impact assess t5b")["next_step"].endswith("--fidelity solid --budget '60 s'")
     places = judge(scene, Sloped(missing=(40.0,)), 75.0, ANGLE, "modal")
-    assert places.missing == "an answer at some places of the intervals: it slides on"
+    assert places.missing == "an answer: it slides on"
     assert judge(scene, Sloped(), 75.0, ANGLE, "modal").missing == ""
 
 
