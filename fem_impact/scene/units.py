@@ -102,7 +102,7 @@ def parse_quantity(value: Any, dimension: str, key: str) -> float:
         raise SceneError("has no unit.", key=key, value=value, remedy=remedy)
     unit = dim.unit(symbol)
     if unit is None and symbol.startswith(("+-", "±", "+/-")):
-        asked = f"State one value; assess and validate take an interval: --uncertain {key}=LOW,HIGH."
+        asked = "State one value; assess and validate take intervals: --uncertain impact.angle=30,50deg."
         raise SceneError("states an interval.", key=key, value=value, remedy=asked)
     if unit is None:
         hint = did_you_mean(symbol, [unit.symbol for unit in dim.units], "")

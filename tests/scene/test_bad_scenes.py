@@ -25,7 +25,7 @@ MISTAKES = [
     ("impact.v_t", "501 m/s", ["impact.v_t", "at most 500 m/s"]),
     ("impact.angle", "95 deg", ["impact.angle = 95 deg", "at most 90 deg"]),
     ("impact.angle", "-91 deg", ["at least -90 deg"]),
-    ("impact.angle", "20 +- 10 deg", ["states an interval", "--uncertain impact.angle=LOW,HIGH"]),
+    ("impact.angle", "20 +- 10 deg", ["states an interval", "--uncertain impact.angle=30,50deg"]),
     ("impact.angle", 45, ["impact.angle = 45", "bare number", '"45 deg"', "angle_rad"]),
     ("impact.v_n_m_per_s", NAN, ["impact.v_n", "finite"]),
     ("impact.v_n", "-inf m/s", ["impact.v_n", "finite"]),
