@@ -21,9 +21,8 @@ from fem_impact.evidence.problems.discretisation import (
     lean_error,
 )
 from fem_impact.evidence.problems.problem import Check, Solved, Values, within
-from fem_impact.evidence.references.finite_sphere import ball_impact
+from fem_impact.evidence.references.finite_sphere import INERTIA, ball_impact, oblique_ball, oblique_sphere
 from fem_impact.evidence.references.hertz import HertzImpact, contact_modulus, hertz, sliding_ratio
-from fem_impact.evidence.references.sphere import INERTIA, oblique_ball, oblique_sphere
 from fem_impact.evidence.references.waves import radiated_energy
 from fem_impact.fem.elements import lumped_mass
 from fem_impact.solid.model import Model

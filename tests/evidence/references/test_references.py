@@ -11,6 +11,7 @@ import pytest
 
 from fem_impact.evidence import references as reference
 from fem_impact.evidence.references.bricks import Bar, rebound, wall_stress
+from fem_impact.evidence.references.finite_sphere import INERTIA, oblique_sphere
 from fem_impact.evidence.references.free_modes import bending_modes, cylinder_frequencies
 from fem_impact.evidence.references.hertz import (
     SpringRow,
@@ -22,7 +23,6 @@ from fem_impact.evidence.references.hertz import (
 )
 from fem_impact.evidence.references.oblique import oblique_drop, oblique_rod
 from fem_impact.evidence.references.rod_end import chain_restitution, sears, strike
-from fem_impact.evidence.references.sphere import INERTIA, oblique_sphere
 from fem_impact.evidence.references.waves import flexural_speed, longitudinal_speed
 from rigid import Projectile
 

@@ -15,6 +15,8 @@ from fem_impact.evidence.references.finite_sphere import (
     ball_shear,
     braked,
     modes_of_order,
+    oblique_ball,
+    oblique_sphere,
     pole_load,
     surface_shape,
 )
@@ -23,7 +25,6 @@ from fem_impact.evidence.references.hertz import SpringRow, contact_modulus, her
 from fem_impact.evidence.references.oblique import ObliqueRod, oblique_drop, oblique_rod
 from fem_impact.evidence.references.rod_edge import edge_excess
 from fem_impact.evidence.references.rod_end import end_excess, end_law, rod_impact, sears
-from fem_impact.evidence.references.sphere import oblique_ball, oblique_sphere
 from fem_impact.evidence.references.waves import radiated_energy, radiation_resistance, shear_resistance
 
 R, RHO, E = 9.5e-3, 7850.0, 210e9
