@@ -100,14 +100,13 @@ def test_a_run_that_ends_before_it_computes_leaves_no_scene(monkeypatch):
     assert list(Path("here").iterdir()) == []
 
 
+ONE = ("--workers", "1", "--quiet")
+SWEEP = ("--vary", "impact.angle=30,40deg", "--fidelity", "rigid", *ONE)
+
+
 def test_a_sweep_and_a_verdict_go_on_in_their_directories(cli):
-    sweep = ("sweep", "t5b", "--vary", "impact.angle=30,40deg", "--fidelity", "rigid", "--quiet")
-    verdict = ("assess", "t5b", "--fidelity", "modal")
-    for line in (sweep, verdict):
+    for line in (("sweep", "t5b", *SWEEP), ("assess", "t5b", "--fidelity", "modal")):
         assert [cli(*line, "--out", line[0])[0] for _ in range(2)] == [0, 0]
-
-
-SWEEP = ("--vary", "impact.angle=30,40deg", "--fidelity", "rigid", "--quiet")
 
 
 def test_a_verdict_does_not_replace_the_scene_that_it_reads(cli, monkeypatch):

@@ -334,7 +334,8 @@ def test_the_last_segment_ends_at_the_tail():
 
 
 def test_lengths_of_a_body_of_segments_are_swept_and_the_user_is_told(cli):
-    code, out, _ = cli("sweep", "heavy-tail", "--vary", "projectile.length=0.1,0.16m", "--fidelity", "rigid")
+    line = ("sweep", "heavy-tail", "--vary", "projectile.length=0.1,0.16m", "--fidelity", "rigid")
+    code, out, _ = cli(*line, "--workers", "1")
     assert code == 0 and "2 runs, 0 failed" in out
     code, _, err = cli("check", "heavy-tail", "--set", "projectile.length=160 mm")
     assert code == 0 and "the segments still end at 80 mm; the last one ends at the new tail" in err
