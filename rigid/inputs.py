@@ -5,6 +5,13 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+Floats: TypeAlias = NDArray[np.float64]
+
+
+def floats(*values: ArrayLike) -> tuple[Floats, ...]:
+    """Each value as a float64 array of its own shape (numpy broadcasts in the formula)."""
+    return tuple(np.asarray(v, dtype=np.float64) for v in values)
+
 
 class RigidError(ValueError):
     """An input that rigid-body impact theory cannot take."""
@@ -47,11 +54,3 @@ def refuse(bad: Any, message: str, values: Any, error: type[RigidError] = Impact
     value = np.broadcast_to(np.asarray(values), bad.shape)[place]
     where = f" (impact {', '.join(str(int(i)) for i in place)})" if place else ""
     raise error(message.format(value=f"{value:.3g}") + where)
-
-
-Floats: TypeAlias = NDArray[np.float64]
-
-
-def floats(*values: ArrayLike) -> tuple[Floats, ...]:
-    """Each value as a float64 array of its own shape (numpy broadcasts in the formula)."""
-    return tuple(np.asarray(v, dtype=np.float64) for v in values)

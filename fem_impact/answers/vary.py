@@ -67,7 +67,13 @@ def cases(scene: Scene, vary: Mapping[str, Iterable[Any]]) -> list[Variation]:
         Nothing varies, there are too many combinations, or each of them is refused.
     """
     by_key, every = listed(vary), list[Variation]()
-    _check(by_key)
+    if not by_key or not all(by_key.values()):
+        remedy = 'Give some, as {"impact.angle": ["15 deg", "30 deg"]}.'
+        raise UsageError("names no values.", key="vary=", remedy=remedy)
+    count = prod(map(len, by_key.values()))
+    if count > MOST:
+        remedy = f"Give at most {MOST}, or several sweeps."
+        raise UsageError(f"makes {count} combinations.", key="vary=", remedy=remedy)
     for number, values in enumerate(product(*by_key.values()), 1):
         name, changes = f"case-{number:05d}", dict(zip(by_key, values, strict=True))
         try:
@@ -75,20 +81,9 @@ def cases(scene: Scene, vary: Mapping[str, Iterable[Any]]) -> list[Variation]:
         except FemImpactError as error:
             every.append(Variation(name, changes, None, str(error)))
     if all(case.scene is None for case in every):
-        which = "The only combination" if len(every) == 1 else f"Each of the {len(every)} combinations"
+        which = "The only combination" if count == 1 else f"Each of the {count} combinations"
         raise SceneError(f"{which} is refused: {every[0].refused}", key="vary=")
     return every
-
-
-def _check(vary: Mapping[str, Sequence[Any]]) -> None:
-    if not vary or not all(vary.values()):
-        raise UsageError(
-            "names no values.", key="vary=", remedy='Give some, as {"impact.angle": ["15 deg", "30 deg"]}.'
-        )
-    count = prod(map(len, vary.values()))
-    if count > MOST:
-        remedy = f"Give at most {MOST}, or several sweeps."
-        raise UsageError(f"makes {count} combinations.", key="vary=", remedy=remedy)
 
 
 def measure(value: Any) -> tuple[float | str, str]:
