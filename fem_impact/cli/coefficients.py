@@ -12,7 +12,7 @@ from fem_impact.cli.terminal import print_answer
 from fem_impact.errors import SceneError, UsageError
 
 if TYPE_CHECKING:
-    from fem_impact.scene.camera import Camera
+    from fem_impact.scene.own_tests import Camera
     from rigid import Arms, Body
 
 TESTED = ("length", "diameter", "angle")
@@ -40,7 +40,7 @@ def coefficients(options: Options) -> int:
     """Work out the coefficients of the user's own tests."""
     from fem_impact.answers.verdict.text import own_text
     from fem_impact.evidence.paper.own_data import own_coefficients
-    from fem_impact.scene.camera import read_camera
+    from fem_impact.scene.own_tests import read_camera
     from rigid import RigidError
 
     if scene := named_scene(options, TESTED):

@@ -15,8 +15,7 @@ from fem_impact.arrays import Array, Ints
 from fem_impact.case.bodies import Bodies
 from fem_impact.outcome.keys import Num, Unknown
 from fem_impact.outcome.record import KEY_TABLE, Outcome
-from fem_impact.scene.camera import Camera, read_camera
-from fem_impact.scene.means import Mean, holds_means, read_means
+from fem_impact.scene.own_tests import Camera, Mean, holds_means, read_camera, read_means
 from fem_impact.scene.types import OWN
 from rigid import Arms, kinetic_energy
 from rigid.experiments import (

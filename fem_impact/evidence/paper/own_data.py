@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from fem_impact.evidence.paper.audit import estimate_entry, finite, statistic_entry
-from fem_impact.scene.camera import Camera
+from fem_impact.scene.own_tests import Camera
 from rigid import Arms, Body, bootstrap, critical_ratio, first_order, impulse_centre
 from rigid.experiments import derived_columns, statistic
 from rigid.inputs import Floats

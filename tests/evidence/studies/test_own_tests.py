@@ -17,7 +17,7 @@ from fem_impact.outcome.record import Outcome
 from fem_impact.run.simulate import simulate
 from fem_impact.run.tests import tests_of as measured_by
 from fem_impact.scene.library import stated
-from fem_impact.scene.means import read_means
+from fem_impact.scene.own_tests import read_means
 from fem_impact.scene.read import read_toml
 from fem_impact.scene.shipped import load, replace
 from fem_impact.scene.write import to_toml
