@@ -20,11 +20,11 @@ import numpy as np
 from calculix import Strike, run
 
 import meshes
+from fem_impact.evidence.problems.bars import NodeSprings, node_areas
 from fem_impact.evidence.problems.bodies import FreeBody, body_model, placed
 from fem_impact.evidence.problems.oblique_rod import ReferenceChange, RodDrop
 from fem_impact.evidence.problems.problem import problem
 from fem_impact.evidence.problems.setups import Until, rigid_of, rod_scene
-from fem_impact.evidence.problems.square_bars import NodeSprings, node_areas
 from fem_impact.fem.eigen import rod_modes
 from fem_impact.fem.flight import flight
 from fem_impact.solid.march import evaluate, march

@@ -13,9 +13,9 @@ from math import cos, sin
 import numpy as np
 from calculix import Strike, run
 
+from fem_impact.evidence.problems.bars import ANGLE, SPEED, square_bar
 from fem_impact.evidence.problems.bodies import placed
 from fem_impact.evidence.problems.problem import problem, verify
-from fem_impact.evidence.problems.square_bars import ANGLE, SPEED, square_bar
 from fem_impact.fem.elements import lumped_mass
 
 END = 3e-4  # s
