@@ -25,6 +25,7 @@ from fem_impact.physics.flow_law import FULLY_PLASTIC, REPRESENTATIVE, RUN_IN, S
 
 CELLS = 512  # of the ring that follows the tip
 ACROSS = 40  # cells over the largest half length of the contact
+LONGEST = CELLS // 4  # cells of a contact on either side of what is lowest
 
 
 class StateIndex(NamedTuple):
@@ -65,6 +66,8 @@ class Groove(NamedTuple):
     depth, normal, shift : (CELLS,) depth, m, normal force, N/m, and shift of the tangential spring, m
     state : (9,) what stands once, see `StateIndex`
     works : (3,) J, see `WorkIndex`
+    tip : (7,) what presses: its radius, m, the slopes of the straight parts that it goes over into behind
+        and ahead, how far these reach along t, m, and the slopes beyond; infinite where it is round all over
     size : of a cell, m
     """
 
@@ -73,15 +76,35 @@ class Groove(NamedTuple):
     shift: Array
     state: Array
     works: Array
+    tip: Array
     size: float
 
 
 @allocating_kernel
-def smooth(reach: float) -> Groove:
-    """Return a surface without a groove for contacts of at most a half length ``reach``, m."""
-    state = np.zeros(9)
+def smooth(reach: float, radius: float) -> Groove:
+    """Return a surface without a groove for contacts of a round tip of at most a half length ``reach``, m."""
+    state, tip = np.zeros(9), np.array([radius, *6 * [np.inf]])
     state[AT.last] = -1.0
-    return Groove(np.zeros(CELLS), np.zeros(CELLS), np.zeros(CELLS), state, np.zeros(3), reach / ACROSS)
+    return Groove(np.zeros(CELLS), np.zeros(CELLS), np.zeros(CELLS), state, np.zeros(3), tip, reach / ACROSS)
+
+
+@inlined
+def outline(tip: Array, x: float) -> tuple[float, float]:
+    """Return height, m, and slope of a tip at a distance x, m, from what is lowest of it."""
+    slope, beyond = min(max(x / tip[0], -tip[1]), tip[2]), max(x - tip[4], -x - tip[3])
+    if beyond <= 0.0:
+        return slope * (x - 0.5 * tip[0] * slope), slope
+    way, end, other = (1.0, tip[4], tip[6]) if x > 0.0 else (-1.0, tip[3], tip[5])
+    return slope * (way * end - 0.5 * tip[0] * slope) + other * beyond, way * other
+
+
+@inlined
+def half_length(radius: float, slope: float, end: float, other: float, depth: float) -> float:
+    """Return how far, m, a tip touches at a depth, m, on a side with these numbers of `Groove.tip`."""
+    if slope > 0.0 and depth <= 0.5 * radius * slope**2:
+        return sqrt(2 * radius * depth)
+    rise = slope * (end - 0.5 * radius * slope)
+    return depth / slope + 0.5 * radius * slope if depth <= rise else end + (depth - rise) / other
 
 
 @inlined
@@ -108,13 +131,14 @@ def hardness(widest: float, law: FlowLaw) -> float:
 
 
 @inlined
-def window(groove: Groove, depth: float, place: float, law: FlowLaw) -> tuple[int, int]:
+def window(groove: Groove, depth: float, place: float) -> tuple[int, int]:
     """Return first and last cell that the tip may touch; cells not visited before become smooth."""
-    state, size = groove.state, groove.size
-    half = sqrt(2 * law.R1 * max(depth + state[AT.top], 0.0))
+    state, tip, size = groove.state, groove.tip, groove.size
+    down, most = max(depth + state[AT.top], 0.0), size * LONGEST
+    behind = min(half_length(tip[0], tip[1], tip[3], tip[5], down), most)
+    ahead = min(half_length(tip[0], tip[2], tip[4], tip[6], down), most)
     # a cell more than may touch on either side: one that is left is set free there
-    first, last = int(np.floor((place - half) / size)) - 1, int(np.floor((place + half) / size)) + 1
-    first = max(first, last - CELLS // 2)
+    first, last = int(np.floor((place - behind) / size)) - 1, int(np.floor((place + ahead) / size)) + 1
     if state[AT.last] < state[AT.first]:
         state[AT.first], state[AT.last] = first, first - 1
     for c in range(int(state[AT.last]) + 1, last + CELLS // 4):
@@ -170,7 +194,7 @@ def press_cell(
 
     ``up`` is how high the ridge stands there, m. Flow, shear and friction are booked.
     """
-    g, normal, shift, _, works, size = groove
+    g, normal, shift, _, works, _, size = groove
     before, sheared = g[i], law.shear * shift[i]
     trial, b = sheared + law.shear * moved, sqrt(2 * law.R2 * max(g[i] + up, 0.0))
     q, stuck = flowed(law.normal * (D - g[i]), trial, 2 * b * H, 2 * b * K, law)
@@ -199,7 +223,7 @@ def slide(groove: Groove, depth: float, place: float, law: FlowLaw) -> tuple[flo
     sunk, moved = depth - state[AT.depth], place - state[AT.place]
     state[AT.depth], state[AT.place] = depth, place
     middle = place if law.ploughs else 0.0  # a tip that is flattened takes its cells along
-    first, last = window(groove, depth, middle, law)
+    first, last = window(groove, depth, middle)
     state[AT.widest] = max(state[AT.widest], sqrt(2 * law.R * max(depth, 0.0)))
     if state[AT.widest] == 0.0:
         return 0.0, 0.0
@@ -209,11 +233,12 @@ def slide(groove: Groove, depth: float, place: float, law: FlowLaw) -> tuple[flo
     for step in range(last - first + 1):
         c = first + step if way > 0 else last - step  # from the rear to the front
         i, x = c % CELLS, (c + 0.5) * size - middle
-        D = depth - 0.5 * x**2 / law.R1
+        height, s = outline(groove.tip, x)
+        D = depth - height
         if D <= g[i]:
             release_cell(groove, i, law)
             continue
-        s, before = x / law.R1 if law.ploughs else 0.0, g[i]
+        s, before = s if law.ploughs else 0.0, g[i]
         ahead = s * moved > 0.0
         q, T = press_cell(groove, i, D, moved - s * sunk, state[AT.ridge] if ahead else 0.0, H, K, law)
         F_n += (q - T * s) * size
@@ -224,18 +249,18 @@ def slide(groove: Groove, depth: float, place: float, law: FlowLaw) -> tuple[flo
     state[AT.ridge] = ridge
     state[AT.slid] += abs(moved) if F_n > 0.0 else 0.0
     if touched:
-        pile_up(groove, front, way, law)
+        pile_up(groove, front, way)
     return F_n, F_t
 
 
 @inlined
-def pile_up(groove: Groove, front: int, way: int, law: FlowLaw) -> None:
+def pile_up(groove: Groove, front: int, way: int) -> None:
     """Fill the gap between tip and surface before the ``front`` cell with what is carried there."""
     g, state, size = groove.depth, groove.state, groove.size
     c = front + way
     while state[AT.first] <= c <= state[AT.last]:
         x = (c + 0.5) * size - state[AT.place]
-        gap = g[c % CELLS] - (state[AT.depth] - 0.5 * x**2 / law.R1)
+        gap = g[c % CELLS] - (state[AT.depth] - outline(groove.tip, x)[0])
         if gap > 0.0:
             if gap * size > state[AT.carried]:
                 break
@@ -251,10 +276,10 @@ def meets(groove: Groove, depth: float, place: float, law: FlowLaw) -> bool:
     if depth + groove.state[AT.top] <= 0.0:
         return False
     middle = place if law.ploughs else 0.0
-    first, last = window(groove, depth, middle, law)
+    first, last = window(groove, depth, middle)
     for c in range(first, last + 1):
         x = (c + 0.5) * groove.size - middle
-        if depth - 0.5 * x**2 / law.R1 > groove.depth[c % CELLS]:
+        if depth - outline(groove.tip, x)[0] > groove.depth[c % CELLS]:
             return True
     return False
 
@@ -291,7 +316,7 @@ def indent(law: FlowLaw, reach: float, flexibility: float, energy: float) -> tup
     tuple of float
         Depth, m, force, N, and work of the flow, J.
     """
-    groove, depth, force, work = smooth(reach), 0.0, 0.0, 0.0
+    groove, depth, force, work = smooth(reach, law.R1), 0.0, 0.0, 0.0
     step = 1e-4 * reach**2 / law.R1
     while work + 0.5 * flexibility * force**2 < energy:
         depth += step

@@ -1,6 +1,6 @@
 """Whether a straight part of the rod lands flat as one of its ends touches, and the law that it then gets."""
 
-from math import cos, pi, sin, sqrt
+from math import cos, dist, pi, sin, sqrt
 
 import numpy as np
 
@@ -19,13 +19,14 @@ RIGID = 1e-9  # share of the contact's give that a barrier which gives nothing i
 
 
 def lay_flat(
-    case: Case, rod: ModalRod, now: ModalState, held: Touched, s: int, pair: ContactPair
+    case: Case, rod: ModalRod, now: ModalState, held: Touched, s: int, pair: ContactPair, longest: float
 ) -> tuple[tuple[int, int], float] | None:
     """Lay a straight part with an end at a site along the barrier, if its other end is as near.
 
     It is where its middle lies within `FLAT` depths of the contact of its end (``pair``), over a surface that
     neither end has touched, and it rises by less than `LEANS` of its length; of two parts that meet there the
-    one that leans less. Returns both sites and the stiffness of the whole, N/m; None where nothing is.
+    one that leans less. A flank not ``longest``, m, presses into the groove of its end instead.
+    Returns both sites and the stiffness of the whole, N/m; None where nothing is.
     """
     count, free = len(rod.sites.along_t), held.flats.law[:, LAW.known] == 0.0
     turn, depth = float(now.rigid[AT.turn]), pair.estimate.depth
@@ -41,7 +42,8 @@ def lay_flat(
             continue
         gap = height_of(rod, now, other) - low
         ends = [in_body(case, *skin(rod.sites, k, turn)) for k in (s, other)]
-        if lean(other) < LEANS and gap <= 2 * FLAT * depth and _is_straight(case, ends, depth):
+        short = not _is_face(ends) and dist(*ends) <= longest
+        if not short and lean(other) < LEANS and gap <= 2 * FLAT * depth and _is_straight(case, ends, depth):
             f = int(np.argmax(free))
             held.flats.ends[f] = s, other
             flow = flow_law(pair, case.slots.rod_law, case.slots.barrier_law)
@@ -117,7 +119,8 @@ def _set_face(
     wide = min(flat + sqrt(2 * edge * depth), 0.5 * body.diameter)
     bore = float(body.inner_radius(np.array(z))) if hasattr(body, "inner_radius") else 0.0
     place = wide * (2 * np.arange(CELLS) + 1 - CELLS) / CELLS
-    held.flats.share[f] = 0.5 * (1.0 - np.sign(x) * place / flat)
+    # the round edge beyond an end comes down with it: on a line through both it would begin pressed in
+    held.flats.share[f] = np.clip(0.5 * (1.0 - np.sign(x) * place / flat), 0.0, 1.0)
     held.flats.base[f] = wide**2 - place**2
     held.flats.inner[f] = np.sqrt(np.maximum(bore**2 - place**2, 0.0))
     plane, column = flow.yield_stress, flow.other_yield_stress

@@ -1,18 +1,19 @@
 """The contact laws of a site, made when it touches: from the attitude of the rod and its speed there."""
 
 from dataclasses import replace
-from math import cos, pi, sin, sqrt
+from math import cos, inf, pi, sin, sqrt, tan
 
 import numpy as np
 
 from fem_impact.case.case import Case
-from fem_impact.modal.groove import ACROSS
+from fem_impact.modal.groove import ACROSS, LONGEST
 from fem_impact.modal.groove import AT as IN_GROOVE
 from fem_impact.modal.hertz import springs_over
 from fem_impact.modal.landing import height_of, in_body, lay_flat
 from fem_impact.modal.motion import AT, SITE, ModalState, Sites, Start, Touched
 from fem_impact.modal.rod import ModalRod
 from fem_impact.modal.sites import lowest, settle, skin
+from fem_impact.modal.touch import LAID
 from fem_impact.physics.contact import ContactPair
 from fem_impact.physics.contact_law import ContactLaw, contact_law
 from fem_impact.physics.flow_law import FlowLaw, flow_law
@@ -21,6 +22,7 @@ from rigid import Faceted
 
 BESIDE = 1e-4  # rad, that a law is at least away from the ends of its site's range of normals
 STEADIER = 30.0  # times as many steps where a whole row of cells touches and leaves at once
+FLATTEST, UPRIGHT = 1e-4, 1.5  # rad, least and most lean of a straight part beside a site
 SLOWEST = 0.25  # of the first approach, at which a site that touches later counts as coming at least
 
 
@@ -82,18 +84,20 @@ def give_law(
     pair = case.contact if begun else pair_at(case, rod, now, s, SLOWEST * approach)
     # it is found touching up to a step late: the surface under it is lowered by so much
     row[SITE.sunk_n] -= max(0.0, row[SITE.sunk_n] - rigid[AT.height] - height_of(rod, now, s))
-    laid = lay_flat(case, rod, now, held, s, pair)
+    law = contact_law(pair, case.slots.contact_loss)
+    flow = flow_law(pair, case.slots.rod_law, case.slots.barrier_law)
+    widest = reach(law, flow, energy)
+    longest = widest * LONGEST / ACROSS if flow.yields and flow.ploughs else 0.0
+    laid = lay_flat(case, rod, now, held, s, pair, longest)
     if laid:
         ends, stiffness = laid
         start = start_of(case, rod)
         return STEADIER * max(contact_rate(start, rod.sites, now, end, stiffness) for end in ends)
     if not begun:
         settle(rod.sites, s, float(now.rigid[AT.turn]), pair.principal_radii[0])
-    law = contact_law(pair, case.slots.contact_loss)
-    flow = flow_law(pair, case.slots.rod_law, case.slots.barrier_law)
     set_law(held, s, law, flow, energy)
-    stiffness = contact_stiffness(law, flow, reach(law, flow, energy))
-    return contact_rate(start_of(case, rod), rod.sites, now, s, stiffness)
+    shape(rod.sites, held, s, float(rigid[AT.turn]), longest)
+    return contact_rate(start_of(case, rod), rod.sites, now, s, contact_stiffness(law, flow, widest))
 
 
 def set_law(held: Touched, s: int, law: ContactLaw, flow: FlowLaw, energy: float) -> None:
@@ -103,6 +107,7 @@ def set_law(held: Touched, s: int, law: ContactLaw, flow: FlowLaw, energy: float
     held.law[s], held.flow[s] = law, flow
     held.place[s], held.width[s], held.shift[s] = springs_over(widest)
     held.state[s, IN_GROOVE.last], held.size[s] = -1.0, widest / ACROSS
+    held.tip[s, 0], held.tip[s, 1:] = flow.R1, inf
 
 
 def reach(law: ContactLaw, flow: FlowLaw, energy: float) -> float:
@@ -147,6 +152,35 @@ def start_of(case: Case, rod: ModalRod) -> Start:
         1 / case.slots.plate if case.slots.plate else 0.0,
         1 / struck.inertia if struck.inertia else 0.0,
     )
+
+
+def shape(sites: Sites, held: Touched, s: int, turn: float, longest: float) -> None:
+    """Give a site that touches at a turn, rad, the straight parts beside it, see `Groove.tip`.
+
+    A part belongs to that of its ends which touches first. One not ``longest``, m, takes the corner at its
+    other end along: both press into one groove.
+    """
+    begin, end, (t, n) = int(sites.begin[s]), int(sites.begin[s + 1]), skin(sites, s, turn)
+    arcs = [a for a in range(begin, end) if sites.high[a] > sites.low[a]]
+    if len(arcs) == 1:
+        held.tip[s, 0] = sites.radius[arcs[0]]
+    count = len(sites.begin) - 1
+    for side, other in enumerate(((s - 1) % count, (s + 1) % count)):
+        if held.site[other, SITE.known] or other == s:
+            continue
+        u, w = skin(sites, other, turn)
+        far = slice(int(sites.begin[other]), int(sites.begin[other + 1]))
+        held.tip[s, 1 + side] = _slope(turn - sites.low[begin] if side == 0 else sites.high[end - 1] - turn)
+        held.tip[s, 3 + side] = abs(cos(turn) * (u - t) + sin(turn) * (w - n))
+        if np.hypot(u - t, w - n) <= longest and not sites.radius[far].any():
+            lean = turn - sites.low[far][0] if side == 0 else sites.high[far][-1] - turn
+            held.tip[s, 5 + side] = _slope(lean)
+            held.site[other, SITE.known] = LAID
+
+
+def _slope(lean: float) -> float:
+    """Return the slope of a straight part that leans by an angle, rad, over the barrier."""
+    return tan(min(max(lean - 2 * pi * round(lean / (2 * pi)), FLATTEST), UPRIGHT))
 
 
 def _metal(case: Case, rod: ModalRod, s: int, turn: float) -> tuple[Material, bool]:

@@ -194,8 +194,8 @@ class Touched(NamedTuple):
     site : (s, 22) see `SiteIndex`
     law, flow : (s, 10), (s, 17) numbers of a `ContactLaw` and a `FlowLaw`
     place, width, shift : (s, SPRINGS) tangential springs: distances from the centre, widths and shifts, m
-    depth, normal, sheared : (s, CELLS) cells, and ``state`` (s, 9), ``works`` (s, 3), J, ``size`` (s,), m, of
-        a `fem_impact.modal.groove.Groove`
+    depth, normal, sheared : (s, CELLS) cells, and ``state`` (s, 9), ``works`` (s, 3), J, ``tip`` (s, 7),
+        ``size`` (s,), m, of a `fem_impact.modal.groove.Groove`
     work_t : (s,) work of the tangential force, J
     flats : straight parts that have landed; their sites have no contacts of their own
     over_speed : factors of friction, a `fem_impact.fem.sliding.speed_table`
@@ -212,6 +212,7 @@ class Touched(NamedTuple):
     sheared: Array
     state: Array
     works: Array
+    tip: Array
     size: Array
     work_t: Array
     flats: Flats
@@ -228,7 +229,7 @@ class Touched(NamedTuple):
         springs = rows(SPRINGS), rows(SPRINGS), rows(SPRINGS)
         cells = rows(CELLS), rows(CELLS), rows(CELLS)
         once = np.zeros(sites), np.zeros(sites)
-        whole = *laws, *springs, *cells, rows(9), rows(3), *once
+        whole = *laws, *springs, *cells, rows(9), rows(3), rows(7), *once
         return cls(rows(len(SITE)), *whole, Flats.none(), over_speed)
 
 

@@ -36,7 +36,8 @@ def flow_of(held: Touched, s: int, rubs: float = 1.0) -> FlowLaw:
 @inlined
 def groove_of(held: Touched, s: int) -> Groove:
     """Return the groove of a site."""
-    return Groove(held.depth[s], held.normal[s], held.sheared[s], held.state[s], held.works[s], held.size[s])
+    cells = held.depth[s], held.normal[s], held.sheared[s]
+    return Groove(*cells, held.state[s], held.works[s], held.tip[s], held.size[s])
 
 
 @inlined
