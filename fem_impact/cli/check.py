@@ -182,7 +182,9 @@ def _short(case: Case, statement: dict[str, Any]) -> str:
     size = f"{1e3 * rod.length:.4g} mm x {1e3 * rod.diameter:.4g} mm"
     parts += [f"{one.material.name} ({one.name})" for one in rod.regions]
     main = [] if rod.segments else [rod.material.name]
-    lines += _wrapped([f"{size} of {', '.join(main + parts)}", *statement["mesh"]])
+    lines += _wrapped(
+        [f"{size} of {', '.join(main + parts)}{case.scene.projectile.bored}", *statement["mesh"]]
+    )
     lines += _wrapped(_body_lines(statement["body"], _bends_as(case)))
     lines += ["", "Barrier and contact", *_wrapped(_contact_lines(case))]
     lines += ["", "Laws in force", *_wrapped(statement["laws"].values()), "", "Effects"]

@@ -22,6 +22,7 @@ from fem_impact.scene.inputs import inputs
 from fem_impact.scene.read import read_toml
 from fem_impact.scene.write import digest
 from fem_impact.tables.table import Table
+from fem_impact.tables.text import plain
 
 SHEET = "sheet.html"
 NARROW = 4.5  # inches, of the drawing
@@ -97,6 +98,7 @@ def write_sheet(folder: Path, document: str = "", revision: str = "") -> Path:
             html.table(numbers, compact=True),
             html.paragraph(spread.said.replace("At the right", "Last column"), "note"),
             _dent(outcome),
+            _melted(outcome),
         ),
         html.section("Inputs and their sources", html.table(inputs(scene), compact=False)),
         html.section("Not covered", html.bullets((*never_covered(scene), *uncovered))),
@@ -157,6 +159,14 @@ def _scale(unit: str) -> float:
     return 100.0 if unit == "%" else 1.0
 
 
+def _melted(outcome: Outcome) -> Markup:
+    """Return why a flash temperature that was followed is not known, nothing where it is."""
+    heat = outcome.heat
+    if isinstance(heat.power, Unknown) or not isinstance(heat.temperature, Unknown):
+        return Markup("")
+    return html.paragraph(f"Flash temperature not known: {heat.temperature.reason}.")
+
+
 def _dent(outcome: Outcome) -> Markup:
     """Return how deep and wide the places of contact are, nothing where that is not known."""
     sites = or_none(outcome.contact.sites) or ()
@@ -164,7 +174,7 @@ def _dent(outcome: Outcome) -> Markup:
     if not sites or cell is None:
         return Markup("")
     depth, width = max(site.depth for site in sites), max(site.width for site in sites)
-    dent = f"; the barrier is pressed in by at most {1e6 * depth:.2g} µm" if depth else ""
+    dent = f"; the barrier is pressed in by at most {plain(1e6 * depth, 2)} µm" if depth else ""
     return html.paragraph(
         f"Widest place of contact {1e3 * width:.2g} mm, known to about a cell, {1e3 * cell:.2g} mm{dent}."
     )

@@ -130,6 +130,11 @@ class ProjectileSpec:
         return bool(self.bore) and isclose(self.bore[-1][0], self.length, rel_tol=1e-9)
 
     @property
+    def bored(self) -> str:
+        """The bore in words, its largest diameter; nothing where it is solid."""
+        return f", bored to {2e3 * max(radius for _, radius in self.bore):.4g} mm" if self.bore else ""
+
+    @property
     def own_mesh(self) -> OwnMesh | None:
         """Return the user's mesh that is its shape, None where it is a body of revolution."""
         return self.shape if isinstance(self.shape, OwnMesh) else None

@@ -667,6 +667,7 @@ impact = {angle = "40 deg", height = "1.5 m"}
     said = case_sentence(read_toml(tmp_path / "lead.toml"))
     assert "rod of copper to 120 mm, lead to 150 mm, hemispherical nose, " in said
     assert "rod of rod-steel, tip B, " in case_sentence(load("t5b"))
+    assert ", bored to 12 mm, 0.267 kg" in case_sentence(load("tube"))
 
 
 def test_the_published_limit_says_nothing_of_a_straight_impact():
