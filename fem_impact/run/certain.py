@@ -47,8 +47,7 @@ INTERVALS = "the stated intervals of friction, angle and speed"
 BY = {
     "modal": "the half-widths of the reduced model's e, mu and friction in each of its strikes, which know "
     "nothing of vibration that comes in",
-    "solid": "the change of e, mu and friction in strikes by finite elements from the last mesh but one to "
-    "the last",
+    "solid": "the half-widths that levels of meshes tell of e, mu and friction in strikes by finite elements",
     "rigid": "in strikes of a rigid body, how far it lies from the finer model in the last strike of that",
 }
 OPEN = {
@@ -86,13 +85,13 @@ class Known:
     doubt: Doubt | None
 
 
-def with_spread(case: Case, strikes: Strikes, coarser: Strikes | None = None) -> Strikes:
-    """Return strikes with what is certain of them; ``coarser`` are those of the last mesh but one."""
+def with_spread(case: Case, strikes: Strikes, meshed: Sequence[Doubt | None] = ()) -> Strikes:
+    """Return strikes with what is certain of them; ``meshed`` is what levels of meshes leave open of each."""
     own = or_none(strikes.each)
     if own is None:
         return strikes
     try:
-        each = _each(case, own, () if coarser is None else or_none(coarser.each) or ())
+        each = _each(case, own, meshed)
         if not (_varies(case) or any(one.doubt for one in each)):
             return _without(strikes, EXACT)
         plain = _run(case.scene, each)
@@ -126,7 +125,7 @@ def _without(strikes: Strikes, why: Unknown) -> Strikes:
     return replace(strikes, **unknown)
 
 
-def _each(case: Case, own: Sequence[StrikeRecord], coarser: Sequence[StrikeRecord]) -> list[Known]:
+def _each(case: Case, own: Sequence[StrikeRecord], meshed: Sequence[Doubt | None] = ()) -> list[Known]:
     """Return the first strikes with those of the law and with what their models leave open."""
     found: list[Known] = []
     for number, one in enumerate(own[:SEEN]):
@@ -137,27 +136,17 @@ def _each(case: Case, own: Sequence[StrikeRecord], coarser: Sequence[StrikeRecor
         doubt: Doubt | None = None
         if one.fidelity == "modal":
             doubt = _by_stored(case, body, begin, one)
-        elif pair := _by_two(one, coarser[number : number + 1], found):
-            doubt = _apart(*pair, one)
+        elif one.fidelity == "solid":
+            doubt = meshed[number] if number < len(meshed) else None
+        elif finer := [old for old in found if old.own.fidelity != "rigid"]:
+            doubt = _apart(finer[-1], one)
         found.append(Known(one, body.each[0], doubt))
     return found
 
 
-def _by_two(
-    one: StrikeRecord, coarser: Sequence[StrikeRecord], before: Sequence[Known]
-) -> tuple[StrikeRecord, StrikeRecord] | None:
-    """Return a strike by two models whose distance is what is open of ``one``, None where there is none.
-
-    Of finite elements it is ``one`` itself and that of a coarser mesh, of a rigid body the last strike before
-    by a finer model and by the law.
-    """
-    if one.fidelity == "solid":
-        return next(((one, old) for old in coarser if (old.fidelity, old.part) == ("solid", one.part)), None)
-    return next(((old.own, old.law) for old in reversed(before) if old.own.fidelity != "rigid"), None)
-
-
-def _apart(one: StrikeRecord, other: StrikeRecord, of: StrikeRecord) -> Doubt:
-    """Return how far two models of a strike are apart, for a strike ``of`` another energy."""
+def _apart(finer: Known, of: StrikeRecord) -> Doubt:
+    """Return how far the law lies from the model of a ``finer`` strike, for one ``of`` another energy."""
+    one, other = finer.own, finer.law
     share = of.before / one.before
     return Doubt(
         abs(one.e - other.e),

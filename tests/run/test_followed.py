@@ -2,9 +2,12 @@
 
 import math
 from dataclasses import replace as replace_record
+from types import SimpleNamespace
 
 import pytest
 
+from fem_impact.answers.refine.extrapolate import level_limit
+from fem_impact.answers.refine.strikes import open_by_levels
 from fem_impact.case.case import Case
 from fem_impact.errors import SceneError, UsageError
 from fem_impact.outcome.keys import Unknown
@@ -288,24 +291,36 @@ def test_a_number_of_a_strike_without_a_half_width_has_a_reason(steep, floor):
 def test_a_model_that_nothing_is_moved_of_repeats_its_own_path(steep):
     """Rigid strikes by e, mu and friction of the modes, flights between them: contacts take no time in it."""
     case = Case.of(rattling(impact__angle="75 deg"), "modal")
-    plain = certain._run(case.scene, certain._each(case, steep.each, ()))
+    plain = certain._run(case.scene, certain._each(case, steep.each))
     for one, other in zip(steep.each[:3], plain, strict=False):
         assert (one.approach, one.part) == (pytest.approx(other.approach, rel=0.02), other.part)
         assert one.friction == pytest.approx(other.friction, rel=0.05)
         assert one.lost == pytest.approx(other.lost, rel=0.05)
 
 
-def test_strikes_of_two_meshes_differ_by_what_is_not_known_of_them(steep):
-    """A mesh whose first strike has an e that is 0.1 larger widens what is told of the second's speed."""
+def test_what_meshes_leave_open_of_strikes_widens_what_is_told_of_them(steep):
+    """By levels of 1 and 0.5 mm whose first strikes have an e 0.1 apart: by the rule of their limit."""
     solid = [replace_record(one, fidelity="solid") for one in steep.each[:2]]
     strikes = replace_record(steep, each=tuple(solid))
     coarser = replace_record(strikes, each=(replace_record(solid[0], e=solid[0].e + 0.1), solid[1]))
+    levels = [
+        SimpleNamespace(
+            size=size,
+            outcome=SimpleNamespace(strikes=of),
+            runs=SimpleNamespace(wide=True, resolved=True),
+        )
+        for size, of in ((1e-3, coarser), (5e-4, strikes))
+    ]
+    limit, band = level_limit([1e-3, 5e-4], [[solid[0].e + 0.1], [solid[0].e]], [True, True])
+    half = band + solid[0].e - limit
     case = Case.of(rattling(impact__angle="75 deg", surface__friction=0.5), "modal")
     assert "rigid theory tells no error" in certain.with_spread(case, strikes).certain.reason
-    told = certain.with_spread(case, strikes, coarser)
-    assert told.half_width(1, "e") == pytest.approx(0.1 / certain.HELD, rel=0.1)
+    told = certain.with_spread(case, strikes, open_by_levels(levels))
+    assert told.half_width(1, "e") == pytest.approx(half / certain.HELD, rel=0.1)
     assert told.half_width(1, "mu") == pytest.approx(0.0, abs=1e-12)
-    assert "from the last mesh but one to the last" in told.holds
+    assert "levels of meshes" in told.holds
+    levels[0].outcome.strikes = replace_record(strikes, each=tuple(solid[:1]))
+    assert open_by_levels(levels)[1] is None
 
 
 def test_the_first_strikes_are_counted_over_the_interval_of_friction(floor):

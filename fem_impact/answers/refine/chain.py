@@ -366,12 +366,13 @@ class LevelChain:
         )
 
     def _strikes(self, upto: Sequence[LevelRun], strikes: Strikes) -> Strikes:
-        """Return the strikes with what is certain of them, by those of the last level but one."""
+        """Return the strikes with what is certain of them, by those of all levels."""
         if len(upto) < 2 or self.scene.impact.until == FIRST:
             return strikes
+        from fem_impact.answers.refine.strikes import open_by_levels
         from fem_impact.run.certain import with_spread
 
-        return with_spread(upto[-1].cases[0], strikes, upto[-2].outcome.strikes)
+        return with_spread(upto[-1].cases[0], strikes, open_by_levels(upto))
 
     def _missed(self, errors: Mapping[str, float], none: Unknown) -> str:
         """Say why the wanted error is not reached, or why there is ``none``, and what more would cost."""

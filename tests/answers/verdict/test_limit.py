@@ -62,6 +62,7 @@ def test_a_body_without_a_reduced_model_is_decided_by_none(monkeypatch, scene):
     monkeypatch.setattr(module, "not_reduced", lambda bodies: "a shaft that would yield")
     found = judge(scene, Sloped(), 75.0, ANGLE, "modal")
     assert found.answer == "undecided" and "no reduced model of a shaft" in found.missing
+    assert judge(scene, Sloped(), 49.0, ANGLE, "modal").answer == "undecided"
 
 
 def solids(monkeypatch, values):
