@@ -23,6 +23,9 @@ from rigid import Faceted, Projectile
 
 AROUND = 16  # places of half a round surface at which its height is looked at
 ABOVE = 0.35  # of a cell, within which skin of the lowest point may touch in a run on such cells
+BESIDE = (
+    1.05  # cells beside a line of a user's nodes: in a single row that is split every face has hanging nodes
+)
 DEEP = 1.5  # radii of the estimated contact, and cells, up to which metal may flow from where it may touch
 
 
@@ -212,7 +215,8 @@ def expected_record(bodies: Bodies, rod_edge: float, barrier_edge: float) -> Con
     steps = np.linspace(0.0, slid, 2 + int(abs(slid) / edge)) if slid else np.zeros(1)
     under = np.concatenate([under + np.array([step, 0.0, 0.0]) for step in steps])
     rod = BodyRecord(touched, touched, np.zeros(len(touched)), rod_edge, rod_edge, spread)
-    barrier = BodyRecord(under, under, np.zeros(len(under)), barrier_edge, barrier_edge, spread)
+    reach = barrier_edge * (BESIDE if isinstance(bodies.body, Faceted) else 1.0)
+    barrier = BodyRecord(under, under, np.zeros(len(under)), barrier_edge, reach, spread)
     return ContactRecord(rod, barrier if bodies.contact.compliant else None)
 
 

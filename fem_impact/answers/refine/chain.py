@@ -44,15 +44,14 @@ from fem_impact.tables.text import plain
 # shifts of a meshed barrier's grid along t, in cells at the contact, at which a level runs: one or both
 GRID_OFFSETS = (0.0, 0.5)
 MOST_REPEATS = 2  # of a level, each with twice the room
-MORE = (
-    2  # levels at most beyond those asked for, where the last has not resolved the contact: it has no numbers
-)
 BUDGET = 600.0  # s of wall time for all levels, unless stated
 # of the budget, beyond which a level that has begun is given up: all ends within 1.3 times, as the clock is
 # not looked at while matrices are assembled and results written
 LATE = 1.2
 LEAST_BUDGET = 5.0  # s: a smaller budget still gives a quick scene its first level
-MOST_FINER = 3  # splits beyond those that resolve the contact, where a band decides
+# splits beyond those that resolve the contact, where a band decides, and levels beyond those asked for, where
+# the last one does not resolve it and so gives no numbers
+MOST_FINER = 3
 Decides = Callable[[Sequence[LevelRun]], bool]
 """Says whether levels from coarse to fine are enough for an answer."""
 
@@ -164,7 +163,7 @@ class LevelChain:
                 return None
             finest = max(finest, ran + 1)
         unresolved = not (record.resolved or self.meshes.is_sized)
-        if unresolved and len(self.done) < self.scene.accuracy.levels + MORE:
+        if unresolved and len(self.done) < self.scene.accuracy.levels + MOST_FINER:
             finest = max(finest, ran + 1)
         return next(iter(steps_between(ran, finest)), None)
 

@@ -8,10 +8,12 @@ import pytest
 from fem_impact.answers.refine import level as level_module
 from fem_impact.answers.refine.chain import LevelChain
 from fem_impact.answers.refine.extrapolate import MeshRuns, level_limits
+from fem_impact.answers.refine.level_meshes import LevelMeshes
 from fem_impact.answers.simulate import compiled, simulate
 from fem_impact.case.case import Case
 from fem_impact.case.record import ContactRecord
 from fem_impact.errors import ResultError, SceneError
+from fem_impact.evidence.studies.coverage.scenes import drawn
 from fem_impact.fem.geometry import build_geometry
 from fem_impact.files.atomic import write_digests
 from fem_impact.options import RunOptions
@@ -20,6 +22,7 @@ from fem_impact.outcome.record import Outcome
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.write import digest
+from fem_impact.solid.build import build
 from meshes import SKIN, thicknesses
 
 BASE = {
@@ -55,6 +58,13 @@ def test_a_pilot_and_two_finer_levels_end_on_the_stated_size(quick):
 def test_a_stated_size_is_that_of_the_last_level_unless_more_are_asked_for(levels, splits):
     chained = LevelChain(Case(replace(QUICK, accuracy=replace(QUICK.accuracy, levels=levels))))
     assert chained.meshes.first == splits[0] and chained.finest == splits[-1]
+
+
+def test_the_pilot_of_a_bar_that_lands_on_its_edge_has_a_face_to_touch_in_the_barrier(tmp_path):
+    """Its only row of nodes lies over the middle of a row of cells of the block."""
+    bar = next(one for one in drawn(2, 0, 20261226) if one.name == "own-mesh-1")
+    model = build(LevelMeshes(Case(bar.scene(tmp_path))).pilot)
+    assert len(model.contact.rod.quads) and len(model.contact.barrier.quads)
 
 
 def test_every_level_closes_its_ledger(quick):

@@ -40,7 +40,7 @@ def test_two_levels_are_two(level):
     assert levels.finest > level.splits
 
 
-def test_two_more_levels_run_where_the_last_resolved_nothing(level):
+def test_more_levels_run_where_the_last_resolved_nothing(level):
     levels = LevelChain(Case(FREE), done=[level])
     finest = levels.finest
     levels.done = [replace(level, splits=splits) for splits in range(finest - 2, finest + 1)]
@@ -49,7 +49,7 @@ def test_two_more_levels_run_where_the_last_resolved_nothing(level):
     assert levels._next == finest + 2
     resolved = replace(levels.done[-1], record=replace(level.record, resolved=True))
     assert LevelChain(Case(FREE), done=[*levels.done[:2], resolved])._next is None
-    levels.done.append(replace(level, splits=finest + 2))
+    levels.done.extend(replace(level, splits=finest + more) for more in (2, 3))
     assert levels._next is None
 
 
