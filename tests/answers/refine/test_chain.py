@@ -232,7 +232,7 @@ def test_a_budget_ends_the_levels_and_tells_what_is_missing():
     levels.budget_s = 1e-3
     outcome = levels.run()
     assert len(levels.done) == 1
-    assert any("would take about" in getattr(one, "text", "") for one in notices)
+    assert any("give a budget of" in getattr(one, "text", "") for one in notices)
     assert any("larger accuracy.levels or budget" in one.text for one in outcome.validity.limitations)
 
 
