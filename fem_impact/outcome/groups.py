@@ -291,6 +291,24 @@ class Markers:
 
 
 @group
+class Readings:
+    """What else a test may measure: the dent that stays, and the strain that a gauge on the rod shows."""
+
+    dent_depth: Num = key(
+        "dent_depth_m", "m", "Depth of the dent that stays in the barrier, under the surface around it.", True
+    )
+    dent_volume: Num = key(
+        "dent_volume_m3", "m3", "Volume of that dent, under the surface around it, without its lip.", True
+    )
+    gauge_highest: Num = key(
+        "gauge_strain_highest", "-", "Largest strain at `save.gauge` in the run, tension above 0.", True
+    )
+    gauge_lowest: Num = key(
+        "gauge_strain_lowest", "-", "Smallest strain at `save.gauge` in the run, compression below 0.", True
+    )
+
+
+@group
 class Contact:
     """The contact over time, and what a camera would have seen of the motion that it leaves."""
 
@@ -306,6 +324,7 @@ class Contact:
         "True when the mass centre still comes down after the last separation: the rod strikes once more.",
     )
     peak_force: Num = key("peak_force_N", "N", "Largest normal force on the rod, mean over 2 us.", True)
+    readings: Readings
     markers: Markers
 
 

@@ -18,6 +18,7 @@ from fem_impact.outcome.groups import (
     Heat,
     Markers,
     Provenance,
+    Readings,
     Restitution,
     RodMotion,
     RunCost,
@@ -44,6 +45,9 @@ from fem_impact.run.unusual import unusual
 from fem_impact.scene.impact import FIRST
 from fem_impact.scene.write import digest
 
+NO_READINGS = unknown(
+    Readings, "only finite elements follow the dent that stays and the strain along the projectile"
+)
 ONE_POINT = Unknown("only finite elements find where the bodies touch: this fidelity has one contact point")
 NO_TARGET = Unknown("the scene gives a mesh, not the error it allows")
 NOT_REDUCED = Unknown("it is told of the reduced model alone")
@@ -119,6 +123,7 @@ class Reduction:
         limited: Iterable[Limitation],
         withheld: str = "",
         sites: tuple[ContactSite, ...] | Unknown = ONE_POINT,
+        readings: Readings = NO_READINGS,
     ) -> Outcome:
         """Return the outcome; what a failed, cut off or unresolved run does not know is unknown there.
 
@@ -130,6 +135,7 @@ class Reduction:
             result shows
         withheld : why the contact counts as not resolved, empty where it does not
         sites : places of contact
+        readings : dent and strain
         """
         case, end = self.case, self.end
         gravity, ruled = _gravity(case, end.contacts)
@@ -161,6 +167,7 @@ class Reduction:
                 sites=sites,
                 strikes_again=comes_down(end.leaving) if end.finished else CUT_OFF,
                 peak_force=peak_force,
+                readings=readings,
                 markers=markers,
             ),
             heat=heat,

@@ -7,7 +7,7 @@ from math import pi, sqrt
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from fem_impact.case.cells import LEAST, advice, contact_edge, contact_radius, kind
-from fem_impact.outcome.groups import ARMS, Heat, Markers
+from fem_impact.outcome.groups import ARMS, Heat, Markers, Readings
 from fem_impact.outcome.keys import Unknown, unknown
 from fem_impact.outcome.record import Outcome
 
@@ -63,7 +63,7 @@ def without(outcome: Outcome, reason: Unknown) -> Outcome:
         outcome,
         restitution=replace(outcome.restitution, mu=reason, **arms),
         energy=_blank(outcome.energy, reason, LEDGER),
-        contact=replace(outcome.contact, peak_force=reason),
+        contact=replace(outcome.contact, peak_force=reason, readings=unknown(Readings, reason.reason)),
         heat=outcome.heat if isinstance(outcome.heat.power, Unknown) else unknown(Heat, reason.reason),
     )
 
@@ -85,7 +85,11 @@ def without_end(outcome: Outcome, why: str) -> Outcome:
         motion=replace(outcome.motion, **after),
         barrier=replace(barrier, **free),
         restitution=replace(outcome.restitution, mu=reason, mu_c=reason, **arms),
-        contact=replace(outcome.contact, markers=unknown(Markers, reason.reason)),
+        contact=replace(
+            outcome.contact,
+            markers=unknown(Markers, reason.reason),
+            readings=unknown(Readings, reason.reason),
+        ),
         heat=replace(heat, less_vibration=less),
     )
 

@@ -11,7 +11,7 @@ import rigid
 from fem_impact.case.cells import advice
 from fem_impact.case.effects.heating import halves
 from fem_impact.errors import RunError
-from fem_impact.outcome.groups import ContactSite, Energy, Heat, RodMotion, RunCost
+from fem_impact.outcome.groups import ContactSite, Energy, Heat, Readings, RodMotion, RunCost
 from fem_impact.outcome.keys import Num, Unknown, known, or_none, unknown
 from fem_impact.outcome.limitation import limitations
 from fem_impact.physics.contact import fall
@@ -21,6 +21,8 @@ from fem_impact.run.common import CUT_OFF, MASSIVE, UNBENT, after, heat
 from fem_impact.run.markers import replay
 from fem_impact.run.resolution import NOT_RESOLVED, unresolved
 from fem_impact.run.unusual import LEAST_RATIO, PLOUGHING
+from fem_impact.solid.contact.surface import SurfaceContact
+from fem_impact.solid.dent import dent
 
 if TYPE_CHECKING:
     from fem_impact.case.case import Case
@@ -36,6 +38,8 @@ IN_WAVES = Unknown(
     "in a plate meshed through its thickness it is not told from the bending waves: W_plate holds both"
 )
 UNRELEASED = Unknown("the strain that the last forces release was not found")
+UNGAUGED = "the scene has no strain gauge: give save.gauge, its distance from the tip"
+NO_SECTIONS = "the strain along the axis is read from the equal slices of a turned body that deforms"
 ONE_MESH = "error unknown: run a second tip size, or `fem-impact cost`"
 
 
@@ -89,6 +93,23 @@ def reduce(result: SolidResult) -> Outcome:
         ),
         withheld=narrow if case.scene.accuracy.unresolved == "withhold" else "",
         sites=tuple(map(_site, result.record.sites)),
+        readings=_readings(result),
+    )
+
+
+def _readings(result: SolidResult) -> Readings:
+    contact, depth, volume = result.model.contact, 0.0, 0.0
+    if isinstance(contact, SurfaceContact) and "barrier-elastoplastic" in result.case.active:
+        depth, volume = dent(contact.barrier, result.state.x)
+    shown = result.strain
+    if shown is None:
+        reason = Unknown(UNGAUGED if result.case.scene.save.gauge is None else NO_SECTIONS)
+        return Readings(dent_depth=depth, dent_volume=volume, gauge_highest=reason, gauge_lowest=reason)
+    return Readings(
+        dent_depth=depth,
+        dent_volume=volume,
+        gauge_highest=float(shown.max()),
+        gauge_lowest=float(shown.min()),
     )
 
 

@@ -100,12 +100,16 @@ class Save:
     """What is kept of a run: frames of the fields, rows of the histories, samples of the axial strain.
 
     ``fields``: ``shown`` holds what films and pages show, displacement, von Mises stress and plastic strain;
-    ``all`` velocity and the stress tensor too.
+    ``all`` velocity and the stress tensor too. ``gauge`` is the distance of a strain gauge from the tip, m,
+    None without one, ``gauge_across`` its place in radii from the axis, None for 1: the side that faces the
+    barrier.
     """
 
     frames: int = 120
     history_every: int = 20
     strain_samples: int = 1
+    gauge: float | None = None
+    gauge_across: float | None = None
     fields: Fields = "shown"
 
     def __post_init__(self) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import resource
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
@@ -36,7 +36,9 @@ from fem_impact.solid.state import State
 from fem_impact.solid.watchers import Stopwatch, Watchers
 
 if TYPE_CHECKING:
+    from fem_impact.scene.types import Save
     from fem_impact.solid.heatwatch import HeatWatch
+    from fem_impact.solid.strain import StrainWatch
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,6 +89,7 @@ class SolidResult:
     vibration_check : kinetic and strain energy of the vibration without modes, see `RodState`, J, or None
     record : where the bodies touched and flowed
     heat : the contact's patch and friction power over time, or None
+    strain : what a strain gauge shows over time, (k,), or None without one
     shares : share of the run time of the effects that have items of their own; None where it is not resolved
     """
 
@@ -115,6 +118,7 @@ class SolidResult:
     limitations: tuple[Limitation, ...]
     record: ContactRecord
     heat: HeatWatch | None = None
+    strain: Array | None = None
     shares: dict[str, float | None] = field(default_factory=dict)
 
 
@@ -261,7 +265,15 @@ def _result(
             crushed=bool(watchers.guard.reason),
         ),
         heat=watchers.heat,
+        strain=_gauge(case.scene.save, watchers.strain),
     )
+
+
+def _gauge(save: Save, watched: Sequence[StrainWatch]) -> Array | None:
+    """Return what the strain gauge of a scene shows over time (k,), None without one."""
+    if save.gauge is None or not watched:
+        return None
+    return watched[0].waves().gauge(save.gauge, 1.0 if save.gauge_across is None else save.gauge_across)
 
 
 def _base(case: Case, model: Model, state: State) -> tuple[float, float]:

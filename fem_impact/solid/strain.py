@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, ClassVar, Self
 import numpy as np
 
 from fem_impact.arrays import Array
+from fem_impact.errors import SceneError
 from fem_impact.fem.flight import FreeVibration
 from fem_impact.files.waves import Ringing, Waves, write_waves
 from fem_impact.physics.beam import bar_speed, bending_group_speed
@@ -83,12 +84,12 @@ def _in_plane(model: Model, vector: Array) -> Array:
 
 @dataclass(slots=True)
 class StrainWatch:
-    """Observer that stores the strain along the axis every ``interval``, s, and writes it to waves.h5."""
+    """Observer of the strain along the axis every ``interval``, s; ``path``: file to write, None of none."""
 
     moving: ClassVar[tuple[str, ...]] = ("due", "samples")
     model: Model
     sections: StrainSections
-    path: Path
+    path: Path | None
     length: float
     speeds: tuple[float, float]
     interval: float
@@ -97,14 +98,25 @@ class StrainWatch:
     rows: list[Array] = field(default_factory=list)
 
     @classmethod
-    def of(cls, case: Case, model: Model, path: Path) -> Self:
-        """Prepare; a wave of speed sqrt(E/rho) crosses one slice in ``save.strain_samples`` intervals."""
+    def of(cls, case: Case, model: Model, path: Path | None) -> Self:
+        """Prepare; a wave of speed sqrt(E/rho) crosses one slice in ``save.strain_samples`` intervals.
+
+        Raises SceneError where a strain gauge lies off the part that is read.
+        """
         rod, sections = case.scene.projectile, StrainSections.of(model)
         speeds = bar_speed(rod.material), bending_group_speed(rod)
-        interval = sections.pitch / speeds[0] / case.scene.save.strain_samples
-        return cls(
-            model, sections, path, rod.length, speeds, interval, max(1, int(interval / model.step / 8))
-        )
+        interval = sections.pitch / speeds[0] / max(case.scene.save.strain_samples, 1)
+        every = max(1, int(interval / model.step / 8))
+        watch = cls(model, sections, path, rod.length, speeds, interval, every)
+        gauge, places = case.scene.save.gauge, watch._position
+        if gauge is not None and not places[0] <= gauge <= places[-1]:
+            raise SceneError(
+                "lies where the strain along the axis is not read.",
+                key="save.gauge",
+                value=f"{gauge * 1e3:.4g} mm",
+                remedy=f"Give {places[0] * 1e3:.4g} to {places[-1] * 1e3:.4g} mm from the tip.",
+            )
+        return watch
 
     @property
     def samples(self) -> Array:
@@ -126,17 +138,25 @@ class StrainWatch:
 
     def write(self, ringing: Ringing | None = None) -> None:
         """Write the file; nothing before the first sample."""
-        if not self.rows:
-            return
+        if self.path is not None and self.rows:
+            write_waves(self.path, self.waves(ringing))
+
+    def waves(self, ringing: Ringing | None = None) -> Waves:
+        """Return the strain up to now."""
         rod = self.model.geometry.rod
-        # the first slice is left out, see `StrainSections`
-        position = rod.body_start + self.sections.pitch * (np.arange(self._count) + 1.5)
         times, stretch, bending = np.split(self.samples, [1, 1 + self._count], axis=1)
         t, n = self.sections.axis
         axis, tail = np.array([t, 0.0, n]), rod.body_nodes[:, -1]
         end = self.sections.weights[0] @ self.model.geometry.rod_points[tail] * [1.0, 0.0, 1.0]
         shown = (self.length, self.sections.radius, *self.speeds, end - self.length * axis, axis)
-        write_waves(self.path, Waves(times[:, 0], position, stretch, bending, *shown, ringing))
+        return Waves(times[:, 0], self._position, stretch, bending, *shown, ringing)
+
+    @property
+    def _position(self) -> Array:
+        """Return the distance from the tip of each place that is read, m."""
+        # the first slice is left out, see `StrainSections`
+        start, count = self.model.geometry.rod.body_start, self._count
+        return np.asarray(start + self.sections.pitch * (np.arange(count) + 1.5))
 
     @property
     def _count(self) -> int:

@@ -122,8 +122,9 @@ class Watchers:
         if out is not None and scene.save.frames:
             frames = [_frames(case, model, view, out, go_on)]
         sliced = model.rod_stiffness is not None and model.layout.body_shape[1] > 2
-        if out is not None and scene.save.strain_samples and sliced:
-            strain = [StrainWatch.of(case, model, out / "waves.h5")]
+        kept = out is not None and scene.save.strain_samples > 0
+        if sliced and (kept or scene.save.gauge is not None):
+            strain = [StrainWatch.of(case, model, out / "waves.h5" if out and kept else None)]
         ahead = horizon(case.scene.projectile) if ahead is None else ahead
         stop = Separation(model, view, case.max_time, ahead, _far_tail(case, model))
         skin, peak = SkinWatch(model, case.slots.bending is not None), PeakForce(model.book)

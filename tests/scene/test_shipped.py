@@ -133,6 +133,8 @@ def test_the_steels_are_those_of_the_paper():
 
 
 DERIVED = {
+    "save.gauge": "no gauge",
+    "save.gauge_across": "1",
     "accuracy.tip_size": "5 elements over the estimated radius of a yielding contact, "
     "4 over that of an elastic one",
     "accuracy.barrier_size": "accuracy.tip_size",

@@ -7,6 +7,7 @@ import pytest
 import solid_scenes as scenes
 
 from fem_impact.case.case import Case
+from fem_impact.errors import SceneError
 from fem_impact.fem.flight import FreeVibration
 from fem_impact.files.waves import read_waves
 from fem_impact.options import RunOptions
@@ -41,7 +42,7 @@ def upright(tmp_path_factory):
     scene = scenes.scene(
         "vibration", "barrier-rigid", length=0.12, v_n=-2.0, v_t=0.0, angle=0.0, max_time=7.2e-5
     )
-    scene = replace(scene, save=replace(scene.save, strain_samples=2))
+    scene = replace(scene, save=replace(scene.save, strain_samples=2, gauge=0.04, gauge_across=0.0))
     return scene, solve(Case.of(scene), RunOptions(out)), read_waves(out / "waves.h5")
 
 
@@ -61,6 +62,24 @@ def test_the_wave_behind_a_blunt_end_has_the_strain_v_over_c0_and_its_front_runs
     back = waves.strain(np.array([1.5 * waves.length / c0]))[0][0]
     assert np.abs(back[waves.position > 0.7 * waves.length]).max() < 0.5 * 2.0 / c0
     assert np.abs(waves.bending).max() < 1e-6 * np.abs(waves.stretch).max()
+
+
+def test_a_strain_gauge_shows_the_wave_that_passes_it(upright):
+    scene, result, waves = upright
+    steel = scene.projectile.material
+    passing = result.strain[result.strain < -1.0 / (steel.E / steel.rho) ** 0.5]
+    assert np.median(passing) == pytest.approx(-2.0 / (steel.E / steel.rho) ** 0.5, rel=0.03)
+    assert result.strain == pytest.approx(waves.gauge(0.04, 0.0), rel=1e-5, abs=1e-9)
+
+
+def test_a_strain_gauge_needs_no_file_and_a_place_on_the_rod():
+    scene = scenes.scene(*ELASTIC, length=0.06, max_time=1e-6)
+    mid = replace(scene, save=replace(scene.save, strain_samples=0, gauge=0.03))
+    assert len(solve(Case.of(mid)).strain) > 0
+    with pytest.raises(
+        SceneError, match=r"save\.gauge = .59 mm.: lies where .* Give 19.* to 58.* mm from the tip"
+    ):
+        solve(Case.of(replace(mid, save=replace(mid.save, gauge=0.059))))
 
 
 def test_samples_resolve_the_wave_and_both_ends_of_the_run_are_known(upright):
