@@ -326,9 +326,9 @@ MUTANTS = (
     ),
     Mutant(
         "flash temperature above the melting point of the other body",
-        "fem_impact/run/common.py",
-        "    lowest, name = min(",
-        "    lowest, name = max(",
+        "fem_impact/scene/inputs.py",
+        "return min(((limit, name)",
+        "return max(((limit, name)",
         f"{HEATING}::test_a_temperature_above_the_melting_point_is_not_resolved",
     ),
     Mutant(
