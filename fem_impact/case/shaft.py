@@ -3,6 +3,7 @@
 from math import cos, pi, sqrt
 
 from fem_impact.case.bodies import Bodies
+from fem_impact.physics.contact import section_frequency
 from fem_impact.physics.stepped_beam import sections
 from meshes import shoulders
 from rigid import Turned
@@ -54,8 +55,22 @@ def wall_is_flattened(bodies: Bodies) -> str:
 
 
 def gives_elsewhere(bodies: Bodies) -> str:
-    """Say where a body would yield besides its contact; empty if it would not."""
-    return shaft_flows(bodies) or wall_is_flattened(bodies)
+    """Say what of a body gives way besides its contact, and in no beam; empty if nothing does."""
+    return shaft_flows(bodies) or wall_is_flattened(bodies) or rings_through(bodies)
+
+
+def rings_through(bodies: Bodies) -> str:
+    """Say that waves through the thickness of a body that lands on its face decide; empty if they do not.
+
+    Such a contact lasts as long as a wave takes through the body and back. The modes of a beam end below the
+    first that deforms its section, and a short body has no stretching mode below it.
+    """
+    contact, period = bodies.contact, bodies.stretching_period
+    flat = contact.body.face > 0 and contact.nearly_flat(bodies.estimate.depth)
+    if not flat or 2 * pi / period <= section_frequency(contact.rod, contact.body.diameter):
+        return ""
+    back = f"there and back: {period * 1e6:.3g} us"
+    return f"waves through the thickness of a body that lands on its face ({back})"
 
 
 def coned(bodies: Bodies) -> str:

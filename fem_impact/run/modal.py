@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from fem_impact.case.case import Case
+from fem_impact.case.shaft import rings_through
 from fem_impact.modal.impact import Arrival, ModalResult, solve
 from fem_impact.outcome.groups import Energy, Heat, Markers, RunCost
 from fem_impact.outcome.keys import Num, Unknown, unknown
@@ -94,8 +95,11 @@ def reduce(case: Case, result: ModalResult) -> Outcome:
             tilted if turned > TILT_TOLD else "",
         ),
     )
+    said, through = outcome.validity, rings_through(case.bodies)
+    if through:
+        reason = f"how wrong these numbers are is not known: the model leaves out {through}"
+        return replace(outcome, validity=replace(said, model_band=Unknown(reason)))
     place = place_of(case, outcome)
-    said = outcome.validity
     said = replace(
         said,
         model_band=half_widths(place, outcome),

@@ -98,4 +98,7 @@ if __name__ == "__main__":
         ["git", "describe", "--always", "--dirty"], capture_output=True, text=True, cwd=ROOT
     )
     made = f"# made {utc_now()} by tests/benchmarks/design_chart.py, commit {commit.stdout.strip()}\n"
-    write_text(ROOT / "fem_impact" / "answers" / "verdict" / "data" / TABLE, made + Table.of(COLUMNS, list(rows())).csv())
+    write_text(
+        ROOT / "fem_impact" / "answers" / "verdict" / "data" / TABLE,
+        made + Table.of(COLUMNS, list(rows())).csv(),
+    )

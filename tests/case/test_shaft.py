@@ -6,7 +6,9 @@ import pytest
 
 from fem_impact import load, replace_all, simulate
 from fem_impact.case.case import Case
-from fem_impact.case.shaft import shaft_flows, wall_is_flattened
+from fem_impact.case.limits import not_reduced
+from fem_impact.case.shaft import rings_through, shaft_flows, wall_is_flattened
+from fem_impact.outcome.keys import Unknown
 
 ROD = {"projectile.length": "0.12 m", "impact.angle": "0 deg", "impact.v_t": "0 m/s"}
 
@@ -68,3 +70,21 @@ def test_a_tube_on_its_side_is_flattened_where_its_rings_bear_less_than_comes_do
         assert wall_is_flattened(Case(replace_all(ring, changes)).bodies) == ""
     told = simulate(ring, "modal").validity.limitations
     assert any("a wall that would be flattened" in one.text for one in told)
+
+
+def test_a_disc_on_its_face_is_told_without_an_error_and_is_not_decided_by_the_reduced_model():
+    """By plane waves brass on steel keeps e .13 to .14, where a disc without a stretching mode has .82."""
+    disc = load(
+        {
+            "id": "disc",
+            "projectile": {"length": "15 mm", "diameter": "150 mm", "tip": "plain", "material": "brass"},
+            "barrier": {"material": "s235"},
+            "surface": {"state": "custom", "friction": 0.3, "source": "chosen"},
+            "impact": {"angle": "0 deg", "v_n": "-4 m/s", "v_t": "0 m/s"},
+        }
+    )
+    assert rings_through(Case(disc).bodies) == not_reduced(Case(disc).bodies) != ""
+    outcome = simulate(disc, "modal")
+    assert isinstance(outcome.half_widths, Unknown) and outcome.estimate("e_edge")[1] is None
+    for changes in ({"impact.angle": "60 deg"}, {"projectile.length": "300 mm"}):
+        assert rings_through(Case(replace_all(disc, changes)).bodies) == ""
