@@ -156,7 +156,10 @@ def _say_fall(scene: Scene, changed: set[str], options: Options) -> None:
     if impact.speed:
         ball = getattr(scene.projectile.shape, "name", "") == "ball"
         falls = "the ball falls" if ball else "the rod falls along its axis"
-        sentence = f"{falls} as fast as before, {speed:.4g} m/s"
+        sentence = (
+            f"{falls} as fast as before, {speed:.4g} m/s: v_n = {impact.v_n:.4g} m/s, "
+            f"v_t = {impact.v_t:.4g} m/s (others: --set impact.v_n=... --set impact.v_t=...)"
+        )
     else:
         sentence = "warning: v_n and v_t are those of the old angle."
         if speed * math.cos(impact.angle) > SLOWED * abs(impact.v_n):  # a fall along the axis still strikes
