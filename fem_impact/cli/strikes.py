@@ -6,11 +6,8 @@ from fem_impact.cli.options import Options
 from fem_impact.cli.terminal import print_table
 from fem_impact.outcome.keys import Unknown, or_none
 from fem_impact.outcome.record import Outcome
-from fem_impact.outcome.strike_text import spread_table, strikes_table, told
+from fem_impact.outcome.strike_text import SHOWN, spread_table, strikes_table, told
 from fem_impact.tables.text import wrapped
-
-SHOWN = 12
-"""Strikes that are listed where nothing says how many are certain; all of them stand in strikes.csv."""
 
 
 def print_strikes(outcome: Outcome, options: Options) -> None:

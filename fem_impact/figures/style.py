@@ -129,12 +129,12 @@ def percent(fraction: float, band: float | None = None) -> str:
 
     Examples
     --------
-    >>> percent(0.626), percent(0.00219), percent(0.0412, 0.00027)
-    ('62.6 %', '0.22 %', '4.120 ± 0.027 %')
+    >>> percent(0.626), percent(0.00219), percent(0.0412, 0.00027), percent(0.024, 0.39)
+    ('62.6 %', '0.22 %', '4.120 ± 0.027 %', '2 (0 to 42) %')
     """
     value = 100.0 * fraction
     if band:
-        return f"{with_band(value, 100.0 * band)} %".replace("+-", "±")
+        return f"{with_band(value, 100.0 * band, 0.0, 100.0)} %".replace("+-", "±")
     if abs(value) >= 0.95:
         return f"{value:.1f} %"
     return f"{plain(value, 2)} %" if value else "0 %"

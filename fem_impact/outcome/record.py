@@ -9,6 +9,7 @@ from dataclasses import dataclass, fields
 from datetime import UTC, datetime
 from functools import cache
 from importlib import metadata
+from math import inf
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, ClassVar, get_type_hints
@@ -37,6 +38,8 @@ from fem_impact.version import __version__
 PACKAGES = ("numpy", "scipy", "scikit-fem", "numba")
 ROUND_OFF = 1e-9
 """Size below which a number of a run, SI or a share of E_0, is told as 0."""
+SIGNED = "E_ln_", "E_lt_", "W_gravity_", "added_mass_", "residual_"
+"""How those shares of E_0 begin that may be below 0."""
 _version = cache(metadata.version)  # a file is read each time else
 
 
@@ -144,7 +147,8 @@ class Outcome:
         if isinstance(value, Unknown):
             return "not known"
         if band is not None:
-            return with_band(scale * value, scale * band)
+            ends = (0.0, scale) if _within_one(key) else (-inf, inf)
+            return with_band(scale * value, scale * band, *ends)
         if key.banded:
             return plain(scale * value) if abs(value) >= ROUND_OFF else "0"
         return plain(scale * value, 4)
@@ -228,6 +232,11 @@ def _key_named(key: Key | str) -> Key:
         hint = did_you_mean(key, KEY_TABLE, "The table of keys in the documentation lists them.")
         raise UsageError("is no key of an outcome.", key="key=", value=key, remedy=hint)
     return KEY_TABLE[key]
+
+
+def _within_one(key: Key) -> bool:
+    """Return whether a number is a share of the energy that lies between 0 and 1 in every model."""
+    return key.name.endswith("_over_E_0") and not key.name.startswith(SIGNED)
 
 
 def utc_now() -> str:

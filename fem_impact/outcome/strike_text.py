@@ -1,7 +1,7 @@
 """What is told of strikes in words and as a table."""
 
-from collections.abc import Sequence
-from math import degrees
+from collections.abc import Callable, Sequence
+from math import degrees, inf
 
 from fem_impact.outcome.keys import Num, Unknown, keys_of, known, or_none
 from fem_impact.outcome.strikes import StrikeRecord, Strikes, StrikeSpread
@@ -15,20 +15,25 @@ ROW = {
     if key.path[-1] in ("time", "alpha", "approach", "e", "mu", "after", "friction")
 }
 """Numbers of a row, and what they are multiplied by."""
+SIGNED = "alpha", "mu"
+"""Those that may be below 0."""
+KEYS = {key.path[-1]: key.name for key in keys_of(StrikeRecord)}
 ROUND_OFF = 1e-9  # of the energy before the first strike, below which nothing is told
+SHOWN = 12
+"""Strikes that are listed where nothing says how many are certain; all of them stand in strikes.csv."""
 SPREAD = ("strike", "tip", "tail", "other", "none", "time, ms", "approach, m/s")
 
 
 def told(strikes: Strikes) -> list[str]:
-    """Return sentences: the end, how hard the other end strikes, the hardest strikes, the totals."""
+    """Return sentences: the end, the other end's and the hardest strikes, the totals, what is certain."""
     if isinstance(strikes.each, Unknown):
         return [f"Later strikes are not known: {strikes.each.reason}."]
     count = len(strikes.each)
     return [
         f"{count} strike{'s' * (count > 1)}. {strikes.because} {_other_end(strikes)}",
-        *_certain(strikes),
-        _hardest(strikes),
+        *_hardest(strikes),
         _totals(strikes),
+        *_certain(strikes),
     ]
 
 
@@ -66,11 +71,16 @@ def spread_table(spread: Sequence[StrikeSpread]) -> Table:
 
 
 def _row(strikes: Strikes, number: int, one: StrikeRecord) -> tuple[str, ...]:
-    told = []
-    for key, scale in ROW.items():
-        value, half = getattr(one, key.path[-1]), or_none(strikes.half_width(number, key.name))
-        told.append(with_band(scale * value, scale * half) if half else f"{scale * value:.4g}")
+    told = (_number(strikes, number, key.path[-1], scale) for key, scale in ROW.items())
     return (str(number), one.part, *told, one.fidelity)
+
+
+def _number(strikes: Strikes, number: int, field: str, scale: float = 1.0) -> str:
+    """Return a number of a strike times ``scale``, with its half-width where that is known."""
+    value = getattr(known(strikes.each)[number - 1], field)
+    half = or_none(strikes.half_width(number, KEYS[field]))
+    low = -inf if field in SIGNED else 0.0
+    return with_band(scale * value, scale * half, low) if half else f"{scale * value + 0.0:.4g}"
 
 
 def _other_end(strikes: Strikes) -> str:
@@ -100,16 +110,30 @@ def _certain(strikes: Strikes) -> list[str]:
     ]
 
 
-def _hardest(strikes: Strikes) -> str:
-    names = (
-        ("by energy", strikes.hardest_energy),
-        ("by force", strikes.hardest_force),
-        ("by friction heat", strikes.hardest_heat),
+def _hardest(strikes: Strikes) -> list[str]:
+    """Return the hardest strike by energy, force and heat: where, how fast, what; only numbers that hold.
+
+    Of one behind the last certain strike, only one path of many, the hardest of the certain ones is told.
+    """
+    each, certain, agree = known(strikes.each), or_none(strikes.certain), or_none(strikes.hardest_agree)
+    kinds: tuple[tuple[str, int | Unknown, Callable[[StrikeRecord], float], str], ...] = (
+        ("energy", strikes.hardest_energy, lambda one: one.lost, "rigid motion from {before} J to {after} J"),
+        ("force", strikes.hardest_force, lambda one: one.force or 0.0, "{force} N"),
+        ("friction heat", strikes.hardest_heat, lambda one: one.friction, "{friction} J"),
     )
-    told = ", ".join(f"{name} {number}" for name, number in names if not isinstance(number, Unknown))
-    agree = strikes.hardest_agree
-    of = "" if isinstance(agree, Unknown) else f"; that by energy is the same in {agree} of 64 sequences"
-    return f"Hardest strike: {told}{of}."
+    told = []
+    for name, number, size, what in kinds:
+        if isinstance(number, Unknown):
+            continue
+        first, same = "", f", the hardest in {agree} of 64 sequences" if name == "energy" and agree else ""
+        if certain is not None and number > certain:
+            first, same = f" not certain (strike {number} of this path{same}); of the certain ones", ""
+            number = 1 + max(range(certain), key=lambda at: size(each[at]))
+        fields = ("approach", "before", "after", "friction", *(["force"] if name == "force" else []))
+        numbers = {field: _number(strikes, number, field) for field in fields}
+        strike = f"strike {number}, {each[number - 1].part} at {numbers['approach']} m/s"
+        told.append(f"Hardest by {name}:{first} {strike}: {what.format(**numbers)}{same}.")
+    return told
 
 
 def _time_error(strikes: Strikes) -> str:
@@ -132,8 +156,8 @@ def _totals(strikes: Strikes) -> str:
     )
     sums = ", ".join(f"{name} {v:.3g} J" for name, v in parts if not isinstance(v, Unknown) and v)
     least = ROUND_OFF * known(strikes.each)[0].before
-    half = or_none(strikes.friction_half) or 0.0
-    rubbed = f" Friction is known to {half:.2g} J." if half > least else ""
+    half, heat = or_none(strikes.friction_half) or 0.0, or_none(strikes.friction) or 0.0
+    rubbed = f" Friction with its error: {with_band(heat, half, 0.0)} J." if half > least else ""
     time = "" if isinstance(strikes.time, Unknown) else f" after {strikes.time:.4g} s{_time_error(strikes)}"
     gave = or_none(strikes.gravity) or 0.0
     gravity = f" Gravity gave {gave:.3g} J." if abs(gave) > least else ""

@@ -14,6 +14,7 @@ from fem_impact.outcome.keys import Key, Unknown, or_none
 from fem_impact.outcome.limitation import HEAVIEST_FIRST, WRONG_NUMBERS, texts
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.outcome.shares import shares
+from fem_impact.outcome.strike_text import SHOWN, strikes_table, told
 from fem_impact.pages import html
 from fem_impact.pages.drawing import draw_projectile
 from fem_impact.pages.html import Markup
@@ -91,6 +92,7 @@ def write_sheet(folder: Path, document: str = "", revision: str = "") -> Path:
             "pictures",
             html.join((html.image(drawing, "the projectile in its plane of motion"), _still(folder))),
         ),
+        _followed(outcome),
         html.section("Verdict", html.paragraph(criterion), verdict_box(lines)),
         html.section(
             "Numbers of the first impact, with their errors",
@@ -153,6 +155,18 @@ def _listed(outcome: Outcome) -> list[tuple[str, Key, str]]:
     listed = [(label, KEY_TABLE[name], unit) for label, name, unit in NUMBERS]
     listed += [(f"{share.label}, of E_0", share.key, "%") for share in shares("report")]
     return [one for one in listed if not isinstance(one[1].of(outcome), Unknown)]
+
+
+def _followed(outcome: Outcome) -> Markup:
+    """Return the end, the hardest and the certain strikes of a body that is followed, nothing of others."""
+    strikes = outcome.strikes
+    if isinstance(strikes.each, Unknown):
+        return Markup("")
+    return html.section(
+        "From the first strike to the last",
+        html.bullets(told(strikes)),
+        html.table(strikes_table(strikes, or_none(strikes.certain) or SHOWN), compact=True),
+    )
 
 
 def _scale(unit: str) -> float:

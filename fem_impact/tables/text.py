@@ -5,7 +5,7 @@ import textwrap
 from collections.abc import Callable
 from decimal import Decimal
 from html import escape
-from math import ceil, floor, log10
+from math import ceil, floor, inf, log10
 
 WIDTH = 79
 
@@ -30,10 +30,10 @@ def plain(value: float, digits: int = 3) -> str:
 
     Examples
     --------
-    >>> plain(123.4, 2), plain(0.00012, 2), plain(3e-7, 2), plain(12, 2)
-    ('120', '0.00012', '3e-07', '12')
+    >>> plain(123.4, 2), plain(0.00012, 2), plain(3e-7, 2), plain(-0.0, 2)
+    ('120', '0.00012', '3e-07', '0')
     """
-    rounded = f"{value:.{digits}g}"
+    rounded = f"{value + 0.0:.{digits}g}"  # no minus zero
     return f"{Decimal(rounded):f}" if 1e-5 <= abs(value) < 1e6 else rounded
 
 
@@ -51,8 +51,10 @@ def rounded_up(value: float, places: int) -> str:
 LEAST = 1e-4  # of a number, its least half-width: no model holds more digits
 
 
-def with_band(value: float, band: float) -> str:
+def with_band(value: float, band: float, low: float = -inf, high: float = inf) -> str:
     """Return a number with its half-width, of `LEAST` at least, both to the second digit of that.
+
+    Where the band of a number between ``low`` and ``high`` runs beyond them, its ends stand in its place.
 
     Examples
     --------
@@ -62,15 +64,21 @@ def with_band(value: float, band: float) -> str:
     ('54000 +- 22000', '(5.43 +- 0.12)e9')
     >>> with_band(11.0, 0.0074), with_band(11.0, 1e-9)
     ('11.0000 +- 0.0074', '11.0000 +- 0.0011')
+    >>> with_band(2.4, 39.0, 0.0, 100.0), with_band(-0.001, 0.5), with_band(1.2e-6, 3e-6, 0.0)
+    ('2 (0 to 42)', '0.00 +- 0.50', '(1.2 (0.0 to 4.2))e-6')
     """
     if band <= 0.0:
         return f"{value:.4g} +- 0"
     band = max(band, LEAST * abs(value))
     power = floor(log10(max(abs(value), band)))
     if not -5 < power < 6:
-        return f"({with_band(value / 10.0**power, band / 10.0**power)})e{power}"
+        return f"({with_band(*(one / 10.0**power for one in (value, band, low, high)))})e{power}"
     places = 1 - floor(log10(band))
-    return f"{round(value, places):.{max(0, places)}f} +- {rounded_up(band, places)}"
+    told = f"{round(value, places) + 0.0:.{max(0, places)}f}"  # no minus zero
+    if (low <= value - band and value + band <= high) or not low <= value <= high:
+        return f"{told} +- {rounded_up(band, places)}"
+    first = f"{round(max(low, value - band), places) + 0.0:.{max(0, places)}f}"
+    return f"{told} ({first} to {rounded_up(min(high, value + band), places)})"
 
 
 GREEK = {"gamma": "γ", "mu": "µ", "Omega": "Ω", "alpha": "α", "tau": "τ"}

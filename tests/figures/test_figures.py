@@ -192,7 +192,7 @@ def test_percent(fraction, text):
 
 @pytest.mark.parametrize(
     ("band", "text"),
-    [(0.0, "4.1 %"), (0.00027, "4.120 ± 0.027 %"), (0.006, "4.12 ± 0.60 %"), (0.2, "4 ± 20 %")],
+    [(0.0, "4.1 %"), (0.00027, "4.120 ± 0.027 %"), (0.006, "4.12 ± 0.60 %"), (0.2, "4 (0 to 25) %")],
 )
 def test_a_share_has_as_many_places_as_its_band(band, text):
     assert percent(0.0412, band) == text

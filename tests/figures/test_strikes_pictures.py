@@ -1,5 +1,6 @@
 """The path of a body with its strikes, and its energy after each."""
 
+from dataclasses import replace
 from math import cos, sin
 
 import numpy as np
@@ -11,6 +12,7 @@ from fem_impact.figures.strikes import FRAMES, SHOWN, accounts_picture, path_pic
 from fem_impact.options import RunOptions
 from fem_impact.outcome.strike_text import strikes_table, told
 from fem_impact.pages.run_page import run_page
+from fem_impact.pages.sheet import write_sheet
 from fem_impact.run.simulate import simulate
 from fem_impact.run.strikes import gravity_of
 from fem_impact.scene.shipped import load, replace_all
@@ -67,13 +69,24 @@ def test_both_are_drawn_still_and_live(strikes, tmp_path):
 
 def test_words_and_table_name_the_hardest_strike_and_the_other_end(strikes):
     text = " ".join(told(strikes))
-    assert f"by energy {strikes.hardest_energy}" in text
+    assert f"Hardest by energy: strike {strikes.hardest_energy}, " in text
     assert "The other end strikes" in text
     assert len(strikes_table(strikes).rows) == len(strikes.each)
 
 
-def test_the_page_of_a_run_shows_the_strikes(tmp_path):
+def test_the_hardest_strike_is_told_of_the_certain_ones_and_the_agreement_with_it(strikes):
+    certain = replace(strikes, certain=1, hardest_heat=2, hardest_energy=1, hardest_agree=41)
+    energy, heat = (one for one in told(certain) if one.startswith("Hardest"))
+    speed = f"{strikes.each[0].approach:.4g} m/s"
+    assert energy.startswith(f"Hardest by energy: strike 1, tip at {speed}: rigid motion from ")
+    assert energy.endswith(" J, the hardest in 41 of 64 sequences.")
+    assert "not certain (strike 2 of this path); of the certain ones strike 1, " in heat
+
+
+def test_the_pages_of_a_run_show_the_strikes(tmp_path):
     simulate(SCENE, "rigid", RunOptions(out=tmp_path))
+    sheet = write_sheet(tmp_path).read_text()
+    assert sheet.index("It rests.") < sheet.index("Hardest by energy: strike") < sheet.index("first impact")
     page = run_page(tmp_path)
     assert "From the first strike to rest" in page
     assert (tmp_path / "figures" / "path.svg").is_file()
