@@ -25,6 +25,10 @@ HOLLOW, TOUCH = " ", "o"
 SHADES = "#=+%"  # one segment after the other
 
 
+WITHIN = 9
+"""Heights within a row of a drawing in signs at which a wall is looked for."""
+
+
 def drawn(body: Body, touch: tuple[float, float], joints: Sequence[float] = ()) -> list[str]:
     """Return the lines of a drawing to scale, ``o`` where the projectile touches first, (x, z), m.
 
@@ -42,7 +46,13 @@ def drawn(body: Body, touch: tuple[float, float], joints: Sequence[float] = ()) 
     z = (np.arange(COLUMNS) + 0.5) / COLUMNS * body.length
     x = middle + width * np.linspace(-0.5, 0.5, rows) * (1 - 0.5 / rows)  # downwards
     X, Z = np.broadcast_arrays(x[:, None], z)
-    inside = body.within(X, Z) if isinstance(body, Faceted) else body.holds(np.abs(X), Z)
+    if isinstance(body, Faceted):
+        inside = body.within(X, Z)
+    else:
+        inside = body.holds(np.abs(X), Z)
+        if not inside[rows // 2, COLUMNS // 2]:  # hollow: a wall may lie between the middles of two rows
+            for within in np.linspace(-0.5, 0.5, WITHIN) * width / rows:
+                inside = inside | body.holds(np.abs(X + within), Z)
     sign = [SHADES[number % len(SHADES)] for number in np.searchsorted(joints, z)]
     cells = [[sign[k] if cell else HOLLOW for k, cell in enumerate(row)] for row in inside]
     row = int(np.argmin(np.abs(x - touch[0])))  # at an angle above 0 the lower side comes down first

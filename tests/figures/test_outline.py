@@ -113,3 +113,10 @@ def test_a_mesh_is_drawn_with_its_cells_and_its_materials(cli, tmp_path):
     assert "the mesh is taken as a half of a body that is symmetric about y = 0" in out
     # 40 cells in the plane of symmetry, and 8 facets of the tip with their mirror images
     assert picture.read_text().count("<path") > 56
+
+
+@pytest.mark.parametrize("bore", ["12 mm", "18.6 mm"])
+def test_walls_of_a_tube_are_drawn_however_thin(bore):
+    scene = replace(load("tube"), "projectile.inner_diameter", bore)
+    upper, axis, lower = in_words(scene.projectile.rigid_body, Case(scene).contact.touch_point)
+    assert upper.count("#") > 60 and not axis.strip() and lower.count("#") > 60
