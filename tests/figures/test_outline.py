@@ -115,7 +115,7 @@ def test_a_mesh_is_drawn_with_its_cells_and_its_materials(cli, tmp_path):
     assert picture.read_text().count("<path") > 56
 
 
-@pytest.mark.parametrize("bore", ["12 mm", "18.6 mm"])
+@pytest.mark.parametrize("bore", ["12 mm", "17.5 mm"])
 def test_walls_of_a_tube_are_drawn_however_thin(bore):
     scene = replace(load("tube"), "projectile.inner_diameter", bore)
     upper, axis, lower = in_words(scene.projectile.rigid_body, Case(scene).contact.touch_point)
