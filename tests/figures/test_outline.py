@@ -10,7 +10,7 @@ from fem_impact.case.case import Case
 from fem_impact.figures.outline import draw
 from fem_impact.figures.outline import drawn as in_words
 from fem_impact.figures.style import new_figure
-from fem_impact.scene.shipped import load, replace
+from fem_impact.scene.shipped import load, replace, replace_all
 from rigid import Turned
 
 
@@ -115,8 +115,8 @@ def test_a_mesh_is_drawn_with_its_cells_and_its_materials(cli, tmp_path):
     assert picture.read_text().count("<path") > 56
 
 
-@pytest.mark.parametrize("bore", ["12 mm", "17.5 mm"])
-def test_walls_of_a_tube_are_drawn_however_thin(bore):
-    scene = replace(load("tube"), "projectile.inner_diameter", bore)
+def test_walls_of_a_tube_are_drawn_however_thin():
+    sharp = {"projectile.tip": "plain", "projectile.tip_radius": "0 mm"}
+    scene = replace_all(load("tube"), sharp | {"projectile.inner_diameter": "17.5 mm"})
     upper, axis, lower = in_words(scene.projectile.rigid_body, Case(scene).contact.touch_point)
     assert upper.count("#") > 60 and not axis.strip() and lower.count("#") > 60
