@@ -25,7 +25,7 @@ HOLLOW, TOUCH = " ", "o"
 SHADES = "#=+%"  # one segment after the other
 
 
-WITHIN = 9
+WITHIN = 65
 """Heights within a row of a drawing in signs at which a wall is looked for."""
 
 
