@@ -40,8 +40,6 @@ BONDED_LAYERS = (
     "of the rigid fidelity) know the first layer alone"
 )
 TIPS = {("A", 0.007), ("B", 0.003)}
-
-
 SLOPE = (
     "No impact.slope is stated, so the rod's axis counts as vertical and the barrier slopes by {:.3g} "
     'degrees{}. On level ground state impact.slope = "0 deg".'
@@ -141,10 +139,10 @@ def _fall(scene: Scene) -> str:
     if abs(impact.beside) <= BESIDE or impact != scene.relative:
         return ""
     beside, angle = (math.degrees(a) for a in (abs(impact.beside), impact.angle))
-    return (
-        f"outside the measured range: the rod moves {beside:.2g} deg beside its axis, which no dropped "
-        f"rod does: v_n and v_t are those of another angle than {angle:.4g} deg"
-    )
+    why = f"which no dropped rod does: v_n and v_t are those of another angle than {angle:.4g} deg"
+    if impact.slope is not None and abs(impact.beside + impact.angle - impact.slope) <= BESIDE:
+        why = "as it falls straight down on the slope stated; the measured rods fell along theirs"
+    return f"outside the measured range: the body moves {beside:.2g} deg beside its axis, {why}"
 
 
 def _steels(scene: Scene) -> str:
@@ -170,9 +168,8 @@ def _barrier(scene: Scene) -> str:
 def _surface(scene: Scene, active: Collection[str]) -> str:
     known = library.surfaces().values()
     bare = replace(scene.surface, sliding_law=None)
-    if (
-        "friction" not in active or bare in known or scene.surface.state == "pair"
-    ):  # of which an input says more
+    told = bare in known or scene.surface.state == "pair"  # of which an input says more
+    if told or "friction" not in active:
         return ""
     f, source = scene.surface.friction, scene.surface.source
     return f"friction f = {f:g} is not the value of a shipped state of the surface ({source})"
@@ -229,15 +226,14 @@ def require_followed(scene: Scene) -> None:
             key="surface.sliding_law",
             remedy='Leave it out, or use until = "first".',
         )
-    if scene.barrier.mass is None:
-        return
-    raise SceneError(
-        "follows a body that comes back to a barrier which the first impact has set moving, and nothing is "
-        "known of what holds or stops that.",
-        key="impact.until",
-        value=scene.impact.until,
-        remedy='Leave out barrier.mass, so that the barrier stands, or use until = "first".',
-    )
+    if scene.barrier.mass is not None:
+        raise SceneError(
+            "follows a body that comes back to a barrier which the first impact has set moving, and nothing "
+            "is known of what holds or stops that.",
+            key="impact.until",
+            value=scene.impact.until,
+            remedy='Leave out barrier.mass, so that the barrier stands, or use until = "first".',
+        )
 
 
 def require_carried(scene: Scene, slots: ModelSpec) -> None:
@@ -372,8 +368,7 @@ def _angle(bodies: Bodies) -> str:
 
 def flat_part(bodies: Bodies) -> str:
     """Return what of the projectile lands flat."""
-    part = "flat face" if bodies.scene.impact.angle == 0 else "straight side"
-    return f"a {part} that lands all at once"
+    return f"a {'straight side' if bodies.scene.impact.angle else 'flat face'} that lands all at once"
 
 
 def not_reduced(bodies: Bodies) -> str:

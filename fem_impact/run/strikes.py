@@ -71,7 +71,6 @@ LOSSLESS = (
     "{} of the strikes lose nothing along the normal: the contact law knows no loss below its yield speed. "
     "The rattle lasts longer than a real one."
 )
-
 AGAIN = (
     "{} of the strikes not by finite elements land in the dent of an earlier one. They are computed as on an "
     "undented surface, which loses too much: a hardened dent gives nearly all back."
@@ -227,8 +226,7 @@ class Followed:
 
     def _restitution(self, strike: Approach) -> float:
         """Return the energetic restitution of a strike, and keep where its loss goes."""
-        loss = normal_loss(self.case, self._pair(strike))
-        self.losses[strike.state] = loss
+        self.losses[strike.state] = loss = normal_loss(self.case, self._pair(strike))
         return loss.e
 
     def _pair(self, strike: Approach) -> ContactPair:
@@ -251,15 +249,9 @@ class Followed:
         )
 
     def strikes(self, end: State, finish: Finish, vibration: float, damped: float) -> Strikes:
-        """Return all strikes of a body that ends so.
-
-        ``vibration`` and ``damped``, J, are what its modes still hold and have lost since the last strike.
-        """
-        each, case = tuple(self.each), self.case
-        sums = {
-            name: sum(getattr(one, name) for one in each)
-            for name in ("friction", "plastic", "damping", "other")
-        }
+        """Return all strikes; ``vibration``, J, is in the modes, ``damped``, J, lost since the last one."""
+        each, case, names = tuple(self.each), self.case, ("friction", "plastic", "damping", "other")
+        sums = {name: sum(getattr(one, name) for one in each) for name in names}
         sums["friction"] += self.heat
         sums["damping"] += damped
         left, E_0 = self.kinetic(end) + vibration, each[0].before

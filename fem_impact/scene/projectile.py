@@ -120,6 +120,13 @@ class ProjectileSpec:
         return named is not None and named.name == "ball" and not self.bore and not self.segments
 
     @property
+    def called(self) -> str:
+        """What it is, in a word: ball, disc, tube, rod, or body where its shape is its own."""
+        if self.is_ball or self.is_short:
+            return "ball" if self.is_ball else "disc"
+        return "body" if self.shape is not None else "tube" if self.bore else "rod"
+
+    @property
     def is_short(self) -> bool:
         """Return whether this is a body of revolution that is shorter than wide: it bends as a plate."""
         return self.own_mesh is None and self.length < self.diameter * (1 - 1e-9)

@@ -4,6 +4,7 @@ import json
 
 import pytest
 
+from fem_impact.answers.verdict.sentences import case_sentence
 from fem_impact.case.case import Case
 from fem_impact.outcome.limitation import texts
 from fem_impact.scene.shipped import load, replace_all
@@ -68,9 +69,24 @@ def test_the_outcome_keeps_the_doubt(cli):
     from fem_impact.run.simulate import simulate
 
     scene = replace_all(load("t5b"), {"impact.angle": "30 deg", "impact.v_n": "-1.5024 m/s"})
-    assert any(
-        "15 deg beside its axis" in s for s in texts(simulate(scene, "rigid").validity.limitations, "range")
+    told = " ".join(texts(simulate(scene, "rigid").validity.limitations, "range"))
+    assert "15 deg beside its axis, which no dropped rod does" in told
+
+
+def test_a_tilted_body_that_falls_straight_down_on_level_ground_is_a_drop():
+    changes = {"impact.slope": "0 deg", "impact.v_n": "-2 m/s", "impact.v_t": "0 m/s"}
+    told = " ".join(texts(Case.of(replace_all(load("t5b"), changes), "rigid").limitations, "range"))
+    assert "45 deg beside its axis, as it falls straight down" in told and BESIDE not in told
+
+
+def test_a_body_is_called_what_it_is():
+    plain = {"length": "80 mm", "diameter": "19 mm", "tip": "plain", "material": "rod-steel"}
+    tube, disc = (
+        replace_all(load("t5b"), {"projectile": plain | change})
+        for change in ({"inner_diameter": "10 mm"}, {"length": "5 mm"})
     )
+    assert [one.projectile.called for one in (load("t5b"), tube, disc)] == ["rod", "tube", "disc"]
+    assert "80 mm x 19 mm tube of rod-steel" in case_sentence(tube)
 
 
 @pytest.mark.parametrize("speed", ["-1e-300 m/s", "-1e-7 m/s", "0 m/s"])

@@ -43,6 +43,7 @@ UNCONFIRMED = (
 )
 Place = tuple[float, ...]
 """A place in the intervals, each from 0 to 1."""
+CELSIUS = 273.15  # K, of 0 degC
 
 
 @dataclass(frozen=True, slots=True)
@@ -265,6 +266,13 @@ def _together(answers: Sequence[Answer], missing: bool) -> Answer:
 
 
 def _in_unit(criterion: Criterion, number: float) -> str:
+    """Return a number in the unit of its criterion, a temperature in degC, too."""
+    celsius = f" = {plain(number - CELSIUS, 3)} degC" if criterion.dimension == "temperature" else ""
+    return f"{_apart(criterion, number)}{celsius}"
+
+
+def _apart(criterion: Criterion, number: float) -> str:
+    """Return the distance between two numbers of a criterion in its unit."""
     return f"{plain(number / criterion.per_unit, 3)} {criterion.unit}".rstrip()
 
 
@@ -290,7 +298,7 @@ def document(v: LimitVerdict, command: str) -> dict[str, Any]:
     box = [[f"Does {of.called} stay below {_in_unit(of, v.limit)}{where}?", f"{v.answer.upper()}."]]
     if bound is not None:
         at = ", ".join(f"{key} {value}" for key, value in v.worst.items())
-        size = "" if v.margin is None else _in_unit(of, abs(v.margin))
+        size = "" if v.margin is None else _apart(of, abs(v.margin))
         far = {
             "yes": f", at least {size} below the limit",
             "no": f", at least {size} above the limit",

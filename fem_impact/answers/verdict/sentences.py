@@ -173,10 +173,10 @@ def _heat(run: Outcome) -> str:
 
 
 def case_sentence(scene: Scene) -> str:
-    """Return the scene in one sentence: rod, material, barrier, impact."""
+    """Return the scene in one sentence: body, material, barrier, impact."""
     rod, impact = scene.projectile, scene.impact
     return (
-        f"{scene.id}: {1e3 * rod.length:g} mm x {1e3 * rod.diameter:g} mm rod of {_materials(rod)}, "
+        f"{scene.id}: {1e3 * rod.length:g} mm x {1e3 * rod.diameter:g} mm {rod.called} of {_materials(rod)}, "
         f"{_form(rod)}{rod.bored}, {scene.projectile.rigid_body.mass:.3g} kg, on {struck(scene.barrier)}, "
         f"{degrees(impact.angle):.4g} degrees, v_n {impact.v_n:.4g} and v_t {impact.v_t:.4g} m/s, f "
         f"{scene.surface.friction:g} ({scene.surface.state})."
