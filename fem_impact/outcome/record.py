@@ -38,8 +38,8 @@ from fem_impact.version import __version__
 PACKAGES = ("numpy", "scipy", "scikit-fem", "numba")
 ROUND_OFF = 1e-9
 """Size below which a number of a run, SI or a share of E_0, is told as 0."""
-SIGNED = "E_ln_", "E_lt_", "W_gravity_", "added_mass_", "residual_"
-"""How those shares of E_0 begin that may be below 0."""
+SIGNED = "E_ln_", "E_lt_", "W_gravity_"
+"""How those shares of E_0 with half-widths begin that may be below 0."""
 _version = cache(metadata.version)  # a file is read each time else
 
 

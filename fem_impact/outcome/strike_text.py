@@ -125,7 +125,10 @@ def _hardest(strikes: Strikes) -> list[str]:
     for name, number, size, what in kinds:
         if isinstance(number, Unknown):
             continue
-        first, same = "", f", the hardest in {agree} of 64 sequences" if name == "energy" and agree else ""
+        first, same = (
+            "",
+            f", the hardest in {agree} of 64 sequences" if name == "energy" and agree is not None else "",
+        )
         if certain is not None and number > certain:
             first, same = f" not certain (strike {number} of this path{same}); of the certain ones", ""
             number = 1 + max(range(certain), key=lambda at: size(each[at]))

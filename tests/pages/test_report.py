@@ -113,7 +113,7 @@ def test_film_is_embedded_when_there_is_one(run):
 
 
 def test_rigid_theory_stands_beside_the_numbers(run):
-    assert "rigid theory" not in read(write_report(run))[1]
+    assert "rigid theory:" not in read(write_report(run))[1]
     scene = load("t5b")
     result_maker.write_result(run, scene_digest=digest(scene), e_paper=0.33)
     (run / "scene.toml").write_text(to_toml(scene))
