@@ -245,17 +245,20 @@ def print_outcome(
         lines += [_line(ABOVE, plain(100 * above), "%")]
     lines += [_line("not accounted for", _share(outcome, RESIDUAL), "%")]
     lines += ["", _line(HEATING, outcome.told(SKIN, 100.0), "%", _changed(spread, SKIN, 100.0))]
-    # peak force and flash temperature, of those that are known
-    lines += [
-        _line(label, outcome.told(key), key.unit, _changed(spread, key))
+    # peak force and flash temperature, where they are known or withheld as e is
+    contact = {
+        label: key
         for label, key in (("peak force", PEAK), ("flash temperature", FLASH))
-        if not isinstance(key.of(outcome), Unknown)
+        if not isinstance(value := key.of(outcome), Unknown) or value == outcome.restitution.edge.e
+    }
+    lines += [
+        _line(label, outcome.told(key), key.unit, _changed(spread, key)) for label, key in contact.items()
     ]
     if or_none(outcome.energy.below_floor):
         floor = _value(outcome.energy.vibration_floor)
         lines += [f"  vibration is below its numerical floor (fraction {floor})"]
     lines += _accuracy_lines(outcome, target_of)
-    told = {**{label: KEY_TABLE[name] for label, name, _ in rows}, **listed, HEATING: SKIN}
+    told = {**{label: KEY_TABLE[name] for label, name, _ in rows}, **listed, HEATING: SKIN, **contact}
     if not isinstance(outcome.heat.power, Unknown):  # the heat was followed
         told["flash temperature"] = FLASH
     lines += _unknown_lines({label: key.of(outcome) for label, key in told.items()})

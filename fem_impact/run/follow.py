@@ -47,7 +47,9 @@ def _strikes_of(
 ) -> tuple[Strikes, tuple[Limitation, ...]]:
     """Return the strikes of a case, whose first impact has an ``outcome``, and what limits trust in them."""
     after = [outcome.motion.V_n, outcome.motion.V_t, outcome.motion.Omega]
-    lost = next((v.reason for v in after if isinstance(v, Unknown)), "")
+    # where a finished run has none, its contact is not resolved, which is told of the strike
+    ended = outcome.validity.finished
+    lost = "" if ended else next((v.reason for v in after if isinstance(v, Unknown)), "")
     course = _Course.of(case, end, options)
     if end is None or not lost:
         course.follow()

@@ -13,17 +13,17 @@ from fem_impact.outcome.record import Outcome
 
 if TYPE_CHECKING:
     from fem_impact.case.bodies import Bodies
-    from fem_impact.outcome.groups import ArmCoefficients, Energy
+    from fem_impact.outcome.groups import ArmCoefficients, BarrierMotion, Energy, RodMotion
     from fem_impact.solid.run import SolidResult
 
 
-T = TypeVar("T", "ArmCoefficients", "Energy")
+T = TypeVar("T", "ArmCoefficients", "BarrierMotion", "Energy", "Heat", "RodMotion")
 ARM_LENGTHS = ("d_c", "d_d")
 NOT_RESOLVED = "the contact was not resolved:"
 LOST = (
     0.02  # of E_0, at most lost in closing: the measured sets lose 0.0001 to 0.0006, drawn scenes up to 0.004
 )
-AFTER, AFTER_BARRIER = ("V_n", "V_t", "Omega"), ("V_bn", "V_bt")
+AFTER, AFTER_BARRIER = ("V_n", "V_t", "Omega"), ("V_bn", "V_bt", "Omega_b")
 LEDGER = ("E_0", "vibration_floor", "below_floor", "residual")  # valid without a resolved contact
 
 
@@ -57,13 +57,16 @@ def least_nodes(bodies: Bodies) -> int:
 
 
 def without(outcome: Outcome, reason: Unknown) -> Outcome:
-    """Return an outcome whose coefficients, impulse ratio, shares, peak force and heat are not known."""
-    arms = {name: _blank(getattr(outcome.restitution, name), reason, ARM_LENGTHS) for name in ARMS}
+    """Return an outcome that does not know what a contact gives which is not resolved.
+
+    These are the motion after the impact, coefficients, impulse ratio, shares, peak force and heat. Times and
+    impulses of contact stay, as a record of what the mesh did.
+    """
+    left = _without_after(outcome, reason)
     return replace(
-        outcome,
-        restitution=replace(outcome.restitution, mu=reason, **arms),
-        energy=_blank(outcome.energy, reason, LEDGER),
-        contact=replace(outcome.contact, peak_force=reason, readings=unknown(Readings, reason.reason)),
+        left,
+        energy=_blank(outcome.energy, reason, _others(outcome.energy, LEDGER)),
+        contact=replace(left.contact, peak_force=reason),
         heat=outcome.heat if isinstance(outcome.heat.power, Unknown) else unknown(Heat, reason.reason),
     )
 
@@ -75,27 +78,36 @@ def without_end(outcome: Outcome, why: str) -> Outcome:
     at the stop.
     """
     reason = Unknown(f"the run did not finish: {why}")
-    arms = {name: _blank(getattr(outcome.restitution, name), reason, ARM_LENGTHS) for name in ARMS}
-    barrier, heat = outcome.barrier, outcome.heat
-    after: dict[str, Any] = dict.fromkeys(AFTER, reason)
-    free: dict[str, Any] = {} if isinstance(barrier.mass, Unknown) else dict.fromkeys(AFTER_BARRIER, reason)
-    less = heat.less_vibration if isinstance(heat.less_vibration, Unknown) else reason
+    left = _without_after(outcome, reason)
     return replace(
-        outcome,
-        motion=replace(outcome.motion, **after),
-        barrier=replace(barrier, **free),
-        restitution=replace(outcome.restitution, mu=reason, mu_c=reason, **arms),
-        contact=replace(
-            outcome.contact,
-            markers=unknown(Markers, reason.reason),
-            readings=unknown(Readings, reason.reason),
-        ),
-        heat=replace(heat, less_vibration=less),
+        left,
+        restitution=replace(left.restitution, mu_c=reason),
+        heat=_blank(outcome.heat, reason, ("less_vibration",)),
     )
 
 
-def _blank(group: T, reason: Unknown, valid: tuple[str, ...]) -> T:
-    """Return a group of numbers with all but the ``valid`` ones unknown for a reason."""
-    names = [field.name for field in fields(group) if field.name not in valid]
+def _without_after(outcome: Outcome, reason: Unknown) -> Outcome:
+    """Return an outcome that knows neither the motion after the impact nor what follows from it."""
+    coefficients, barrier = outcome.restitution, outcome.barrier
+    of_arms = {name: getattr(coefficients, name) for name in ARMS}
+    arms = {name: _blank(arm, reason, _others(arm, ARM_LENGTHS)) for name, arm in of_arms.items()}
+    moved = () if isinstance(barrier.mass, Unknown) else AFTER_BARRIER
+    markers, readings = unknown(Markers, reason.reason), unknown(Readings, reason.reason)
+    return replace(
+        outcome,
+        motion=_blank(outcome.motion, reason, AFTER),
+        barrier=_blank(barrier, reason, moved),
+        restitution=replace(coefficients, mu=reason, **arms),
+        contact=replace(outcome.contact, markers=markers, readings=readings),
+    )
+
+
+def _others(group: ArmCoefficients | Energy, valid: tuple[str, ...]) -> tuple[str, ...]:
+    """Return the names of the numbers of a group but the ``valid`` ones."""
+    return tuple(field.name for field in fields(group) if field.name not in valid)
+
+
+def _blank(group: T, reason: Unknown, names: tuple[str, ...]) -> T:
+    """Return a group of numbers in which those of ``names`` that were known are unknown for a reason."""
     blank: dict[str, Any] = {n: reason for n in names if not isinstance(getattr(group, n), Unknown)}
     return replace(group, **blank)

@@ -69,7 +69,8 @@ def _work_above(zone: YieldingZone, nodes: Array) -> float:
     top, bottom = nodes.min(axis=1)[:, None], nodes.max(axis=1)[:, None]
     middle = 0.5 * (top + bottom)
     low = nodes @ SHAPES.T > middle
-    upper_end, height = np.where(low, middle, top), 0.5 * (bottom - top)
+    # a cell from face to face has nodes alike deep: it lies above or below as a whole
+    upper_end, height = np.where(low, middle, top), np.maximum(0.5 * (bottom - top), 1e-300)
     above = np.clip((DEPTH - upper_end) / height, 0.0, 1.0)
     strain, work = zone.spent()
     total = strain.sum(axis=1)

@@ -1,5 +1,6 @@
 """A contact that the mesh does not resolve: what is withheld, what is said beforehand, what stays."""
 
+import re
 from dataclasses import replace
 from math import cos, radians, sin
 
@@ -7,6 +8,7 @@ import pytest
 import solid_scenes as scenes
 
 from fem_impact.case.case import Case
+from fem_impact.cli.run import print_outcome
 from fem_impact.errors import SceneError
 from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.limitation import texts
@@ -40,10 +42,21 @@ def test_a_contact_narrower_than_an_element_has_no_coefficients_and_no_shares(re
     assert {f"{share}_over_E_0" for share in shares} <= withheld
     assert {"friction_power_W", "flash_rise_K", "flash_temperature_K", "flash_bound_K"} <= withheld
     assert {"mu", "e_edge", "e_m_edge", "e_impulse", "E_ln_edge_over_E_0", "peak_force_N"} <= withheld
+    after = {f"{m}{k}_per_s" for m in ("", "marker_") for k in ("V_n_m", "V_t_m", "Omega_rad")}
+    assert after <= withheld  # e follows from it
     assert outcome.energy.E_0 > 0 and outcome.energy.residual < 1e-4 and outcome.restitution.edge.d_c > 0
     assert any("the contact was not resolved" in words for words in texts(outcome.validity.limitations))
     assert Outcome.read(outcome.write(tmp_path / "outcome.json")) == outcome
     assert "e=not known, mu=not known" in repr(outcome)
+
+
+def test_a_run_prints_what_is_withheld_with_e(result, tmp_path, capsys):
+    print_outcome(reduce(result), tmp_path)
+    shown = capsys.readouterr().out
+    for label in ("V_n after", "Omega after", "peak force", "flash temperature"):
+        assert re.search(rf"^  {label} +not known$", shown, re.MULTILINE)
+    named = " ".join(shown.partition("not known (")[2].partition("): the contact was not")[0].split())
+    assert "V_n after" in named and named.endswith("peak force; flash temperature")
 
 
 def test_the_scene_may_ask_for_the_numbers_all_the_same(result):

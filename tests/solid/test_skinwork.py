@@ -9,6 +9,7 @@ import solid_scenes as scenes
 from fem_impact.run.simulate import simulate
 from fem_impact.run.solid import reduce
 from fem_impact.scene.shipped import load, replace_all
+from fem_impact.solid import fine_zone
 from fem_impact.solid.fine_zone import DEPTH, depths, skin_shares
 from fem_impact.solid.skin import below_outline
 
@@ -57,6 +58,13 @@ def test_work_above_the_depth_counts(height, strain, share):
     """Reference: the heights of cells and half cells over the depth, by hand."""
     found = skin_shares(_model(height, strain))
     assert (found["rod"], found["barrier"]) == (pytest.approx(share), pytest.approx(share))
+
+
+@pytest.mark.parametrize(("depth", "share"), [(0.0, 1.0), (2.0, 0.0)])
+def test_a_cell_from_face_to_face_lies_above_as_a_whole_or_below(depth, share, monkeypatch):
+    """All its nodes are alike deep, as those between the faces of a disc."""
+    monkeypatch.setattr(fine_zone, "depths", lambda model: np.full(96, depth * DEPTH))
+    assert skin_shares(_model(1.0, EVEN)) == {"rod": share, "barrier": share}
 
 
 def test_the_depth_in_a_round_nose_is_that_under_its_outline():

@@ -137,7 +137,7 @@ def level_limits(levels: Sequence[MeshRuns]) -> tuple[MeshNumbers, MeshNumbers]:
     `fem_impact.answers.refine.ringing`; that of the vibration energy is no less than its runs allow. Shares
     that flow and friction take have bands alike, see `SHARE`.
     """
-    if not levels[-1].resolved:
+    if levels and not levels[-1].resolved:
         return UNRESOLVED, UNRESOLVED
     if len(levels) < 2:
         return ALONE, ALONE

@@ -86,9 +86,10 @@ def by_levels(
     if found is not None:
         return found, [note], more
     nothing = "The last level of finite elements does not resolve the contact."
-    if levels.done[-1].stopped:
-        nothing = f"Finite elements have no answer here: {levels.done[-1].stopped}"
-    elif len(levels.done) < LEAST_LEVELS:
+    ends = [one.validity for one in levels.done[-1].outcomes if not one.validity.finished]
+    if ends:  # as it would on finer meshes: the rod's tail strikes, or it touches for too long
+        return None, [f"Finite elements have no answer here: {ends[0].stopped_because}"], {}
+    if len(levels.done) < LEAST_LEVELS:
         nothing = "One level of finite elements alone does not tell its error."
     return None, [note, nothing], more
 

@@ -172,10 +172,8 @@ def judge(
             bound, by = solids[worst], "finite elements"
             answer = _together([one.answer(limit) for one in solids.values()], mildest not in solids)
             if answer == "yes" and intervals:
-                low = max(
-                    (one.high - known[at].value for at, one in solids.items() if at in known), default=inf
-                )
-                kept = worst in known and known[worst].value + low <= limit and not why
+                low = [one.high - known[at].value for at, one in solids.items() if at in known]
+                kept = worst in known and known[worst].value + max(low) <= limit and not why
                 answer, notes = ("yes", [*notes, CONFIRMED]) if kept else ("undecided", notes)
     if bound is None and not steps:
         raise RunError(" ".join([*notes, why]))

@@ -84,7 +84,7 @@ def test_places_of_the_grid_widen_the_band_by_their_scatter():
 def test_one_level_alone_says_nothing_nor_do_two_whose_last_resolves_nothing():
     fine, coarse = MeshRuns(4e-4, [outcome()]), MeshRuns(8e-4, [outcome(tip_size_m=8e-4)])
     lost = MeshRuns(fine.size, fine.runs, resolved=False)
-    assert level_limits([fine]) == (ALONE, ALONE)
+    assert level_limits([fine]) == level_limits([]) == (ALONE, ALONE)
     assert level_limits([lost]) == level_limits([coarse, lost]) == (UNRESOLVED, UNRESOLVED)
     assert quantity_limits([coarse, lost]) == {}
 

@@ -335,6 +335,15 @@ def test_levels_without_an_answer_leave_what_the_reduced_model_says(monkeypatch)
     assert any("no answer here" in note and "the tail." in note for note in found.notes)
 
 
+def test_levels_of_which_none_comes_to_its_end_leave_it_undecided(monkeypatch):
+    """More levels end as they do, for which no budget is asked."""
+    meshed(monkeypatch, [None] * 9)
+    found = assess(load("t5b"), tolerance=0.02, budget_s=1e5)
+    assert (found.answer, found.more) == ("undecided", {})
+    assert found.notes == ("Finite elements have no answer here: the tail.",)
+    assert found.missing.startswith("an error below") and "no band yet" in found.steps[-1]
+
+
 def test_a_mesh_that_folds_leaves_what_the_reduced_model_says(monkeypatch):
     def folded(*_):
         raise SceneError("cannot be meshed: cell 7 is folded.", key="projectile")
