@@ -150,7 +150,8 @@ class Outcome:
             ends = (0.0, scale) if _within_one(key) else (-inf, inf)
             return with_band(scale * value, scale * band, *ends)
         if key.banded:
-            return plain(scale * value) if abs(value) >= ROUND_OFF else "0"
+            least = ROUND_OFF**3 if key.unit == "m3" else ROUND_OFF  # that of a length, cubed
+            return plain(scale * value) if abs(value) >= least else "0"
         return plain(scale * value, 4)
 
     def to_dict(self) -> dict[str, Any]:

@@ -316,3 +316,11 @@ def test_an_estimate_is_asked_for_by_the_name_of_its_key():
     assert run.estimate("mu") == run.estimate(KEY_TABLE["mu"])
     with pytest.raises(UsageError, match="Did you mean mu"):
         run.estimate("muu")
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "text"),
+    [("dent_volume_m3", 9.32e-11, "9.32e-11"), ("dent_depth_m", 1e-10, "0"), ("W_skin_over_E_0", 2e-10, "0")],
+)
+def test_round_off_is_told_as_none_and_a_small_volume_as_it_is(key, value, text):
+    assert altered(OUTCOME, **{key: value}).told(key) == text
