@@ -200,7 +200,7 @@ def metal(name, E, nu, rho, yields, ultimate):
 
 @pytest.mark.slow
 def test_the_step_follows_the_contact_of_a_thin_rod_too():
-    """On its wide contact the tip swings faster than its modes: steps for those missed 5e-3 of E_0."""
+    """On its wide contact the tip swings faster than its modes: steps for those miss 1.8e-4 of E_0."""
     changes = {
         "projectile.tip": "plain",
         "projectile.tip_radius": "0 mm",
@@ -213,12 +213,12 @@ def test_the_step_follows_the_contact_of_a_thin_rod_too():
         "surface.friction_low": 0.81,
         "surface.friction_high": 0.81,
         "surface.source": "chosen",
-        "impact.angle": "42.46 deg",
+        "impact.angle": "20 deg",
         "impact.v_n": "-18.35 m/s",
         "impact.v_t": "-16.79 m/s",
     }
     found = result_of(replace_all(load("t5b"), changes))
-    assert abs(found.residual) < 5e-5 * found.E_0
+    assert abs(found.residual) < 1e-5 * found.E_0
 
 
 def test_an_open_ledger_is_closed_by_smaller_steps(monkeypatch):
