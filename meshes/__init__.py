@@ -11,8 +11,8 @@ from meshes.block import (
     with_thin_skin,
     with_wide_edges,
 )
+from meshes.common import ClosedEndError, MeshError, MissingReaderError
 from meshes.cut import without_slices
-from meshes.errors import ClosedEndError, MeshError, MissingReaderError
 from meshes.faces import face_at
 from meshes.files import MeshFile, read, write
 from meshes.hexmesh import OUTER, SKIN, SYMMETRY, HexMesh, owners

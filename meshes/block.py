@@ -5,26 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from meshes.arrays import FloatArray, IntArray
-from meshes.errors import MeshError
-from meshes.hexmesh import OUTER, SKIN, SYMMETRY, HexMesh, from_cells
+from meshes.common import FloatArray, IntArray, MeshError
+from meshes.hexmesh import CORNERS, OUTER, SKIN, SYMMETRY, HexMesh, from_cells
 from meshes.quality import require_positive
 from meshes.refine import refine
-from meshes.topology import CORNERS
 from meshes.zone import Cloud, Zone
-
-__all__ = [
-    "block",
-    "box_cells",
-    "drawn_depths",
-    "drawn_to_ends",
-    "thin_skin_rise",
-    "with_columns_at",
-    "with_free_bottom",
-    "with_rows_at",
-    "with_thin_skin",
-    "with_wide_edges",
-]
 
 # Columns at the ends of a contact: how many times narrower they are, cells to each side of an end in which
 # all are, cells further on in which they widen, and cells beyond the ends over which others are stretched

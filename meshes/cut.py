@@ -5,10 +5,8 @@ from dataclasses import replace
 import numpy as np
 import scipy.sparse as sp
 
-from meshes.arrays import FloatArray
+from meshes.common import FloatArray
 from meshes.rod import RodMesh
-
-__all__ = ["without_slices"]
 
 
 def without_slices(rod: RodMesh, points: FloatArray) -> RodMesh:

@@ -4,16 +4,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from meshes.arrays import FloatArray
-from meshes.errors import ClosedEndError, MeshError
+from meshes.common import ClosedEndError, FloatArray, MeshError
+from meshes.hexmesh import EDGES
 from meshes.meridian import Meridian
 from meshes.nose import NoseMesh, inner_corner, lay_nose
 from meshes.quality import corner_jacobians
 from meshes.rod import nose_cells
 from meshes.section import Section, section
-from meshes.topology import EDGES
-
-__all__ = ["ShapeEnd", "end_of"]
 
 # The nose grid ends where the surface is steeper than this, rad from the radial direction; scaled sections
 # lean as the surface does

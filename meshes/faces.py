@@ -5,13 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshes.arrays import BoolArray, FloatArray, IntArray
+from meshes.common import BoolArray, FloatArray, IntArray
 from meshes.hexahedra import KINDS
-from meshes.hexmesh import SKIN, HexMesh, outer_faces
+from meshes.hexmesh import FACES, SKIN, HexMesh, outer_faces
 from meshes.reading.stored import StoredMesh
-from meshes.topology import FACES
-
-__all__ = ["FileFaces", "face_at", "file_faces", "filling", "lopsided", "named_faces"]
 
 APART = 0.3  # of a set: so much more of it may lie on one side of the plane of symmetry than on the other
 

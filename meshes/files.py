@@ -8,11 +8,9 @@ from uuid import uuid4
 import numpy as np
 import numpy.typing as npt
 
-from meshes.errors import MeshError
+from meshes.common import MeshError
 from meshes.hexmesh import HexMesh
 from meshes.reading.by_meshio import parsed
-
-__all__ = ["MeshFile", "read", "write"]
 
 Data = Mapping[str, npt.NDArray[np.generic]]
 

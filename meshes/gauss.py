@@ -2,11 +2,8 @@
 
 import numpy as np
 
-from meshes.arrays import FloatArray, IntArray
-from meshes.hexmesh import HexMesh
-from meshes.topology import CORNERS
-
-__all__ = ["GRADIENTS", "SHAPES", "jacobians", "jacobians_of"]
+from meshes.common import FloatArray, IntArray
+from meshes.hexmesh import CORNERS, HexMesh
 
 _SIGNS = 2.0 * CORNERS - 1.0
 _POINTS = _SIGNS / np.sqrt(3.0)

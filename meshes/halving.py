@@ -2,12 +2,9 @@
 
 import numpy as np
 
-from meshes.arrays import BoolArray, FloatArray, IntArray
-from meshes.errors import MeshError
+from meshes.common import BoolArray, FloatArray, IntArray, MeshError
+from meshes.hexmesh import CORNERS, EDGES
 from meshes.split import edge_keys
-from meshes.topology import CORNERS, EDGES
-
-__all__ = ["across", "halved_layer", "halved_tetrahedra", "straight"]
 
 # of the mean length of the edges at a node of tetrahedra: at least so far from the plane it is moved along y,
 # so that none of the cells that are cut is thin; by symmetry the surface there runs along y

@@ -8,14 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshes.arrays import BoolArray, FloatArray, IntArray
-from meshes.errors import MeshError
+from meshes.common import BoolArray, FloatArray, IntArray, MeshError
 from meshes.gauss import jacobians_of
+from meshes.hexmesh import CORNERS, FACES
 from meshes.reading.stored import counted
 from meshes.split import edge_keys
-from meshes.topology import CORNERS, FACES
-
-__all__ = ["Hexahedra", "as_hexahedra"]
 
 TURNED = [4, 5, 6, 7, 0, 1, 2, 3]  # the corners of a hexahedron that is inside out, put right
 

@@ -4,10 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshes.arrays import FloatArray, IntArray
+from meshes.common import FloatArray, IntArray
 from meshes.reading.stored import PointMass
-
-__all__ = ["LooseMass", "loose_masses"]
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,11 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshes.arrays import FloatArray
-from meshes.errors import MeshError
+from meshes.common import FloatArray, MeshError
 from meshes.surface import CORNER, closest_on
-
-__all__ = ["Meridian"]
 
 # A grid can turn from face to side where the line has turned by FIRST to LAST, rad, outside OFF_AXIS radii.
 FIRST, LAST = np.deg2rad([16.0, 64.0])

@@ -4,11 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from meshes.arrays import FloatArray
+from meshes.common import FloatArray
 from meshes.gauss import SHAPES, jacobians
 from meshes.hexmesh import HexMesh
-
-__all__ = ["CellMoments", "cell_moments"]
 
 
 class CellMoments(NamedTuple):

@@ -10,11 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshes.arrays import FloatArray
+from meshes.common import FloatArray
 from meshes.meridian import Meridian
 from meshes.section import Section
-
-__all__ = ["NoseMesh", "inner_corner", "lay_nose"]
 
 # Depth of C below the surface over the depth that gives an even layer, from the same scan as the section.
 DEPTH = 0.85

@@ -4,12 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshes.arrays import FloatArray, IntArray
-from meshes.errors import MeshError
+from meshes.common import FloatArray, IntArray, MeshError
 from meshes.gauss import SHAPES, jacobians_of
 from meshes.symmetry import NEAR
-
-__all__ = ["FOUND", "Tip", "is_oblique", "stood_up"]
 
 #: Where a tip points in a file: an axis of it, see `TIPS`, one of `FOUND`, or a direction.
 Tip = str | tuple[float, float, float]

@@ -2,10 +2,8 @@
 
 import numpy as np
 
-from meshes.arrays import FloatArray, IntArray
-from meshes.topology import CORNERS
-
-__all__ = ["in_order"]
+from meshes.common import FloatArray, IntArray
+from meshes.hexmesh import CORNERS
 
 QUANTUM = 1e-7  # of the largest extent: coordinates that differ by less count as equal
 BESIDE = 0.237  # of it, by which the steps are shifted, so that round numbers do not lie between two of them

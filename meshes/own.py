@@ -7,13 +7,12 @@ from pathlib import Path
 import numpy as np
 import scipy.sparse as sp
 
-from meshes.arrays import BoolArray, FloatArray, IntArray
-from meshes.errors import MeshError
+from meshes.common import BoolArray, FloatArray, IntArray, MeshError
 from meshes.faces import file_faces, filling, lopsided, named_faces
 from meshes.gauss import jacobians
 from meshes.halving import across, halved_tetrahedra, straight
 from meshes.hexahedra import as_hexahedra
-from meshes.hexmesh import SYMMETRY, HexMesh, face_keys, from_cells, half_body_tags
+from meshes.hexmesh import FACES, SYMMETRY, HexMesh, face_keys, from_cells, half_body_tags
 from meshes.masses import LooseMass, loose_masses
 from meshes.moments import cell_moments
 from meshes.oblique import Tip, is_oblique, stood_up
@@ -22,9 +21,6 @@ from meshes.quality import edge_lengths, scaled_jacobians
 from meshes.reading.read import stored_mesh
 from meshes.reading.stored import NODES, StoredMesh, counted
 from meshes.symmetry import NEAR, Part, half_of, place_text, size_text
-from meshes.topology import FACES
-
-__all__ = ["TIPS", "OwnBody", "Stated", "own_body", "read_own"]
 
 SAME = 1e-6  # of the shortest edge: nodes so near to each other are one place
 FARTHEST = 1e30  # of a coordinate, m: its powers that moments need are numbers

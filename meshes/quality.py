@@ -4,22 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshes.arrays import FloatArray, IntArray
-from meshes.errors import MeshError
+from meshes.common import FloatArray, IntArray, MeshError
 from meshes.gauss import jacobians
-from meshes.hexmesh import HexMesh
-from meshes.topology import CORNERS, EDGES
-
-__all__ = [
-    "Quality",
-    "aspects",
-    "edge_lengths",
-    "quality",
-    "require_positive",
-    "scaled_jacobians",
-    "thicknesses",
-    "volume",
-]
+from meshes.hexmesh import CORNERS, EDGES, HexMesh
 
 
 @dataclass(frozen=True, slots=True)

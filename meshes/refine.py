@@ -5,14 +5,10 @@ from collections.abc import Sequence
 import numpy as np
 import scipy.sparse as sp
 
-from meshes.arrays import BoolArray, FloatArray, IntArray
-from meshes.errors import MeshError
-from meshes.hexmesh import HexMesh, face_keys
+from meshes.common import BoolArray, FloatArray, IntArray, MeshError
+from meshes.hexmesh import EDGES, FACES, HexMesh, face_keys
 from meshes.split import Forest, Snap, edge_keys
-from meshes.topology import EDGES, FACES
 from meshes.zone import Cloud, Zone
-
-__all__ = ["reach", "refine"]
 
 
 def reach(size: FloatArray | float, level: int, finest: int, buffer: int = 2) -> FloatArray:

@@ -5,14 +5,11 @@ from math import ceil
 
 import numpy as np
 
-from meshes.arrays import BoolArray, FloatArray
-from meshes.errors import MeshError
+from meshes.common import BoolArray, FloatArray, MeshError
 from meshes.rims import without_roundings
 from meshes.section import Section, bored_section, section
 from meshes.shoulders import eased
 from meshes.surface import CORNER, Surface
-
-__all__ = ["SAME", "Revolved", "revolved"]
 
 SAME = 1e-9  # relative difference of radii and heights of slices that count as equal
 # Of a stack: most cells over the diameter that its thickness asks for; by how much the surface may stand out

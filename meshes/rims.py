@@ -2,10 +2,8 @@
 
 import numpy as np
 
-from meshes.arrays import FloatArray
+from meshes.common import FloatArray
 from meshes.surface import CORNER
-
-__all__ = ["without_roundings"]
 
 AXIAL = np.deg2rad(89.99)  # steeper than this from the radial direction, a rounding has come to the side
 LARGE = 1.5  # cells across a rounding from which on two chamfers follow it

@@ -5,8 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from meshes.arrays import FloatArray, IntArray
-from meshes.errors import MeshError
+from meshes.common import FloatArray, IntArray, MeshError
 from meshes.hexmesh import HexMesh, from_cells, half_body_tags
 from meshes.meridian import Meridian
 from meshes.nose import NoseMesh, inner_corner, lay_nose
@@ -15,8 +14,6 @@ from meshes.refine import reach, refine
 from meshes.section import Section, section
 from meshes.surface import Surface
 from meshes.zone import Cloud, Zone
-
-__all__ = ["RodMesh", "rod"]
 
 
 @dataclass(frozen=True, slots=True)

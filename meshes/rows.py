@@ -4,13 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from meshes.arrays import BoolArray, FloatArray, IntArray
 from meshes.block import drawn_depths
-from meshes.hexmesh import SKIN, HexMesh, face_keys, owners
+from meshes.common import BoolArray, FloatArray, IntArray
+from meshes.hexmesh import CORNERS, FACES, SKIN, HexMesh, face_keys, owners
 from meshes.quality import scaled_jacobians
-from meshes.topology import CORNERS, FACES
-
-__all__ = ["drawn_rows", "with_thin_rows"]
 
 DEEPEST = 8  # rows from the skin, over which those below the thin ones are stretched
 FADE = 2  # cells along the skin over which rows become thin

@@ -5,10 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from meshes.arrays import FloatArray, IntArray
-from meshes.errors import MeshError
-
-__all__ = ["Section", "bored_section", "core_and_rings", "section"]
+from meshes.common import FloatArray, IntArray, MeshError
 
 # Proportions with the longest stable step of nose and body together at 8 cells across, from a scan.
 CORE = 0.43

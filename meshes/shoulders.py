@@ -2,10 +2,8 @@
 
 import numpy as np
 
-from meshes.arrays import FloatArray
+from meshes.common import FloatArray
 from meshes.surface import CORNER
-
-__all__ = ["STEEPEST", "eased"]
 
 STEEPEST = np.tan(np.deg2rad(75.0))  # of the radius over z between two sections
 SPREAD = 0.5  # length of a cone over the step of the radius

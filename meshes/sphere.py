@@ -4,17 +4,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from meshes.arrays import FloatArray, IntArray
 from meshes.block import box_cells
-from meshes.errors import MeshError
-from meshes.hexmesh import HexMesh, from_cells, half_body_tags, outer_faces
+from meshes.common import FloatArray, IntArray, MeshError
+from meshes.hexmesh import FACES, HexMesh, from_cells, half_body_tags, outer_faces
 from meshes.quality import require_positive
 from meshes.refine import refine
 from meshes.section import core_and_rings
-from meshes.topology import FACES
 from meshes.zone import Cloud, Zone
-
-__all__ = ["pole_edge", "sphere"]
 
 # Half edge of the cube over the radius, and the weight of the ball in the bulged cube, from a scan.
 CORE = 0.45

@@ -6,11 +6,18 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from meshes.arrays import BoolArray, FloatArray, IntArray
-from meshes.hexmesh import SKIN, HexMesh, face_keys, match_faces
-from meshes.topology import CHILD_KEEPS_FACE, CHILDREN, EDGES, FACE_EDGES, FACES
-
-__all__ = ["Birth", "Forest", "KeyMap", "Snap", "edge_keys", "place"]
+from meshes.common import BoolArray, FloatArray, IntArray
+from meshes.hexmesh import (
+    CHILD_KEEPS_FACE,
+    CHILDREN,
+    EDGES,
+    FACE_EDGES,
+    FACES,
+    SKIN,
+    HexMesh,
+    face_keys,
+    match_faces,
+)
 
 #: Moves points (k, 3), m, onto the exact surface, each in the middle of its parents (k, c, 3), m.
 Snap = Callable[[FloatArray, FloatArray], FloatArray]

@@ -5,9 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from meshes.arrays import FloatArray
-
-__all__ = ["CORNER", "Surface", "closest_on"]
+from meshes.common import FloatArray
 
 # A turn of the polyline above this, rad, is an edge of the body, not a step of a smooth curve.
 CORNER = np.deg2rad(12.0)

@@ -4,14 +4,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from meshes.arrays import BoolArray, FloatArray, IntArray
-from meshes.errors import MeshError
+from meshes.common import BoolArray, FloatArray, IntArray, MeshError
 from meshes.gauss import SHAPES, jacobians_of
 from meshes.halving import halved_layer
-from meshes.hexmesh import outer_faces
-from meshes.topology import FACES
-
-__all__ = ["NEAR", "PARTS", "Part", "half_of", "place_text", "size_text"]
+from meshes.hexmesh import FACES, outer_faces
 
 PARTS = ("whole", "half", "quarter", "eighth")  # by the number of planes of symmetry in which it was cut
 NEAR = 1e-5  # of the largest diameter: nodes so near to a plane of symmetry lie on it

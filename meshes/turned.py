@@ -9,9 +9,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from meshes.arrays import BoolArray, FloatArray, IntArray
+from meshes.common import BoolArray, ClosedEndError, FloatArray, IntArray, MeshError
 from meshes.ends import ShapeEnd, end_of
-from meshes.errors import ClosedEndError, MeshError
 from meshes.hexmesh import HexMesh, from_cells, half_body_tags
 from meshes.quality import require_positive, scaled_jacobians
 from meshes.refine import reach, refine
@@ -20,8 +19,6 @@ from meshes.rod import RodMesh, nose_cells
 from meshes.shoulders import STEEPEST
 from meshes.surface import CORNER, Surface, closest_on
 from meshes.zone import Cloud, Zone
-
-__all__ = ["cells_across", "contact_radius", "turned"]
 
 WORST = 0.12  # least scaled Jacobian of a cell
 # A body of more than ROWS rows of cells as high as wide has higher ones behind what its contact may reach, up

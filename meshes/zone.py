@@ -4,10 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshes.arrays import FloatArray
-from meshes.errors import MeshError
-
-__all__ = ["Cloud", "Zone"]
+from meshes.common import FloatArray, MeshError
 
 
 @dataclass(frozen=True, slots=True)

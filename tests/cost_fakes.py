@@ -8,7 +8,7 @@ from outcome_maker import outcome
 
 from fem_impact.case.case import Case
 from fem_impact.case.record import Site
-from fem_impact.scene.write import digest
+from fem_impact.scene.types import digest
 
 LIMIT, ORDER = {"e_edge": 0.3, "mu": 0.5, "E_vib_over_E_0": 0.02}, 1.0
 SLOPE = {"e_edge": 0.03, "mu": -0.02, "E_vib_over_E_0": 0.002}  # at a tip of 0.4 mm

@@ -40,8 +40,7 @@ from fem_impact.options import FIDELITIES
 from fem_impact.outcome.record import KEY_TABLE, KEYS
 from fem_impact.progress import Notice, watched
 from fem_impact.scene.shipped import named
-from fem_impact.scene.types import Scene
-from fem_impact.scene.write import digest
+from fem_impact.scene.types import Scene, digest
 
 if TYPE_CHECKING:
     from fem_impact.progress import ProgressMeter

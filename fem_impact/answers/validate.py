@@ -26,8 +26,7 @@ from fem_impact.outcome.keys import Num, Unknown, known
 from fem_impact.progress import CaseProgress, silent, watched
 from fem_impact.run.tests import NUMBERS, tests_of
 from fem_impact.scene.shipped import bare, named, replace_all
-from fem_impact.scene.types import Scene
-from fem_impact.scene.write import to_dict
+from fem_impact.scene.types import Scene, to_dict
 from rigid.experiments import Statistic
 
 SAMPLES = 64  # of each of the two samples that Sobol's indices are made of

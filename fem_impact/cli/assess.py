@@ -7,8 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fem_impact.cli.options import Options, add_text, add_workers, stated_budget
-from fem_impact.cli.parser import CommandParser
+from fem_impact.cli.parser import CommandParser, Options, add_text, add_workers, stated_budget
 from fem_impact.cli.paths import checked_out
 from fem_impact.cli.scene_options import (
     ROD,
@@ -84,7 +83,7 @@ def assess(options: Options) -> int:
     scene = named_scene(options, SHORT) or _dropped_rod(options)
     if out is not None:
         from fem_impact.files.run_directory import refuse_other_scene
-        from fem_impact.scene.write import to_toml
+        from fem_impact.scene.types import to_toml
 
         refuse_other_scene(out / "scene.toml", to_toml(scene))
     try:

@@ -2,8 +2,7 @@
 
 from pathlib import Path
 
-from fem_impact.cli.options import Options
-from fem_impact.cli.parser import CommandParser
+from fem_impact.cli.parser import CommandParser, Options
 from fem_impact.cli.paths import checked_file
 from fem_impact.cli.terminal import print_answer
 

@@ -7,8 +7,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fem_impact.cli.options import Options
-from fem_impact.cli.parser import CommandParser
+from fem_impact.cli.parser import CommandParser, Options
 from fem_impact.cli.paths import shown_path
 from fem_impact.cli.scene_options import add_scene, changed_scene, say_kept
 from fem_impact.cli.statement import statement_of
@@ -17,8 +16,7 @@ from fem_impact.errors import UsageError
 from fem_impact.outcome.limitation import texts
 from fem_impact.progress import clock_text
 from fem_impact.scene.inputs import STATED, inputs
-from fem_impact.scene.types import Scene
-from fem_impact.scene.write import to_dict, to_toml
+from fem_impact.scene.types import Scene, to_dict, to_toml
 from fem_impact.tables.table import Table
 from fem_impact.tables.text import plain, wrapped
 

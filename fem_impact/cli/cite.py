@@ -1,7 +1,6 @@
 """The command ``cite``: what a paper that uses a run should cite, as BibTeX."""
 
-from fem_impact.cli.options import Options
-from fem_impact.cli.parser import CommandParser
+from fem_impact.cli.parser import CommandParser, Options
 from fem_impact.cli.scene_options import add_scene, changed_scene
 from fem_impact.cli.terminal import print_answer
 from fem_impact.options import FIDELITIES

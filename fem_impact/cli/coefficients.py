@@ -5,8 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fem_impact.cli.options import Options, add_text
-from fem_impact.cli.parser import CommandParser
+from fem_impact.cli.parser import CommandParser, Options, add_text
 from fem_impact.cli.scene_options import ROD, add_changes, add_rod, angle_of, named_scene, rod_of
 from fem_impact.cli.terminal import print_answer
 from fem_impact.errors import SceneError, UsageError

@@ -1,7 +1,6 @@
 """The command ``completion``: a script by which the shell completes the command line."""
 
-from fem_impact.cli.options import Options
-from fem_impact.cli.parser import CommandParser, build_parser
+from fem_impact.cli.parser import CommandParser, Options, build_parser
 from fem_impact.cli.terminal import print_answer
 from fem_impact.errors import MissingLibraryError
 

@@ -8,9 +8,8 @@ from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fem_impact.cli.options import Options, add_out, add_page, add_text, stated_budget
 from fem_impact.cli.page import asked_page, write_study_page
-from fem_impact.cli.parser import CommandParser
+from fem_impact.cli.parser import CommandParser, Options, add_out, add_page, add_text, stated_budget
 from fem_impact.cli.paths import checked_out
 from fem_impact.cli.scene_options import add_scene, changed_scene, command_line
 from fem_impact.cli.terminal import chosen_meter, print_answer

@@ -2,8 +2,7 @@
 
 from pathlib import Path
 
-from fem_impact.cli.options import Options, add_out
-from fem_impact.cli.parser import CommandParser
+from fem_impact.cli.parser import CommandParser, Options, add_out
 from fem_impact.cli.terminal import print_answer
 from fem_impact.tables.text import wrapped
 

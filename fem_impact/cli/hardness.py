@@ -7,8 +7,7 @@ from dataclasses import asdict
 from math import inf
 from typing import TYPE_CHECKING
 
-from fem_impact.cli.options import Options, add_text
-from fem_impact.cli.parser import CommandParser
+from fem_impact.cli.parser import CommandParser, Options, add_text
 from fem_impact.cli.scene_options import add_scene, changed_scene
 from fem_impact.cli.terminal import print_answer
 from fem_impact.errors import UsageError

@@ -10,8 +10,7 @@ import sys
 import threading
 from collections.abc import Callable, Sequence
 
-from fem_impact.cli.options import Options
-from fem_impact.cli.parser import build_parser, read_line
+from fem_impact.cli.parser import Options, build_parser, read_line
 from fem_impact.cli.terminal import print_json, printable_streams
 from fem_impact.errors import EXIT_CODES, FemImpactError, OutputPathError, RunError, UsageError, in_options
 from fem_impact.version import __version__

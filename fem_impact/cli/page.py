@@ -9,7 +9,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 import fem_impact
-from fem_impact.cli.options import Options
+from fem_impact.cli.parser import Options
 from fem_impact.cli.paths import checked_file
 from fem_impact.errors import OutputPathError, UsageError
 from fem_impact.files.atomic import read_text, write_text

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from fem_impact.cli.options import Options
+from fem_impact.cli.parser import Options
 from fem_impact.errors import OutputPathError, ResultError
 from fem_impact.files.run_directory import COMPUTED, earlier_runs, foreign_entry
 

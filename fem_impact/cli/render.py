@@ -4,8 +4,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from fem_impact.cli.options import Options
-from fem_impact.cli.parser import CommandParser
+from fem_impact.cli.parser import CommandParser, Options
 from fem_impact.cli.paths import checked_file, checked_result
 from fem_impact.cli.terminal import print_answer
 from fem_impact.errors import MissingLibraryError, ResultError, UsageError

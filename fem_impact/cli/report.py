@@ -3,8 +3,7 @@
 import sys
 from pathlib import Path
 
-from fem_impact.cli.options import Options, add_text
-from fem_impact.cli.parser import CommandParser
+from fem_impact.cli.parser import CommandParser, Options, add_text
 from fem_impact.cli.paths import checked_result
 from fem_impact.cli.terminal import print_answer
 from fem_impact.errors import MissingLibraryError, ResultError, UsageError

@@ -11,8 +11,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
-from fem_impact.cli.options import Options, add_out, add_text, stated_budget
-from fem_impact.cli.parser import CommandParser
+from fem_impact.cli.parser import CommandParser, Options, add_out, add_text, stated_budget
 from fem_impact.cli.paths import checked_out, shown_path, told_kept
 from fem_impact.cli.scene_options import add_scene, changed_scene, say_kept
 from fem_impact.cli.terminal import chosen_meter, headed, limitation_lines, print_table, size_text
@@ -26,8 +25,7 @@ from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.outcome.shares import ABOVE, ADDED, EnergyShare, above_modes, shares
 from fem_impact.progress import clock_text
 from fem_impact.scene.impact import FIRST
-from fem_impact.scene.types import OWN, Scene
-from fem_impact.scene.write import digest
+from fem_impact.scene.types import OWN, Scene, digest
 from fem_impact.tables.table import Table
 from fem_impact.tables.text import plain, with_band, wrapped
 

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fem_impact.cli.options import Options, add_text
+from fem_impact.cli.parser import Options, add_text
 from fem_impact.errors import SceneError, UsageError, did_you_mean
 
 if TYPE_CHECKING:

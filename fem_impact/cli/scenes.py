@@ -5,14 +5,13 @@ import sys
 from collections.abc import Iterator
 from typing import Any
 
-from fem_impact.cli.options import Options
-from fem_impact.cli.parser import CommandParser
+from fem_impact.cli.parser import CommandParser, Options
 from fem_impact.cli.terminal import print_json, print_table
 from fem_impact.options import FIDELITIES
 from fem_impact.plugins import listed
 from fem_impact.scene import library
 from fem_impact.scene.shipped import load
-from fem_impact.scene.write import digest
+from fem_impact.scene.types import digest
 from fem_impact.tables.table import Table
 from fem_impact.tables.text import wrapped
 

@@ -1,7 +1,6 @@
 """The command ``schema``: the JSON Schema of an outcome."""
 
-from fem_impact.cli.options import Options
-from fem_impact.cli.parser import CommandParser
+from fem_impact.cli.parser import CommandParser, Options
 from fem_impact.cli.terminal import print_json
 
 ABOUT = (

@@ -10,8 +10,7 @@ from fem_impact.errors import SceneError
 from fem_impact.scene.fields import DEFAULTS
 from fem_impact.scene.inputs import STATED, inputs, materials_of
 from fem_impact.scene.library import intervals_of
-from fem_impact.scene.types import Scene
-from fem_impact.scene.write import digest, to_dict
+from fem_impact.scene.types import Scene, digest, to_dict
 
 if TYPE_CHECKING:
     from fem_impact.case.bodies import Bodies

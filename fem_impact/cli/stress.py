@@ -2,8 +2,7 @@
 
 from pathlib import Path
 
-from fem_impact.cli.options import Options, add_out, add_page, add_text, add_workers
-from fem_impact.cli.parser import CommandParser
+from fem_impact.cli.parser import CommandParser, Options, add_out, add_page, add_text, add_workers
 from fem_impact.cli.paths import checked_out
 from fem_impact.cli.study import carry_out
 from fem_impact.errors import UsageError, did_you_mean

@@ -2,7 +2,7 @@
 
 import sys
 
-from fem_impact.cli.options import Options
+from fem_impact.cli.parser import Options
 from fem_impact.cli.terminal import print_table
 from fem_impact.outcome.keys import Unknown, or_none
 from fem_impact.outcome.record import Outcome

@@ -11,9 +11,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fem_impact.cli.options import Options, add_cluster, add_out, add_page, add_workers
 from fem_impact.cli.page import asked_page, write_study_page
-from fem_impact.cli.parser import CommandParser
+from fem_impact.cli.parser import CommandParser, Options, add_cluster, add_out, add_page, add_workers
 from fem_impact.cli.paths import checked_out, told_kept
 from fem_impact.cli.terminal import chosen_meter, print_answer, print_json, print_markdown, print_notes
 from fem_impact.errors import RunError, UsageError, did_you_mean

@@ -9,8 +9,7 @@ from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fem_impact.cli.options import Options, add_cluster, add_out, add_text, add_workers
-from fem_impact.cli.parser import CommandParser
+from fem_impact.cli.parser import CommandParser, Options, add_cluster, add_out, add_text, add_workers
 from fem_impact.cli.paths import checked_out, told_kept
 from fem_impact.cli.scene_options import add_scene, changed_scene, command_line, read_changes
 from fem_impact.cli.terminal import chosen_meter, print_json, print_markdown

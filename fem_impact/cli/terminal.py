@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from rich.progress import Progress as Bar
 
     from fem_impact.case.size import RunSize
-    from fem_impact.cli.options import Options
+    from fem_impact.cli.parser import Options
     from fem_impact.outcome.limitation import Limitation
     from fem_impact.tables.table import Table
 

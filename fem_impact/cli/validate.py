@@ -5,8 +5,7 @@ from __future__ import annotations
 from contextlib import closing
 from typing import TYPE_CHECKING, Any
 
-from fem_impact.cli.options import Options
-from fem_impact.cli.parser import CommandParser
+from fem_impact.cli.parser import CommandParser, Options
 from fem_impact.cli.scene_options import add_scene, add_uncertain, changed_scene, command_line
 from fem_impact.cli.terminal import chosen_meter, print_answer
 from fem_impact.errors import UsageError

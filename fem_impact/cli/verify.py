@@ -2,9 +2,8 @@
 
 import sys
 
-from fem_impact.cli.options import Options, add_page
 from fem_impact.cli.page import checked_page, write_page
-from fem_impact.cli.parser import CommandParser
+from fem_impact.cli.parser import CommandParser, Options, add_page
 from fem_impact.cli.terminal import print_json, print_table
 from fem_impact.errors import RunError, UsageError
 from fem_impact.evidence.problems.problem import PROBLEMS, Verification, page, problem

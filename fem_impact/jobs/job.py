@@ -15,8 +15,7 @@ from fem_impact.outcome.record import Outcome
 from fem_impact.progress import silent
 from fem_impact.run import simulate as run
 from fem_impact.run.program import source_digest
-from fem_impact.scene.types import Scene
-from fem_impact.scene.write import digest
+from fem_impact.scene.types import Scene, digest
 
 JobKind = tuple[str, float]
 GUESS = {"rigid": 1e-3, "modal": 0.05}

@@ -15,7 +15,6 @@ from fem_impact.files.atomic import make_directory, read_text, write_text
 from fem_impact.outcome.keys import Unknown, known
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.pages import html
-from fem_impact.pages.html import Markup
 from fem_impact.pages.sections import comparison_part
 from fem_impact.pages.study_page import StudyRecord, figure_id, findings_section, partition_part, read_study
 from fem_impact.scene.types import MEASURED_SETS
@@ -47,7 +46,7 @@ def verdicts(rows: Sequence[Outcome]) -> list[PaperVerdict]:
     return [part(rows) for part in (_closure, _moment, _critical, _heat)] if rows else []
 
 
-def verdict_section(judged: Sequence[PaperVerdict], figures: Path) -> Markup:
+def verdict_section(judged: Sequence[PaperVerdict], figures: Path) -> html.Markup:
     """Return the verdicts with their figures, drawn into a folder."""
     title = "What the paper concluded, what stands and what does not"
     shown = []
@@ -145,7 +144,7 @@ def _names(rows: Sequence[Outcome]) -> tuple[str, ...]:
     return tuple(row.provenance.scene_id for row in rows)
 
 
-def marker_section(rows: Sequence[Outcome]) -> Markup:
+def marker_section(rows: Sequence[Outcome]) -> html.Markup:
     """Return the table of velocities by momentum sums and by two camera markers on the computed flight."""
     shown: list[tuple[Cell, ...]] = [
         (row.provenance.scene_id, *(v for name in MARKED for v in _pair(row, name))) for row in _filmed(rows)
@@ -233,14 +232,14 @@ def write_all(results: Path, out: Path) -> Path:
     return write_text(out / "report.html", text)
 
 
-def _answer(study: StudyRecord) -> Markup:
+def _answer(study: StudyRecord) -> html.Markup:
     """Return the question of a study, its answer, which is its first finding, and the link to its part."""
     question, answer = QUESTIONS.get(study.study, study.title), "".join(study.findings[:1])
     link = f' <a href="#{escape(study.folder.name)}">more</a>'
-    return Markup(f"<strong>{markup(question)}</strong> {markup(answer)}{link}")
+    return html.Markup(f"<strong>{markup(question)}</strong> {markup(answer)}{link}")
 
 
-def _parts(study: StudyRecord, figures: Path) -> list[Markup]:
+def _parts(study: StudyRecord, figures: Path) -> list[html.Markup]:
     """Return the sections of a study; one with outcomes also gets the verdicts on the paper's conclusions."""
     if not study.rows:
         return [findings_section(study, study.title)]
@@ -254,14 +253,14 @@ def _parts(study: StudyRecord, figures: Path) -> list[Markup]:
     ]
 
 
-def _ledger_part(ledger: Table) -> Markup:
+def _ledger_part(ledger: Table) -> html.Markup:
     """Return the finite-element runs as a table, and all runs as a file inside the page."""
     at = ledger.names.index("fidelity")
     solid = [tuple(_short(str(cell)) for cell in row) for row in ledger.rows if row[at] == "solid"]
     counts = f"{len(ledger)} runs, {len(solid)} of them with finite elements: "
     link = html.data_link(ledger.csv().encode(), "ledger.csv", "ledger.csv")
     shown = html.table(Table(ledger.columns, tuple(solid)), compact=True)
-    return html.join([Markup(f"<p>{counts}{link}</p>"), html.details("Finite-element runs", shown)])
+    return html.join([html.Markup(f"<p>{counts}{link}</p>"), html.details("Finite-element runs", shown)])
 
 
 def _short(cell: str) -> str:
@@ -312,12 +311,12 @@ def conclusions(studies: Iterable[StudyRecord]) -> list[Conclusion]:
     return listed
 
 
-def conclusion_list(listed: Sequence[Conclusion]) -> Markup:
+def conclusion_list(listed: Sequence[Conclusion]) -> html.Markup:
     """Return the conclusions, each linked to its figure."""
     items = []
     for conclusion in listed:
         link = f' <a href="#{escape(conclusion.figure)}">figure</a>' if conclusion.figure else ""
-        items.append(Markup(markup(conclusion.sentence) + link))
+        items.append(html.Markup(markup(conclusion.sentence) + link))
     return html.bullets(items)
 
 

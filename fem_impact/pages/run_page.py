@@ -23,15 +23,13 @@ from fem_impact.outcome.keys import Key, Unknown, or_none
 from fem_impact.outcome.record import KEY_TABLE, KEYS, Outcome, utc_now
 from fem_impact.outcome.strike_text import spread_table, strikes_table, told
 from fem_impact.pages import html, sections
-from fem_impact.pages.html import Markup
 from fem_impact.physics.flash import ASSUMPTIONS
 from fem_impact.run.certain import other_end_curve
 from fem_impact.run.simulate import simulate
 from fem_impact.run.strikes import gravity_of
 from fem_impact.scene.inputs import inputs
 from fem_impact.scene.read import read_toml
-from fem_impact.scene.types import Scene
-from fem_impact.scene.write import to_toml
+from fem_impact.scene.types import Scene, to_toml
 from fem_impact.tables.table import DASH, Cell, Table, number
 from fem_impact.tables.text import markup
 from rigid.strikes import outline
@@ -39,15 +37,15 @@ from rigid.strikes import outline
 SIGNATURES = "Assessed by, date: ______________________    Checked by, date: ______________________"
 
 
-def verdict_box(lines: Sequence[Line], answer: str = "") -> Markup:
+def verdict_box(lines: Sequence[Line], answer: str = "") -> html.Markup:
     """Return titled sentences as the box that heads a page; ``answer`` gives its colour."""
     rows = "\n".join(
         f"<p><strong>{markup(title)}</strong> {markup(sentence)}</p>" for title, sentence in lines
     )
-    return Markup(f'<div class="verdict {escape(answer)}">\n{rows}\n</div>')
+    return html.Markup(f'<div class="verdict {escape(answer)}">\n{rows}\n</div>')
 
 
-def screening_box(scene: Scene, name: str) -> Markup:
+def screening_box(scene: Scene, name: str) -> html.Markup:
     """Return the box of a run that has no twin: the closed-form screening, and how to get the verdict.
 
     ``name`` is what the command takes: the id of a shipped scene, or the path of its file.
@@ -66,7 +64,7 @@ def write_verdict(scene: Scene, document: dict[str, Any], out: Path, picture: Pi
     make_directory(out)
     write_text(out / "scene.toml", to_toml(scene))
     write_text(out / "verdict.json", json.dumps(signed(document), indent=1, allow_nan=False) + "\n")
-    charted: tuple[Markup, ...] = ()
+    charted: tuple[html.Markup, ...] = ()
     if picture is not None:
         figures = make_directory(out / "figures")
         draw(picture, figures / f"{picture.name}.png")
@@ -74,10 +72,10 @@ def write_verdict(scene: Scene, document: dict[str, Any], out: Path, picture: Pi
     return write_text(out / "verdict.html", _verdict_page(scene, document, charted))
 
 
-def _verdict_page(scene: Scene, document: dict[str, Any], charted: Iterable[Markup]) -> str:
+def _verdict_page(scene: Scene, document: dict[str, Any], charted: Iterable[html.Markup]) -> str:
     """Return the page: verdict and what it rests on, chart, inputs with sources, what it does not cover."""
     basis = (
-        Markup(f"<strong>{markup(title)}</strong>: {markup(sentence)}")
+        html.Markup(f"<strong>{markup(title)}</strong>: {markup(sentence)}")
         for title, sentence in document["basis"]
     )
     following = [("Missing:", document["missing"]), ("Next step:", document["next_step"])]
@@ -87,7 +85,7 @@ def _verdict_page(scene: Scene, document: dict[str, Any], charted: Iterable[Mark
         *charted,
         html.section("Inputs and their sources", html.table(inputs(scene))),
         html.section("What the verdict does not cover", html.bullets(document["not_covered"])),
-        html.section("Statement of the scene", Markup(f"<pre>{escape(to_toml(scene))}</pre>")),
+        html.section("Statement of the scene", html.Markup(f"<pre>{escape(to_toml(scene))}</pre>")),
         html.section("Signatures", html.paragraph(SIGNATURES)),
         html.sources(Case(scene).active),
     )
@@ -161,11 +159,11 @@ def run_page(folder: Path) -> str:
     return html.page(origin.scene_title, f"Run · {origin.scene_id}", _lead(outcome), _footer(outcome), body)
 
 
-def _strikes(outcome: Outcome, scene: Scene | None, folder: Path) -> Markup:
+def _strikes(outcome: Outcome, scene: Scene | None, folder: Path) -> html.Markup:
     """Return the strikes of a body that is followed beyond its first impact, nothing of another run."""
     each = or_none(outcome.strikes.each)
     if not each or scene is None:
-        return Markup("")
+        return html.Markup("")
     g, vertical = gravity_of(scene), scene.impact.vertical
     shape, pull = outline(scene.projectile.rigid_body), (g * cos(vertical), g * sin(vertical))
     figures, spread = make_directory(folder / "figures"), or_none(outcome.strikes.spread)
@@ -180,7 +178,7 @@ def _strikes(outcome: Outcome, scene: Scene | None, folder: Path) -> Markup:
     )
 
 
-def _other_end(outcome: Outcome, scene: Scene, figures: Path) -> list[Markup]:
+def _other_end(outcome: Outcome, scene: Scene, figures: Path) -> list[html.Markup]:
     """Return the chart of the other end's speed over the inclination, nothing where it does not strike."""
     ratio = outcome.strikes.other_end
     if isinstance(ratio, Unknown):
@@ -206,21 +204,21 @@ def rigid_theory(outcome: Outcome, scene: Scene | None) -> Outcome | None:
         return None
 
 
-def _folded(outcome: Outcome, what: str, keys: Iterable[Key], rigid: Outcome | None) -> Markup:
+def _folded(outcome: Outcome, what: str, keys: Iterable[Key], rigid: Outcome | None) -> html.Markup:
     beside = " beside rigid theory" if rigid else ""
     return html.details(f"All {what}{beside}", sections.key_table(outcome, keys, rigid=rigid))
 
 
-def _heat(outcome: Outcome, rigid: Outcome | None) -> Markup:
+def _heat(outcome: Outcome, rigid: Outcome | None) -> html.Markup:
     """Return peaks, time above ignition and the bound with its assumptions; nothing where heat was off."""
     if isinstance(outcome.heat.power, Unknown):
-        return Markup("")
+        return html.Markup("")
     bound = html.paragraph("The bound for a safety case holds under these assumptions:")
     shown = html.join([sections.key_table(outcome, HEAT, rigid=rigid), bound, html.bullets(ASSUMPTIONS)])
     return html.details("Work, power and temperatures, and the bound for a safety case", shown)
 
 
-def _cards(outcome: Outcome, rigid: Outcome | None, friction: FrictionSpread | None) -> Markup:
+def _cards(outcome: Outcome, rigid: Outcome | None, friction: FrictionSpread | None) -> html.Markup:
     """Return numbers with their bands, or why they have none; what rigid theory predicts and f changes."""
     tests = outcome.restitution.tests_state_arms
     restitution = ("e, the tests' arms", "e_paper", "") if tests else ("e, the tip's arms", "e_edge", "")
@@ -247,7 +245,7 @@ def _cards(outcome: Outcome, rigid: Outcome | None, friction: FrictionSpread | N
     return html.join([all_cards, html.paragraph(said, "note")])
 
 
-def _vibration_card(outcome: Outcome, rigid: Outcome | None) -> Markup:
+def _vibration_card(outcome: Outcome, rigid: Outcome | None) -> html.Markup:
     energy = outcome.energy
     share, floor = outcome.told("E_vib_over_E_0", 100.0), or_none(energy.vibration_floor)
     notes = (
@@ -261,7 +259,7 @@ def _vibration_card(outcome: Outcome, rigid: Outcome | None) -> Markup:
     return sections.card("vibration, of E₀", value, note)
 
 
-def _arms(outcome: Outcome) -> Markup:
+def _arms(outcome: Outcome) -> html.Markup:
     head = ("arms", "d_c, mm", "d_d, mm", "e", "e_m", "E_ln / E₀", "E_lt / E₀")
     titles = {
         "paper": "of the measured tests",
@@ -277,11 +275,11 @@ def _arms(outcome: Outcome) -> Markup:
     return html.table(Table.of(head, rows))
 
 
-def _scene_text(folder: Path) -> Markup:
+def _scene_text(folder: Path) -> html.Markup:
     path = folder / "scene.toml"
     if not path.is_file():
-        return Markup("")
-    return html.details("The scene", Markup(f"<pre>{escape(read_text(path))}</pre>"))
+        return html.Markup("")
+    return html.details("The scene", html.Markup(f"<pre>{escape(read_text(path))}</pre>"))
 
 
 def _lead(outcome: Outcome) -> str:

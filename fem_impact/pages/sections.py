@@ -17,11 +17,9 @@ from fem_impact.outcome.keys import Key, Unknown, or_none
 from fem_impact.outcome.limitation import WRONG_NUMBERS, LimitationKind, texts
 from fem_impact.outcome.record import KEYS, Outcome
 from fem_impact.pages import html
-from fem_impact.pages.html import Markup
 from fem_impact.run.tests import tests_of
 from fem_impact.scene.read import read_toml
-from fem_impact.scene.types import OWN, Scene
-from fem_impact.scene.write import digest
+from fem_impact.scene.types import OWN, Scene, digest
 from fem_impact.tables.history import read_history
 from fem_impact.tables.table import DASH, Cell, Marked, Missing, Table, number
 from fem_impact.tables.text import markup, with_band
@@ -59,7 +57,7 @@ def _short_history(outcome: Outcome, folder: Path) -> list[str]:
     return [f"{cut}: it is not whole."] if last < end else []
 
 
-def notices(rows: list[Outcome], more: Sequence[str] = ()) -> Markup:
+def notices(rows: list[Outcome], more: Sequence[str] = ()) -> html.Markup:
     """Return a highlighted block of what `validity` does not list, heaviest first; nothing if it is empty."""
     warned = [one for kind in (*WRONG_NUMBERS, "input") for one in _sentences(rows, kind)]
     cut = [
@@ -68,15 +66,17 @@ def notices(rows: list[Outcome], more: Sequence[str] = ()) -> Markup:
         if not row.validity.finished
     ]
     listed = html.bullets([*more, *cut, *warned]).text
-    return Markup(f'<div class="notice"><strong>To keep in mind</strong>\n{listed}</div>' if listed else "")
+    return html.Markup(
+        f'<div class="notice"><strong>To keep in mind</strong>\n{listed}</div>' if listed else ""
+    )
 
 
-def validity(rows: Sequence[Outcome]) -> Markup:
+def validity(rows: Sequence[Outcome]) -> html.Markup:
     """Return the section on what the model leaves out and where scenes leave what was measured."""
     return html.section("Range of validity", html.bullets(_sentences(rows, "range", "model")))
 
 
-def history_figures(outcome: Outcome, folder: Path, again: bool = True) -> Markup:
+def history_figures(outcome: Outcome, folder: Path, again: bool = True) -> html.Markup:
     """Return ledger and contact force over time, or the sentence that says why they are missing.
 
     With ``again`` False, figures newer than history.csv are not drawn again.
@@ -94,11 +94,11 @@ def history_figures(outcome: Outcome, folder: Path, again: bool = True) -> Marku
     return html.join([html.section("Energy over time", ledger), html.section("Contact force", force)])
 
 
-def waves_section(folder: Path) -> Markup:
+def waves_section(folder: Path) -> html.Markup:
     """Return the strain along the axis over time, nothing where the run did not store it."""
     stored = folder / "waves.h5"
     if not stored.is_file():
-        return Markup("")
+        return html.Markup("")
     try:
         drawn = html.figure(waves_picture(read_waves(stored)), make_directory(folder / "figures"))
     except ResultError as error:
@@ -106,7 +106,7 @@ def waves_section(folder: Path) -> Markup:
     return html.section("Waves along the rod", drawn)
 
 
-def film_section(folder: Path) -> Markup:
+def film_section(folder: Path) -> html.Markup:
     """Return the film of the run, nothing when there is none."""
     shown = html.film(folder, "Waves in the rod; scales are written on the picture.")
     return html.section("Film of the waves", *([shown, html.paragraph(LENGTHS)] if shown.text else []))
@@ -119,7 +119,7 @@ def has_film(folder: Path) -> bool:
 
 def key_table(
     outcome: Outcome, keys: Iterable[Key], caption: str = "", rigid: Outcome | None = None
-) -> Markup:
+) -> html.Markup:
     """Return a table of meaning, value and unit of keys; of two meshes the limit and its band.
 
     Keys that are not known are left out: `unknown` lists them. With ``rigid``, what rigid theory predicts
@@ -139,16 +139,16 @@ def key_table(
     return html.table(Table.of(head, rows, left=(0, len(head) - 1)), caption)
 
 
-def card(name: str, value: str, note: str = "") -> Markup:
+def card(name: str, value: str, note: str = "") -> html.Markup:
     """Return a card that shows one number with its name and a note."""
     small = f'<div class="note">{markup(note)}</div>' if note else ""
     inner = f'<div class="name">{markup(name)}</div><div class="value">{escape(value)}</div>{small}'
-    return Markup(f'<div class="card">{inner}</div>')
+    return html.Markup(f'<div class="card">{inner}</div>')
 
 
-def cards(*shown: Markup) -> Markup:
+def cards(*shown: html.Markup) -> html.Markup:
     """Return cards side by side."""
-    return Markup(f'<div class="cards">{html.join(shown).text}</div>')
+    return html.Markup(f'<div class="cards">{html.join(shown).text}</div>')
 
 
 def estimated(outcome: Outcome, key: Key) -> str:
@@ -159,7 +159,7 @@ def estimated(outcome: Outcome, key: Key) -> str:
     return number(value) if isinstance(value, int) else html.signed(outcome.told(key))
 
 
-def contacts_table(outcome: Outcome) -> Markup:
+def contacts_table(outcome: Outcome) -> html.Markup:
     """Return the contact intervals with their impulses on the whole rod."""
     head = ("contact", "start, µs", "end, µs", "normal impulse, N s", "tangential, N s", "ratio")
     intervals = or_none(outcome.contact.intervals) or ()
@@ -171,7 +171,7 @@ def contacts_table(outcome: Outcome) -> Markup:
     return html.table(Table.of(head, rows), "Contact intervals, impulses on the whole rod.")
 
 
-def contact_places(outcome: Outcome) -> Markup:
+def contact_places(outcome: Outcome) -> html.Markup:
     """Return where the bodies touched, nothing where that is not known."""
     times, impulses = ("start, µs", "end, µs"), ("normal impulse, N s", "tangential, N s")
     head = ("place", *times, *impulses, "along t, mm", "width, mm", "depth, µm")
@@ -193,7 +193,7 @@ def contact_places(outcome: Outcome) -> Markup:
     return html.table(Table.of(head, rows), caption)
 
 
-def unknown(rows: Sequence[Outcome]) -> Markup:
+def unknown(rows: Sequence[Outcome]) -> html.Markup:
     """Return the table of keys that are not known, with reason and runs; one row a reason."""
     reasons: dict[str, dict[str, list[str]]] = {}
     for row in rows:
@@ -206,7 +206,7 @@ def unknown(rows: Sequence[Outcome]) -> Markup:
         lines.append(line[:columns])
     head = ("key", "why it is not known", "runs")[:columns]
     listed = html.details("Keys and reasons", html.table(Table.of(head, lines, left=range(columns))))
-    return html.section("What is not known", listed if lines else Markup(""))
+    return html.section("What is not known", listed if lines else html.Markup(""))
 
 
 def _sentences(rows: Sequence[Outcome], *kinds: LimitationKind) -> list[str]:
@@ -220,7 +220,7 @@ def _sentences(rows: Sequence[Outcome], *kinds: LimitationKind) -> list[str]:
     return [f"{sentence} ({_runs(runs, len(rows))})" for sentence, runs in ids.items()]
 
 
-def all_keys(outcome: Outcome) -> Markup:
+def all_keys(outcome: Outcome) -> html.Markup:
     """Return a folded table of every number, count, flag and text of the outcome."""
     plain = [key for key in KEYS if key.kind in ("number", "count", "flag", "text")]
     rows = [(f"`{key.name}`", known_cell(key.of(outcome)), key.unit, key.meaning) for key in plain]
@@ -246,7 +246,7 @@ def _runs(runs: Sequence[str], count: int) -> str:
 EFFECTS = ("effect", "in the model", "decided by", "number", "threshold", "run time")
 
 
-def effects_section(outcome: Outcome) -> Markup:
+def effects_section(outcome: Outcome) -> html.Markup:
     """Return the table of effects, nothing where a fidelity has none."""
     rows = [_row(choice) for choice in or_none(outcome.provenance.effect_choices) or ()]
     caption = (
@@ -255,7 +255,7 @@ def effects_section(outcome: Outcome) -> Markup:
     )
     shown = html.table(Table.of(EFFECTS, rows, left=range(3)), caption)
     folded = html.details("What the model has, and why", shown)
-    return html.section("Effects", folded if rows else Markup(""))
+    return html.section("Effects", folded if rows else html.Markup(""))
 
 
 def _row(choice: EffectChoice) -> list[Cell]:
@@ -272,14 +272,14 @@ def _row(choice: EffectChoice) -> list[Cell]:
 COMPARED = ("model", "measured", "95 % interval of the mean", "n", "verdict")
 
 
-def beside_tests(outcome: Outcome, scene: Scene | None, folder: Path) -> Markup:
+def beside_tests(outcome: Outcome, scene: Scene | None, folder: Path) -> html.Markup:
     """Return the section that sets a run beside the tests its scene names; nothing where it names none.
 
     Its figure and data are written to ``folder/figures``. A file of tests that cannot be read is reported.
     """
     title = "Beside the measured tests"
     if scene is None or scene.measured is None:
-        return Markup("")
+        return html.Markup("")
     try:
         tests = tests_of(scene)
     except (ResultError, OSError) as error:
@@ -302,16 +302,18 @@ def _titled(row: Mapping[str, Any]) -> str:
     return f"{row['quantity']}{unit}"
 
 
-def comparison_part(rows: Sequence[Mapping[str, Any]], folder: Path, since: Path | None = None) -> Markup:
+def comparison_part(
+    rows: Sequence[Mapping[str, Any]], folder: Path, since: Path | None = None
+) -> html.Markup:
     """Return the figure of model and measurement; one newer than the file ``since`` is not drawn again."""
     if all(row["measured_mean"] is None for row in rows):
-        return Markup("")
+        return html.Markup("")
     figures = make_directory(folder / "figures")
     drawn = html.figure(comparison_picture(rows), figures, since)
     return html.join([drawn, html.download(figures / "comparison.csv", "its data")])
 
 
-def comparison_tables(rows: Sequence[Mapping[str, Any]]) -> Markup:
+def comparison_tables(rows: Sequence[Mapping[str, Any]]) -> html.Markup:
     """Return a table a quantity that was measured: model, measurement, interval and verdict of each set."""
     quantities = dict.fromkeys(row["quantity"] for row in rows if row["measured_mean"] is not None)
     tables = []

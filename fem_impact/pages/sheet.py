@@ -17,11 +17,10 @@ from fem_impact.outcome.shares import shares
 from fem_impact.outcome.strike_text import SHOWN, strikes_table, told
 from fem_impact.pages import html
 from fem_impact.pages.drawing import draw_projectile
-from fem_impact.pages.html import Markup
 from fem_impact.pages.run_page import verdict_box
 from fem_impact.scene.inputs import inputs
 from fem_impact.scene.read import read_toml
-from fem_impact.scene.write import digest
+from fem_impact.scene.types import digest
 from fem_impact.tables.table import Table
 from fem_impact.tables.text import plain
 
@@ -113,7 +112,7 @@ def write_sheet(folder: Path, document: str = "", revision: str = "") -> Path:
         f"Film: {film or 'none'} in the folder of the run."
     )
     lead = f"Document {document or BLANK}  ·  revision {revision or BLANK}  ·  {origin.created_utc[:10]}"
-    inner = Markup(f'<div class="sheet">\n{html.join(body).text}\n</div>')
+    inner = html.Markup(f'<div class="sheet">\n{html.join(body).text}\n</div>')
     kind = f"Impact · {origin.scene_id}"
     return write_text(folder / SHEET, html.page(origin.scene_title, kind, lead, footer, [inner]))
 
@@ -134,10 +133,10 @@ def _verdict(folder: Path, case: Case) -> tuple[str, Sequence[Line]]:
     return criterion, [(title, sentence) for title, sentence in told["box"]]
 
 
-def _still(folder: Path) -> Markup:
+def _still(folder: Path) -> html.Markup:
     """Return the frame of the film at the greatest force, nothing where none can be drawn."""
     if not (folder / FIELDS).is_file():
-        return Markup("")
+        return html.Markup("")
     from fem_impact.films.film import context, render
     from fem_impact.films.movement import Span
 
@@ -146,7 +145,7 @@ def _still(folder: Path) -> Markup:
     try:
         still = render(folder, folder / "figures" / "still.png", Span(at, frames=1), size=(800, 560)).path
     except MissingLibraryError:
-        return Markup("")
+        return html.Markup("")
     return html.image(still / "frame_0000.png", "the body when the force is greatest")
 
 
@@ -157,11 +156,11 @@ def _listed(outcome: Outcome) -> list[tuple[str, Key, str]]:
     return [one for one in listed if not isinstance(one[1].of(outcome), Unknown)]
 
 
-def _followed(outcome: Outcome) -> Markup:
+def _followed(outcome: Outcome) -> html.Markup:
     """Return the end, the hardest and the certain strikes of a body that is followed, nothing of others."""
     strikes = outcome.strikes
     if isinstance(strikes.each, Unknown):
-        return Markup("")
+        return html.Markup("")
     return html.section(
         "From the first strike to the last",
         html.bullets(told(strikes)),
@@ -173,20 +172,20 @@ def _scale(unit: str) -> float:
     return 100.0 if unit == "%" else 1.0
 
 
-def _melted(outcome: Outcome) -> Markup:
+def _melted(outcome: Outcome) -> html.Markup:
     """Return why a flash temperature that was followed is not known, nothing where it is."""
     heat = outcome.heat
     if isinstance(heat.power, Unknown) or not isinstance(heat.temperature, Unknown):
-        return Markup("")
+        return html.Markup("")
     return html.paragraph(f"Flash temperature not known: {heat.temperature.reason}.")
 
 
-def _dent(outcome: Outcome) -> Markup:
+def _dent(outcome: Outcome) -> html.Markup:
     """Return how deep and wide the places of contact are, nothing where that is not known."""
     sites = or_none(outcome.contact.sites) or ()
     cell = or_none(outcome.cost.tip_size)
     if not sites or cell is None:
-        return Markup("")
+        return html.Markup("")
     depth, width = max(site.depth for site in sites), max(site.width for site in sites)
     dent = f"; the barrier is pressed in by at most {plain(1e6 * depth, 2)} µm" if depth else ""
     return html.paragraph(

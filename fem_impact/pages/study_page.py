@@ -17,7 +17,6 @@ from fem_impact.files.atomic import make_directory, read_signed, read_text
 from fem_impact.outcome.keys import or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.pages import html, sections
-from fem_impact.pages.html import Markup
 from fem_impact.tables.table import COMPARISON, Cell, Column, Table
 from fem_impact.tables.text import readable
 
@@ -140,7 +139,7 @@ def _validator() -> Callable[[Any], Any]:
     return validate
 
 
-def findings_section(study: StudyRecord, title: str = "", lead: Markup | None = None) -> Markup:
+def findings_section(study: StudyRecord, title: str = "", lead: html.Markup | None = None) -> html.Markup:
     """Return the answer, which is the first finding, and the first figure; all else folded, with its data.
 
     ``lead`` is the first figure where it is not one of the study's own.
@@ -166,12 +165,12 @@ def findings_section(study: StudyRecord, title: str = "", lead: Markup | None = 
         *(_sheet(sheet, study) for sheet in study.sheets if sheet["rows"]),
         _folded("More tables", *files),
         _folded("What it rests on", html.bullets(study.assumptions)),
-        Markup(f"<p>{escape(runs)} <code>{escape(study.command)}</code></p>"),
+        html.Markup(f"<p>{escape(runs)} <code>{escape(study.command)}</code></p>"),
         html.table(Table.of(("run", "why"), failed, left=(0, 1))),
     )
 
 
-def _folded(title: str, *content: Markup) -> Markup:
+def _folded(title: str, *content: html.Markup) -> html.Markup:
     """Return a folded block, nothing when it would be empty."""
     inner = html.join(content)
     return html.details(title, inner) if inner.text else inner
@@ -182,7 +181,7 @@ def figure_id(study: str, name: str) -> str:
     return f"{study}-{name}"
 
 
-def _sheet(sheet: Mapping[str, Any], study: StudyRecord) -> Markup:
+def _sheet(sheet: Mapping[str, Any], study: StudyRecord) -> html.Markup:
     columns, rows = sheet["columns"], sheet["rows"]
     texts = {at for at in range(len(columns)) if _holds_words([row[at] for row in rows])}
     named = Table(
@@ -228,15 +227,17 @@ def study_page(folder: Path, again: bool = True) -> str:
         html.section("Over time, run by run", *(_run(row, folder) for row in rows)),
         sections.unknown(rows),
         sections.validity(rows),
-        html.section("Cost", html.details("Time, memory and elements", _costs(rows)) if rows else Markup("")),
+        html.section(
+            "Cost", html.details("Time, memory and elements", _costs(rows)) if rows else html.Markup("")
+        ),
         html.sources([*study.sources, *(["film"] if filmed else [])]),
     )
     return html.page(study.title, "Study", "", _footer(study), body)
 
 
-def _cards(study: StudyRecord) -> Markup:
+def _cards(study: StudyRecord) -> html.Markup:
     if not study.rows:
-        return Markup("")
+        return html.Markup("")
     measured = [row for row in study.comparison if row["measured_mean"] is not None]
     inside = sum(sections.is_inside(row["verdict"]) for row in measured)
     residuals = [abs(row.energy.residual) for row in study.rows]
@@ -249,28 +250,28 @@ def _cards(study: StudyRecord) -> Markup:
     )
 
 
-def partition_part(study: StudyRecord, since: Path | None = None) -> Markup:
+def partition_part(study: StudyRecord, since: Path | None = None) -> html.Markup:
     """Return the figure of the shares of E_0; one newer than the file ``since`` is not drawn again."""
     if not study.rows:
-        return Markup("")
+        return html.Markup("")
     figures = make_directory(study.folder / "figures")
     drawn = html.figure(study_partition_picture(study.rows), figures, since)
     return html.join([drawn, html.download(figures / "partition.csv", "its data")])
 
 
-def _run(row: Outcome, folder: Path) -> Markup:
+def _run(row: Outcome, folder: Path) -> html.Markup:
     place = folder / row.provenance.scene_id
     if not (place / "history.csv").is_file():
-        return Markup("")
+        return html.Markup("")
     e, mu = (sections.estimated(row, KEY_TABLE[name]) for name in ("e_paper", "mu"))
     title = f"{row.provenance.scene_id}: {row.provenance.scene_title} (e = {e}, µ = {mu})"
     link = ""  # to the film: those of all runs would make this page too large
     if sections.has_film(place) and (place / "report.html").is_file():
         link = f'<p><a href="{escape(place.name)}/report.html">The film of its waves</a></p>'
-    return html.details(title, sections.history_figures(row, place, again=False), Markup(link))
+    return html.details(title, sections.history_figures(row, place, again=False), html.Markup(link))
 
 
-def _costs(rows: Sequence[Outcome]) -> Markup:
+def _costs(rows: Sequence[Outcome]) -> html.Markup:
     head = ("run", "tip, mm", "steps", "element-steps", "rod", "barrier", "wall, s", "memory, MB")
     lines: list[list[Cell]] = []
     for row in rows:

@@ -43,7 +43,7 @@ from fem_impact.run.common import (
 from fem_impact.run.resolution import without, without_end
 from fem_impact.run.unusual import unusual
 from fem_impact.scene.impact import FIRST
-from fem_impact.scene.write import digest
+from fem_impact.scene.types import digest
 
 NO_READINGS = unknown(
     Readings, "only finite elements follow the dent that stays and the strain along the projectile"

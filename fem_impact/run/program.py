@@ -10,7 +10,7 @@ from importlib.resources import files
 from typing import TYPE_CHECKING
 
 from fem_impact.plugins import providers
-from fem_impact.scene.write import digest
+from fem_impact.scene.types import digest
 
 if TYPE_CHECKING:
     from importlib.resources.abc import Traversable

@@ -101,7 +101,7 @@ def begin(scene: Scene, out: Path) -> None:
     """Move the files of an older run aside and write the scene; one that is of no run is not replaced."""
     from fem_impact.files.atomic import write_text
     from fem_impact.files.run_directory import refuse_other_scene, set_aside
-    from fem_impact.scene.write import to_toml
+    from fem_impact.scene.types import to_toml
 
     path, text = out / "scene.toml", to_toml(scene)
     if set_aside(out) is None:

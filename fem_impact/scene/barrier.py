@@ -7,7 +7,6 @@ from typing import get_args
 
 from fem_impact.errors import SceneError
 from fem_impact.scene import fields
-from fem_impact.scene.checks import check_choice, check_numbers
 from fem_impact.scene.material import Material
 
 
@@ -19,7 +18,7 @@ class Layer:
     material: Material
 
     def __post_init__(self) -> None:
-        check_numbers(self, fields.LAYER)
+        fields.check_numbers(self, fields.LAYER)
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,9 +49,9 @@ class Barrier:
     layers: tuple[Layer, ...] = ()
 
     def __post_init__(self) -> None:
-        check_choice(self.boundary, get_args(fields.Boundary), "boundary")
-        check_choice(self.support, get_args(fields.Support), "support")
-        check_numbers(self, fields.BARRIER)
+        fields.check_choice(self.boundary, get_args(fields.Boundary), "boundary")
+        fields.check_choice(self.support, get_args(fields.Support), "support")
+        fields.check_numbers(self, fields.BARRIER)
         _check_support(self)
         _check_turning(self)
         # refuse layers on a barrier that bends or is free to move

@@ -10,7 +10,6 @@ from typing import Any
 
 from fem_impact.errors import SceneError
 from fem_impact.scene import fields
-from fem_impact.scene.checks import check_numbers
 
 BESIDE = radians(2.0)  # rad between velocity and axis of a dropped rod at most; of the measured ones .017
 FIRST, REST = "first", "rest"
@@ -40,7 +39,7 @@ class Impact:
     until: str = FIRST
 
     def __post_init__(self) -> None:
-        check_numbers(self, (*fields.MOTION, fields.HEIGHT, fields.SPEED, fields.SLOPE))
+        fields.check_numbers(self, (*fields.MOTION, fields.HEIGHT, fields.SPEED, fields.SLOPE))
         # refuse another word than those that say how far a body is followed (SceneError)
         if not isinstance(self.until, str) or not (
             self.until in (FIRST, REST) or STRIKES.fullmatch(self.until)

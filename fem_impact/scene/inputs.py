@@ -5,8 +5,7 @@ from typing import Any
 
 from fem_impact.scene.library import CHANGED, materials, melting_of, source_of
 from fem_impact.scene.material import Material
-from fem_impact.scene.types import Scene
-from fem_impact.scene.write import material_table, to_dict
+from fem_impact.scene.types import Scene, material_table, to_dict
 from fem_impact.tables.table import Table
 
 STATED = "the scene, or its default"

@@ -7,7 +7,6 @@ from typing import ClassVar, Literal, get_args
 
 from fem_impact.errors import SceneError
 from fem_impact.scene import fields
-from fem_impact.scene.checks import check_choice, check_numbers, check_text
 from fem_impact.scene.family import FAMILIES
 from fem_impact.scene.sliding import SlidingLaw
 
@@ -36,7 +35,7 @@ class JohnsonCookFlow:
     heat_share: float | None = None
 
     def __post_init__(self) -> None:
-        check_numbers(self, fields.FLOWS[self.law])
+        fields.check_numbers(self, fields.FLOWS[self.law])
         missing = [key for key in THERMAL if getattr(self, key) is None]
         if missing and len(missing) < len(THERMAL):
             remedy = f"Give all of {', '.join(THERMAL)}, or none: temperature then has no effect."
@@ -54,7 +53,7 @@ class RambergOsgoodFlow:
     n: float
 
     def __post_init__(self) -> None:
-        check_numbers(self, fields.FLOWS[self.law])
+        fields.check_numbers(self, fields.FLOWS[self.law])
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,7 +110,7 @@ class JohnsonCookRate:
     tested: float
 
     def __post_init__(self) -> None:
-        check_numbers(self, fields.RATES[self.law])
+        fields.check_numbers(self, fields.RATES[self.law])
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,7 +122,7 @@ class CowperSymondsRate:
     q: float
 
     def __post_init__(self) -> None:
-        check_numbers(self, fields.RATES[self.law])
+        fields.check_numbers(self, fields.RATES[self.law])
 
 
 Rate = JohnsonCookRate | CowperSymondsRate
@@ -148,8 +147,8 @@ class SkinSpec:
     shape: fields.SkinShape = "even"
 
     def __post_init__(self) -> None:
-        check_numbers(self, fields.SKIN)
-        check_choice(self.shape, get_args(fields.SkinShape), "shape")
+        fields.check_numbers(self, fields.SKIN)
+        fields.check_choice(self.shape, get_args(fields.SkinShape), "shape")
         if self.depth is None and self.load is None:
             remedy = "Give it, or the load of the hardness test, from which the depth then follows."
             raise SceneError("is missing.", key="depth", remedy=remedy)
@@ -197,12 +196,12 @@ class Material:
     skin: SkinSpec | None = None
 
     def __post_init__(self) -> None:
-        check_text(self.name, "name", 60)
-        check_choice(self.law, get_args(fields.FlowLaw), "law")
-        check_choice(self.family, ("", *FAMILIES), "family")
+        fields.check_text(self.name, "name", 60)
+        fields.check_choice(self.law, get_args(fields.FlowLaw), "law")
+        fields.check_choice(self.family, ("", *FAMILIES), "family")
         # a material that never yields has no strengths
         absent = [key for key in ("yield_stress", "ultimate_stress") if getattr(self, key) == inf]
-        check_numbers(self, tuple(p for p in fields.MATERIAL if p.key not in absent))
+        fields.check_numbers(self, tuple(p for p in fields.MATERIAL if p.key not in absent))
         _check_strengths(self)
         _check_law(self)
 
@@ -316,9 +315,9 @@ class Surface:
     sliding_law: SlidingLaw | None = None
 
     def __post_init__(self) -> None:
-        check_choice(self.state, ("machined", "contaminated", "cleaned", "pair", "custom"), "state")
-        check_numbers(self, fields.SURFACE)
-        check_text(self.source, "source", 1000)
+        fields.check_choice(self.state, ("machined", "contaminated", "cleaned", "pair", "custom"), "state")
+        fields.check_numbers(self, fields.SURFACE)
+        fields.check_text(self.source, "source", 1000)
         if not self.friction_low <= self.friction <= self.friction_high:
             raise SceneError(
                 f"lies outside its own interval, {self.friction_low:g} to {self.friction_high:g}.",

@@ -5,7 +5,6 @@ from typing import Any
 
 from fem_impact.errors import SceneError
 from fem_impact.scene import fields
-from fem_impact.scene.checks import check_choice, check_text
 from fem_impact.scene.material import FLOWS, RATES, Flow, Material, Rate, SkinSpec, TableFlow
 from fem_impact.scene.tables import Table, check_keys, needed, numbers_of, values_of, within
 from fem_impact.scene.units import parse_number, parse_quantity
@@ -46,12 +45,12 @@ def _sources(table: Table, stated: list[str]) -> tuple[tuple[str, str], ...]:
     every = {key: table["source"] for key in stated if "source" in table and key not in ("name", *NO_VALUES)}
     found = every | dict(given)
     for text in found.values():
-        check_text(text, "source", 200)
+        fields.check_text(text, "source", 200)
     return tuple(sorted(found.items()))
 
 
 def _rate(table: Table) -> Rate:
-    law = check_choice(needed(table, "law"), tuple(RATES), "law")
+    law = fields.check_choice(needed(table, "law"), tuple(RATES), "law")
     return RATES[law](**numbers_of(table, fields.RATES[law], ("law",)))
 
 
@@ -60,7 +59,7 @@ def _skin(table: Table) -> SkinSpec:
 
 
 def _flow(table: Table) -> Flow:
-    law = check_choice(needed(table, "law"), tuple(FLOWS), "law")
+    law = fields.check_choice(needed(table, "law"), tuple(FLOWS), "law")
     if law != TableFlow.law:
         return FLOWS[law](**numbers_of(table, fields.FLOWS[law], ("law",)))
     check_keys(table, ("law", "points"))

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fem_impact.errors import MissingLibraryError, SceneError
-from fem_impact.scene.checks import check_choice, check_text
+from fem_impact.scene.fields import check_choice, check_text
 from fem_impact.scene.units import DIMENSIONS
 
 if TYPE_CHECKING:

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 
 from fem_impact.errors import SceneError
 from fem_impact.scene import fields, shapes
-from fem_impact.scene.checks import check_choice, check_numbers
 from fem_impact.scene.material import Material, Surface
 from fem_impact.scene.own_mesh import OwnMesh, cell_regions, face_regions, faceted_body
 
@@ -211,13 +210,13 @@ class ProjectileSpec:
         return _rigid_body(self)
 
     def __post_init__(self) -> None:
-        check_numbers(self, fields.PROJECTILE)
+        fields.check_numbers(self, fields.PROJECTILE)
         if self.shape is None:
             # the published tips need no import of the rigid package, which would slow every command
             if self.tip not in ("A", "B", "plain"):
                 from fem_impact.scene.tips import tips
 
-                check_choice(self.tip, tuple(tips()), "tip")
+                fields.check_choice(self.tip, tuple(tips()), "tip")
             if self.tip_radius > self.diameter / 2:
                 raise SceneError(
                     f"is larger than the rod's radius ({self.diameter * 500:.3g} mm).",

@@ -11,9 +11,7 @@ from typing import Any
 from fem_impact.errors import ResultError, SceneError, UsageError
 from fem_impact.scene import fields, library, own_mesh, shapes, types
 from fem_impact.scene.barrier import Barrier, Layer
-from fem_impact.scene.checks import check_names
 from fem_impact.scene.impact import WAYS, Impact, the_way
-from fem_impact.scene.library import read_material
 from fem_impact.scene.material import Material, Surface
 from fem_impact.scene.projectile import Face, ProjectileSpec, Region, Segment
 from fem_impact.scene.strikes import Following
@@ -120,7 +118,7 @@ def read_scene(data: Table) -> types.Scene:
     if not isinstance(data, Mapping):
         raise SceneError("a scene must be a table of tables.", value=data)
     check_keys(data, (*TOP, *PARTS))
-    effects = check_names(data.get("effects", "auto"), "effects")
+    effects = fields.check_names(data.get("effects", "auto"), "effects")
     # only a list of effects without friction needs no surface
     rubs = "friction" in effects or ("auto" in effects and "-friction" not in effects)
     restitution = parse_number(data["restitution"], "restitution") if "restitution" in data else None
@@ -204,7 +202,7 @@ def _projectile(table: Table) -> ProjectileSpec:
         check_keys(known, ("profile", "profile_smooth", "material"))
         points = shapes.stated_points(known["profile"], "profile")
         shape = shapes.Profile(points, known.get("profile_smooth", False))
-        return ProjectileSpec.turned(shape, within(known, "material", read_material), **own)
+        return ProjectileSpec.turned(shape, within(known, "material", library.read_material), **own)
     return _named_shape(known, own) if "shape" in known else _rod(known, own)
 
 
@@ -257,7 +255,7 @@ def _of_mesh(table: Table, own: dict[str, Any]) -> ProjectileSpec:
         raise SceneError("stands beside segments.", key="mesh_materials", remedy="State one of them.")
     regions = tuple(Region(name, _region(stated[name], name)) for name in stated)
     faces = within(table, "mesh_surfaces", _faces) if "mesh_surfaces" in table else ()
-    material = within(table, "material", read_material)
+    material = within(table, "material", library.read_material)
     return ProjectileSpec.meshed(mesh, material, own["segments"], regions, faces)
 
 
@@ -276,7 +274,7 @@ def _faces(table: Table) -> tuple[Face, ...]:
 
 def _region(material: Any, name: str) -> Material:
     try:
-        return within({"material": material}, "material", read_material)
+        return within({"material": material}, "material", library.read_material)
     except SceneError as error:
         raise error.under(f"mesh_materials.{name}") from None
 
@@ -287,7 +285,7 @@ def _named_shape(table: Table, own: dict[str, Any]) -> ProjectileSpec:
     shapes.refuse_tip(table)
     by_length = shapes.stated_by_length(name, table)
     sizes = numbers_of(table, shapes.sizes_of(name, by_length), ("shape", "material"))
-    material = within(table, "material", read_material)
+    material = within(table, "material", library.read_material)
     if name not in shapes.TIPS:
         return ProjectileSpec.turned(
             shapes.NamedShape(name, tuple(sizes.values()), by_length), material, **own
@@ -301,13 +299,13 @@ def _named_shape(table: Table, own: dict[str, Any]) -> ProjectileSpec:
 def _segment(table: Table) -> Segment:
     check_keys(table, ("to", "material"))
     end = parse_quantity(table["to"], "length", "to") if "to" in table else inf
-    return Segment(end, within(table, "material", read_material))
+    return Segment(end, within(table, "material", library.read_material))
 
 
 def _layer(table: Table) -> Layer:
     return Layer(
         **numbers_of(table, fields.LAYER, ("material",)),
-        material=within(table, "material", read_material),
+        material=within(table, "material", library.read_material),
     )
 
 
@@ -316,7 +314,9 @@ def _rod(table: Table, own: dict[str, Any]) -> ProjectileSpec:
     plain = {"tip_radius": 0.0} if table.get("tip") == "plain" else {}
     numbers = numbers_of(table, fields.PROJECTILE, ("tip", "material"), plain)
     tip = needed(table, "tip", '"A", "B" or "plain"')
-    return ProjectileSpec(tip=tip, material=within(table, "material", read_material), **numbers, **own)
+    return ProjectileSpec(
+        tip=tip, material=within(table, "material", library.read_material), **numbers, **own
+    )
 
 
 def _barrier(table: Table) -> Barrier:
@@ -324,7 +324,7 @@ def _barrier(table: Table) -> Barrier:
     if "layers" in table:
         example = '{thickness = "2 mm", material = "rod-steel"}'
         given["layers"] = listed(table["layers"], "layers", _layer, example)
-    return Barrier(within(table, "material", read_material), **given)
+    return Barrier(within(table, "material", library.read_material), **given)
 
 
 def _impact(table: Table) -> Impact:

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 from fem_impact.errors import ResultError, SceneError
 from fem_impact.scene import fields
-from fem_impact.scene.checks import check_choice
 from fem_impact.scene.parameter import Parameter
 from fem_impact.scene.units import DIMENSIONS, Unit, parse_quantity
 from fem_impact.scene.user_table import UserTable, in_si, read_user_table
@@ -43,14 +42,14 @@ NEEDS = {
 
 def sizes_of(shape: str, by_length: bool = False) -> tuple[Parameter, ...]:
     """Return the sizes that a named shape needs, with the length of the nose for its form or without."""
-    check_choice(shape, tuple(NEEDS), "shape")
+    fields.check_choice(shape, tuple(NEEDS), "shape")
     keys = (BY_LENGTH if by_length and key in REPLACED else key for key in NEEDS[shape])
     return tuple(next(size for size in SIZES if size.key == key) for key in keys)
 
 
 def stated_by_length(shape: str, stated: Collection[str]) -> bool:
     """Return whether the form of a nose is stated by its length; refuse both ways, or none (SceneError)."""
-    check_choice(shape, tuple(NEEDS), "shape")
+    fields.check_choice(shape, tuple(NEEDS), "shape")
     form = next((key for key in NEEDS[shape] if key in REPLACED), "")
     # a size counts by its key and by that with its SI unit
     names = {size.key: (size.key, size.si_key or size.key) for size in SIZES}

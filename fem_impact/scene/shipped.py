@@ -15,9 +15,8 @@ from fem_impact.scene.library import CHANGED, nearest_scene, shipped, stated
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.read import read_dict, read_scene, read_tables, read_toml
 from fem_impact.scene.shapes import BY_LENGTH, REPLACED, TIP
-from fem_impact.scene.types import OWN, Scene
+from fem_impact.scene.types import OWN, Scene, to_dict
 from fem_impact.scene.units import DIMENSIONS, parse_quantity
-from fem_impact.scene.write import to_dict
 
 
 def load(id_or_path: str | Path | Mapping[str, Any]) -> Scene:

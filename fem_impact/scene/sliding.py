@@ -9,8 +9,8 @@ from math import prod
 from typing import TYPE_CHECKING, Any, Self
 
 from fem_impact.errors import SceneError
-from fem_impact.scene.checks import check_text
 from fem_impact.scene.fields import SLIDING as AXES
+from fem_impact.scene.fields import check_text
 from fem_impact.scene.tables import Table, check_keys, needed
 from fem_impact.scene.units import parse_quantity
 

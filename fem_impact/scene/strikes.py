@@ -7,7 +7,6 @@ from itertools import pairwise
 from fem_impact.errors import SceneError
 from fem_impact.options import FIDELITIES
 from fem_impact.scene import fields
-from fem_impact.scene.checks import check_numbers
 
 Stage = tuple[str, int | None]
 """A model, and how many strikes it computes: None is all that follow."""
@@ -34,7 +33,7 @@ class Following:
     speed_error: float | None = None
 
     def __post_init__(self) -> None:
-        check_numbers(self, fields.STRIKES)
+        fields.check_numbers(self, fields.STRIKES)
         if not isinstance(self.fidelity, str) or (self.fidelity and not _holds(self.fidelity)):
             problem = "does not say which models compute the strikes."
             raise SceneError(problem, key="fidelity", value=self.fidelity, remedy=REMEDY)

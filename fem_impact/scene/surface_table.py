@@ -8,7 +8,6 @@ from itertools import product
 from fem_impact.errors import SceneError
 from fem_impact.scene import fields, library
 from fem_impact.scene.family import widening
-from fem_impact.scene.library import family_of, friction_pairs
 from fem_impact.scene.material import Material, Surface
 from fem_impact.scene.sliding import EXAMPLE, SlidingLaw, law_of
 from fem_impact.scene.tables import Table, check_keys, needed, numbers_of
@@ -82,8 +81,8 @@ def pair_surface(rod: Material, barrier: Material) -> Surface:
 
 def known_pair(rod: Material, barrier: Material) -> Surface | None:
     """Return the surface of a pair as `pair_surface` does, None where no table has it."""
-    table = {frozenset(pair["families"]): pair for pair in friction_pairs()}
-    first, second = (widening(family_of(metal)) for metal in (rod, barrier))
+    table = {frozenset(pair["families"]): pair for pair in library.friction_pairs()}
+    first, second = (widening(library.family_of(metal)) for metal in (rod, barrier))
     both = sorted(product(enumerate(first), enumerate(second)), key=lambda ones: ones[0][0] + ones[1][0])
     pair = next(
         (table[key] for (_, one), (_, other) in both if (key := frozenset((one, other))) in table), None

@@ -5,7 +5,7 @@ The time loop knows two lists of items, and observers. An effect that is off has
 
 from typing import ClassVar, Protocol
 
-from fem_impact.solid.state import State
+from fem_impact.solid.model import State
 
 
 class Item(Protocol):

@@ -4,8 +4,7 @@ from collections.abc import Sequence
 from typing import Protocol
 
 from fem_impact.fem.kernels import kernel
-from fem_impact.solid.model import Model
-from fem_impact.solid.state import State
+from fem_impact.solid.model import Model, State
 
 
 class Observer(Protocol):

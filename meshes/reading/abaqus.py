@@ -8,13 +8,10 @@ from pathlib import Path
 
 import numpy as np
 
-from meshes.arrays import FloatArray
-from meshes.errors import MeshError
+from meshes.common import FloatArray, MeshError
 from meshes.reading.abaqus_part import Part, count_of, place
 from meshes.reading.stored import Elements, PointMass, StoredMesh, keep
 from meshes.reading.text import lines_of, number_of, numbers_between, place_of, whole_number
-
-__all__ = ["abaqus"]
 
 # lines that make nodes and cells of others, or move them
 MAKERS = (

@@ -6,12 +6,9 @@ from math import nan
 
 import numpy as np
 
-from meshes.arrays import FloatArray
-from meshes.errors import MeshError
+from meshes.common import FloatArray, MeshError
 from meshes.reading.stored import NODES, Elements, PointMass
 from meshes.reading.text import number_of
-
-__all__ = ["Part", "count_of", "place"]
 
 # Nodes of a cell by the letters of its type: continuum elements C3D8, C3D8R, C3D8I, CSS8, heat DC3D8, ...
 VOLUME = ("C3D", "DC3D", "DCC3D", "AC3D", "Q3D", "CSS", "SC6", "SC8")

@@ -6,11 +6,9 @@ from dataclasses import dataclass, field
 from math import nan
 from pathlib import Path
 
-from meshes.errors import MeshError
+from meshes.common import MeshError
 from meshes.reading.stored import Elements, PointMass, StoredMesh, keep
 from meshes.reading.text import lines_of, number_of, numbers_between, place_of, whole_number
-
-__all__ = ["ansys"]
 
 # numbers of the types of elements that are solids; those of ten nodes; points of mass
 SOLIDS = {5, 45, 62, 64, 65, 69, 70, 90, 95, 96, 97, 117, 122, 128, 147, 162, 164, 185, 186, 190, 226, 231}

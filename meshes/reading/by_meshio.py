@@ -8,11 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from meshes.arrays import IntArray
-from meshes.errors import MeshError
+from meshes.common import IntArray, MeshError
 from meshes.reading.stored import NODES, Elements, StoredMesh, counted
-
-__all__ = ["WARNED", "as_stored", "by_meshio", "parsed"]
 
 VOXEL = (0, 1, 3, 2, 4, 5, 7, 6)  # corners of VTK's voxel in the order of a hexahedron
 FACES = ("triangle", "quad")

@@ -2,11 +2,9 @@
 
 from pathlib import Path
 
-from meshes.errors import MeshError
+from meshes.common import MeshError
 from meshes.reading.by_meshio import WARNED, as_stored, by_meshio
 from meshes.reading.stored import StoredMesh
-
-__all__ = ["ENDINGS", "by_vtk", "vtu"]
 
 SURFACES = (".stl", ".obj", ".ply")
 PIECES = (".vtk", ".vts", ".vtr", ".vti", ".pvtu", ".pvts", ".pvtr", ".vtm", ".vtkhdf")

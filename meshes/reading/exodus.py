@@ -6,11 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from meshes.arrays import IntArray
-from meshes.errors import MeshError
+from meshes.common import IntArray, MeshError
 from meshes.reading.stored import NODES, Elements, PointMass, StoredMesh, counted
-
-__all__ = ["exodus"]
 
 KEPT = ("coord", "connect", "eb_", "ss_", "ns_", "elem_ss", "side_ss", "node_ns")
 HDF5 = b"\x89HDF"

@@ -3,12 +3,10 @@
 from collections.abc import Iterator
 from pathlib import Path
 
-from meshes.errors import MeshError
+from meshes.common import MeshError
 from meshes.reading.gmsh_binary import sections_of
 from meshes.reading.stored import NODES, Elements, StoredMesh
 from meshes.reading.text import decoded
-
-__all__ = ["gmsh", "is_gmsh"]
 
 KINDS = {4: "tetra", 5: "hexahedron", 6: "wedge", 7: "pyramid", 11: "tetra10", 12: "hexahedron27"}
 KINDS |= {17: "hexahedron20", 18: "wedge15", 19: "pyramid13"}

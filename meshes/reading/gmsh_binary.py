@@ -7,10 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from meshes.errors import MeshError
+from meshes.common import MeshError
 from meshes.reading.text import decoded
-
-__all__ = ["sections_of"]
 
 # nodes of a cell by its type; volumes, surfaces, lines and points up to the second order
 NODES = {1: 2, 2: 3, 3: 4, 4: 4, 5: 8, 6: 6, 7: 5, 8: 3, 9: 6, 10: 9, 11: 10, 12: 27, 13: 18, 14: 14, 15: 1}

@@ -3,11 +3,9 @@
 import re
 from pathlib import Path
 
-from meshes.errors import MeshError
+from meshes.common import MeshError
 from meshes.reading.stored import Elements, PointMass, StoredMesh, keep
 from meshes.reading.text import lines_of, place_of, whole_number
-
-__all__ = ["kratos"]
 
 KINDS = {4: "tetra", 5: "pyramid", 6: "wedge", 8: "hexahedron", 10: "tetra10", 15: "wedge15"}
 KINDS |= {20: "hexahedron20", 27: "hexahedron27"}

@@ -4,11 +4,9 @@ from collections.abc import Iterator
 from math import nan
 from pathlib import Path
 
-from meshes.errors import MeshError
+from meshes.common import MeshError
 from meshes.reading.stored import Elements, PointMass, StoredMesh, part_names
 from meshes.reading.text import fixed_fields, lines_of, number_of, place_of, sections, whole_number
-
-__all__ = ["lsdyna"]
 
 REFUSED = {
     "INCLUDE_": "takes a part of the mesh from another file by *{0}, which is not read. Copy its lines into "

@@ -7,12 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from meshes.arrays import FloatArray
-from meshes.errors import MeshError
+from meshes.common import FloatArray, MeshError
 from meshes.reading.stored import Elements, PointMass, StoredMesh, keep
 from meshes.reading.text import lines_of, number_of, place_of, whole_number
-
-__all__ = ["nastran"]
 
 # kind of a cell by its card, and how many nodes of its kind with middles of edges, whose order is VTK's but
 # for the edges between the two ends, which come before those of the upper end

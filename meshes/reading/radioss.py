@@ -4,11 +4,9 @@ from collections.abc import Iterator
 from math import nan
 from pathlib import Path
 
-from meshes.errors import MeshError
+from meshes.common import MeshError
 from meshes.reading.stored import Elements, PointMass, StoredMesh, part_names
 from meshes.reading.text import fixed_fields, lines_of, number_of, place_of, sections, whole_number
-
-__all__ = ["radioss"]
 
 SOLIDS = {"BRICK": 8, "TETRA4": 4, "PENTA6": 6, "TETRA10": 10, "BRIC20": 20}
 KINDS = {8: "hexahedron", 4: "tetra", 6: "wedge", 10: "tetra10", 20: "hexahedron20"}

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from pathlib import Path
 
-from meshes.errors import MeshError, MissingReaderError
+from meshes.common import MeshError, MissingReaderError
 from meshes.reading.abaqus import abaqus
 from meshes.reading.ansys import ansys
 from meshes.reading.by_meshio import by_meshio
@@ -17,8 +17,6 @@ from meshes.reading.radioss import radioss
 from meshes.reading.stored import StoredMesh
 from meshes.reading.ucd import is_ucd, ucd
 from meshes.reading.universal import universal
-
-__all__ = ["stored_mesh"]
 
 Reader = Callable[[Path], StoredMesh]
 READERS: dict[str, Reader] = {

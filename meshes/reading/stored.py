@@ -7,19 +7,7 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 
-from meshes.arrays import BoolArray, FloatArray, IntArray
-from meshes.errors import MeshError
-
-__all__ = [
-    "NODES",
-    "Elements",
-    "PointMass",
-    "StoredMesh",
-    "Surfaces",
-    "counted",
-    "keep",
-    "part_names",
-]
+from meshes.common import BoolArray, FloatArray, IntArray, MeshError
 
 T = TypeVar("T")
 #: Nodes of each kind of volume cell; corners first, then the middles of edges, in VTK's order.

@@ -6,19 +6,7 @@ from itertools import accumulate, pairwise
 from math import inf
 from pathlib import Path
 
-from meshes.errors import MeshError
-
-__all__ = [
-    "decoded",
-    "fixed_fields",
-    "included",
-    "lines_of",
-    "number_of",
-    "numbers_between",
-    "place_of",
-    "sections",
-    "whole_number",
-]
+from meshes.common import MeshError
 
 # the line that takes another file, by the program; the names of the files follow
 LINES = {

@@ -2,11 +2,9 @@
 
 from pathlib import Path
 
-from meshes.errors import MeshError
+from meshes.common import MeshError
 from meshes.reading.stored import Elements, StoredMesh
 from meshes.reading.text import lines_of, place_of, whole_number
-
-__all__ = ["is_ucd", "ucd"]
 
 KINDS = {"hex": "hexahedron", "tet": "tetra", "prism": "wedge", "pyr": "pyramid"}
 

@@ -3,11 +3,9 @@
 from collections.abc import Iterator
 from pathlib import Path
 
-from meshes.errors import MeshError
+from meshes.common import MeshError
 from meshes.reading.stored import Elements, PointMass, StoredMesh, keep
 from meshes.reading.text import fixed_fields, lines_of, place_of
-
-__all__ = ["universal"]
 
 KINDS = {
     111: "tetra",

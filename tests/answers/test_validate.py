@@ -12,7 +12,7 @@ from fem_impact.run import tests as own_tests
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load, replace_all
-from fem_impact.scene.write import to_dict, to_toml
+from fem_impact.scene.types import to_dict, to_toml
 
 F = (0.2, 0.3)
 UNCERTAIN = {"surface.friction": F, "impact.v_n": ("-1.1 m/s", "-0.9 m/s")}

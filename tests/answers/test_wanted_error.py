@@ -7,8 +7,7 @@ from fem_impact.case.measured import summary
 from fem_impact.errors import SceneError
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load, replace
-from fem_impact.scene.types import MEASURED_SETS, Accuracy
-from fem_impact.scene.write import digest, to_dict
+from fem_impact.scene.types import MEASURED_SETS, Accuracy, digest, to_dict
 
 
 def asking(target):

@@ -7,7 +7,7 @@ from fem_impact.case.case import Case
 from fem_impact.case.cells import ADVISED, contact_radius, levels_of
 from fem_impact.case.zones import FEWEST, share_of
 from fem_impact.scene.shipped import load, replace_all
-from fem_impact.scene.write import digest
+from fem_impact.scene.types import digest
 
 
 def zones(name="t5b", **changes):

@@ -8,7 +8,7 @@ from fem_impact.cli.paths import shown_path
 from fem_impact.cli.scene_options import changed_scene
 from fem_impact.errors import SceneError
 from fem_impact.scene.shipped import load, replace
-from fem_impact.scene.write import to_toml
+from fem_impact.scene.types import to_toml
 
 
 def test_the_title_follows_every_change_of_the_impact():

@@ -8,7 +8,7 @@ from fem_impact.case.effects.registry import EFFECTS, NAMES
 from fem_impact.scene.library import materials, shipped
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load
-from fem_impact.scene.write import digest, to_toml
+from fem_impact.scene.types import digest, to_toml
 
 
 def test_scenes_lists_every_shipped_scene(cli):

@@ -13,7 +13,7 @@ from fem_impact.errors import OutputPathError
 from fem_impact.films.movement import Span
 from fem_impact.options import RunOptions
 from fem_impact.scene.shipped import load
-from fem_impact.scene.write import to_toml
+from fem_impact.scene.types import to_toml
 
 pytestmark = pytest.mark.usefixtures("unrendered")
 

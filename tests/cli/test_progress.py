@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import pytest
 
 import fem_impact
-from fem_impact.cli.options import Options
+from fem_impact.cli.parser import Options
 from fem_impact.cli.terminal import LiveMeter, chosen_meter
 from fem_impact.progress import (
     CaseProgress,

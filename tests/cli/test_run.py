@@ -12,7 +12,7 @@ from fem_impact.answers.report import Request
 from fem_impact.case.case import Case
 from fem_impact.errors import RunError
 from fem_impact.scene.shipped import load
-from fem_impact.scene.write import digest, to_toml
+from fem_impact.scene.types import digest, to_toml
 
 
 def test_run_passes_the_scene_and_prints_the_outcome(cli, stand):

@@ -8,7 +8,7 @@ from fem_impact.answers.verdict.sentences import case_sentence
 from fem_impact.case.case import Case
 from fem_impact.outcome.limitation import texts
 from fem_impact.scene.shipped import load, replace_all
-from fem_impact.scene.write import to_toml
+from fem_impact.scene.types import to_toml
 
 
 def test_check_tells_elements_memory_steps_and_time(cli):

@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from fem_impact.cli.options import Options
+from fem_impact.cli.parser import Options
 from fem_impact.cli.terminal import print_markdown
 
 PAGE = "# Title\n\n![a figure](figures/a.png)\n\n| key | value |\n|---|---|\n| e | 0.33 |\n"

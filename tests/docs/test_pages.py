@@ -13,7 +13,7 @@ from fem_impact.pages.bibliography import references
 from fem_impact.scene.library import surfaces
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load, replace_all
-from fem_impact.scene.write import to_dict
+from fem_impact.scene.types import to_dict
 
 QUICK = (
     "fem-impact --version",

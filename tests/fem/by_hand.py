@@ -4,7 +4,7 @@ import numpy as np
 
 from meshes import OUTER
 from meshes.gauss import GRADIENTS
-from meshes.topology import CORNERS
+from meshes.hexmesh import CORNERS
 
 POINTS = (2 * CORNERS - 1) / np.sqrt(3)  # in [-1, 1]^3, weights 1
 SHAPES = (1 + POINTS[:, None, :] * (2 * CORNERS - 1)).prod(axis=2) / 8  # (8, 8) of each corner at each point

@@ -13,7 +13,7 @@ import outcome_maker
 import pytest
 
 import fem_impact
-from fem_impact.cli.options import Options
+from fem_impact.cli.parser import Options
 from fem_impact.cli.run import print_outcome
 from fem_impact.cli.terminal import chosen_meter, printable_streams
 from fem_impact.errors import (

@@ -13,7 +13,7 @@ import fem_impact.run.simulate
 from fem_impact.errors import RunError
 from fem_impact.jobs.job import Job, compute
 from fem_impact.scene.shipped import load, replace_all
-from fem_impact.scene.write import digest
+from fem_impact.scene.types import digest
 
 LOG = "SCALE_TEST_LOG"
 

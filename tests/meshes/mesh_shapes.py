@@ -3,7 +3,7 @@
 import numpy as np
 
 import meshes
-from meshes.topology import FACES
+from meshes.hexmesh import FACES
 
 RADIUS = 9.5e-3
 

@@ -22,7 +22,7 @@ def bar(low=(-6.0, -6.0, 0.0), counts=(2, 2, 5)):
 def quads_of(points, cells):
     """Return the quadrilaterals (k, 4) of the end and of the side of a bar of hexahedra."""
     outer = meshes.hexmesh.outer_faces(cells)
-    quads = cells[outer[0][:, None], meshes.topology.FACES[outer[1]]]
+    quads = cells[outer[0][:, None], meshes.hexmesh.FACES[outer[1]]]
     bottom = (points[quads][:, :, 2] == 0.0).all(axis=1)
     side = (points[quads][:, :, 0] == 6.0).all(axis=1)
     return quads[bottom], quads[side]

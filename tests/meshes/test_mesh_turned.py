@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 import meshes
 import rigid
 from meshes import Zone
+from meshes.common import MeshError
 from meshes.ends import POOR
-from meshes.errors import MeshError
 from meshes.hexmesh import SKIN
 from meshes.quality import quality
 from meshes.section import bored_section

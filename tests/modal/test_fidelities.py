@@ -19,8 +19,7 @@ from fem_impact.run.common import NO_PUSH, barrier_motion, motion, restitution
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.read import read_dict, read_toml
 from fem_impact.scene.shipped import load, replace_all
-from fem_impact.scene.types import MEASURED_SETS
-from fem_impact.scene.write import digest, to_dict
+from fem_impact.scene.types import MEASURED_SETS, digest, to_dict
 from rigid import solve
 
 REDUCED = ("rigid", "modal")

@@ -19,7 +19,7 @@ from fem_impact.pages.study_page import draw_study, read_study
 from fem_impact.pages.write import write_report
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace
-from fem_impact.scene.write import digest, to_toml
+from fem_impact.scene.types import digest, to_toml
 from fem_impact.tables.table import Marked, Table, number
 
 pytestmark = pytest.mark.usefixtures("unrendered")

@@ -11,7 +11,7 @@ from fem_impact.errors import ResultError
 from fem_impact.files.atomic import signed
 from fem_impact.pages.sheet import write_sheet
 from fem_impact.scene.shipped import load, replace_all
-from fem_impact.scene.write import digest, to_toml
+from fem_impact.scene.types import digest, to_toml
 
 OWN = {"name": "bronze", "E": "110 GPa", "nu": 0.34, "rho": "8800 kg/m3", "sources": {"E": "sheet 12"}}
 

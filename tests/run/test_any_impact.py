@@ -97,7 +97,7 @@ def test_a_barrier_that_turns_is_mirrored_with_its_offset():
 
 
 def _barrier(turning):
-    from fem_impact.scene.write import to_dict
+    from fem_impact.scene.types import to_dict
 
     stated = to_dict(scene(ROD, 40))
     return {**stated, "barrier": {"material": "plate-steel", **turning}}
@@ -164,7 +164,7 @@ def test_a_rod_that_moves_along_the_barrier_is_refused(way):
 
 
 def _impact(table):
-    from fem_impact.scene.write import to_dict
+    from fem_impact.scene.types import to_dict
 
     return {**to_dict(scene(ROD, 40)), "impact": table}
 

@@ -20,7 +20,7 @@ from fem_impact.run.simulate import simulate
 from fem_impact.run.strikes import gravity_of
 from fem_impact.scene.read import read_dict, read_toml
 from fem_impact.scene.shipped import load, replace, replace_all
-from fem_impact.scene.write import to_dict, to_toml
+from fem_impact.scene.types import to_dict, to_toml
 from rigid import GRAVITY
 
 

@@ -13,7 +13,7 @@ from fem_impact.fem.body import MeshedBodies
 from fem_impact.physics.beam import bending_period, stretching_period
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.read import read_dict
-from fem_impact.scene.write import to_dict
+from fem_impact.scene.types import to_dict
 
 LENGTH, WIDTH = 0.2, 10e-3
 

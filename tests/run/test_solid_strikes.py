@@ -16,7 +16,7 @@ from fem_impact.run.solid_strikes import SolidCourse
 from fem_impact.run.strikes import Followed
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load, replace_all
-from fem_impact.scene.write import to_dict
+from fem_impact.scene.types import to_dict
 from fem_impact.solid.run import solve
 
 FALL = {

@@ -8,7 +8,7 @@ from fem_impact.case.case import Case
 from fem_impact.errors import SceneError
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.read import read_dict
-from fem_impact.scene.write import to_dict
+from fem_impact.scene.types import to_dict
 from fem_impact.solid.build import Builder
 
 GREASED = {"state": "custom", "friction": 0.1, "source": "greased"}

@@ -15,7 +15,7 @@ from fem_impact.scene.material import Material
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.read import read_dict, read_toml
 from fem_impact.scene.shipped import load, replace, replace_all
-from fem_impact.scene.write import to_dict, to_toml
+from fem_impact.scene.types import to_dict, to_toml
 
 ROD = {"length": "80 mm", "diameter": "19 mm", "tip": "B", "tip_radius": "3 mm", "material": "rod-steel"}
 NAN, INF = float("nan"), float("inf")

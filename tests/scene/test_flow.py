@@ -16,7 +16,7 @@ from fem_impact.scene.inputs import inputs
 from fem_impact.scene.material import JohnsonCookFlow, Material, RambergOsgoodFlow, TableFlow
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load, replace_all
-from fem_impact.scene.write import digest, to_dict, to_toml
+from fem_impact.scene.types import digest, to_dict, to_toml
 
 COPPER = {"name": "cu", "E": "117 GPa", "nu": 0.35, "rho": "8930 kg/m3", "heat_capacity": "385 J/(kg K)"}
 JC = {"law": "johnson-cook", "B": "292 MPa", "n": 0.31}

@@ -10,7 +10,7 @@ from fem_impact.outcome.limitation import texts
 from fem_impact.scene.impact import Impact
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load, replace, replace_all
-from fem_impact.scene.write import to_dict
+from fem_impact.scene.types import to_dict
 
 
 def stated(**impact):

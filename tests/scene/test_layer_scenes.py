@@ -9,7 +9,7 @@ from fem_impact.errors import SceneError
 from fem_impact.outcome.limitation import texts
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load
-from fem_impact.scene.write import digest, to_dict, to_toml
+from fem_impact.scene.types import digest, to_dict, to_toml
 
 PLATE = {"thickness": "2 mm", "material": "steel-4340"}
 

@@ -22,7 +22,7 @@ from fem_impact.scene.material import Material
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load, replace, replace_all
 from fem_impact.scene.surface_table import known_pair, pair_surface
-from fem_impact.scene.write import to_dict
+from fem_impact.scene.types import to_dict
 
 T5B = load("t5b")
 BESIDE = {"about", "aliases", "family", "intervals", "sources", "melting"}

@@ -17,7 +17,7 @@ from fem_impact.scene.library import family_of, intervals_of, materials
 from fem_impact.scene.material import CowperSymondsRate, JohnsonCookRate, Material
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load, replace, replace_all
-from fem_impact.scene.write import digest, to_dict, to_toml
+from fem_impact.scene.types import digest, to_dict, to_toml
 
 T5B = load("t5b")
 PLATE = T5B.barrier.material

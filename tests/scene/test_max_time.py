@@ -6,8 +6,7 @@ from fem_impact.case.case import Case
 from fem_impact.modal.impact import solve
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load, replace_all
-from fem_impact.scene.types import MEASURED_SETS
-from fem_impact.scene.write import to_dict
+from fem_impact.scene.types import MEASURED_SETS, to_dict
 
 TUNGSTEN = {
     "projectile.length": "1.2 m",

@@ -14,7 +14,7 @@ from fem_impact.physics.beam import bending_period, stretching_period
 from fem_impact.scene.impact import Impact
 from fem_impact.scene.own_mesh import OwnMesh
 from fem_impact.scene.read import read_dict, read_toml
-from fem_impact.scene.write import digest, to_dict, to_toml
+from fem_impact.scene.types import digest, to_dict, to_toml
 
 SCENE = """
 id = "own"

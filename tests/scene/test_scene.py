@@ -19,8 +19,7 @@ from fem_impact.scene.material import Material, Surface
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.read import read_dict, read_toml
 from fem_impact.scene.shipped import load, replace, replace_all
-from fem_impact.scene.types import Accuracy, Save, Scene
-from fem_impact.scene.write import digest, to_dict, to_toml
+from fem_impact.scene.types import Accuracy, Save, Scene, digest, to_dict, to_toml
 
 LINEAR = Material("linear", 206e9, 0.29, 7850.0, 300e6, 400e6, hardening=2e9)
 STEELS = st.sampled_from([*materials().values(), LINEAR])

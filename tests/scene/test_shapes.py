@@ -14,7 +14,7 @@ from fem_impact.errors import ResultError, SceneError
 from fem_impact.scene.read import read_dict, read_toml
 from fem_impact.scene.shapes import read_points
 from fem_impact.scene.shipped import replace
-from fem_impact.scene.write import digest, to_toml
+from fem_impact.scene.types import digest, to_toml
 
 OGIVE = {
     "shape": "ogive",

@@ -15,8 +15,7 @@ from fem_impact.scene.library import materials, shipped, surfaces
 from fem_impact.scene.read import read_dict, read_toml
 from fem_impact.scene.shipped import load, replace, replace_all
 from fem_impact.scene.strikes import Following
-from fem_impact.scene.types import MEASURED_SETS, Accuracy, Heating, Save
-from fem_impact.scene.write import to_dict
+from fem_impact.scene.types import MEASURED_SETS, Accuracy, Heating, Save, to_dict
 from rigid.experiments import measured_set, set_ids
 
 SECOND = {f"{name}-tip-a": name for name in ("t3-machined", "t3-contaminated", "t3-cleaned")}

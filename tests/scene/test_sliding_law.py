@@ -8,7 +8,7 @@ from fem_impact.scene.inputs import inputs
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load, replace, replace_all
 from fem_impact.scene.sliding import SlidingLaw
-from fem_impact.scene.write import digest, to_dict
+from fem_impact.scene.types import digest, to_dict
 
 TABLE = {
     "speed": ["0 m/s", "1 m/s", "4 m/s"],

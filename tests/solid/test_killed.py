@@ -14,7 +14,7 @@ from fem_impact.files.fields import read_fields
 from fem_impact.files.run_directory import CHECKPOINT
 from fem_impact.outcome.record import Outcome
 from fem_impact.scene.shipped import load, replace_all
-from fem_impact.scene.write import to_toml
+from fem_impact.scene.types import to_toml
 from fem_impact.tables.table import read_csv
 
 SCENE = replace_all(

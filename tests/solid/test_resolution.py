@@ -21,8 +21,7 @@ from fem_impact.scene.material import Material
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load
-from fem_impact.scene.types import MEASURED_SETS
-from fem_impact.scene.write import digest, to_dict
+from fem_impact.scene.types import MEASURED_SETS, digest, to_dict
 from fem_impact.solid.run import solve
 
 

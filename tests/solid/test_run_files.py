@@ -14,7 +14,7 @@ from fem_impact.outcome.limitation import texts
 from fem_impact.outcome.record import Outcome
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace_all
-from fem_impact.scene.write import digest
+from fem_impact.scene.types import digest
 from fem_impact.solid.rodview import centre_gradients, elastic_stress, mises
 from fem_impact.tables.history import HISTORY
 from fem_impact.tables.table import read_csv

@@ -22,8 +22,7 @@ from fem_impact.jobs.store import STORE, Store
 from fem_impact.outcome.record import Outcome, installed_versions, utc_now
 from fem_impact.progress import ProgressMeter
 from fem_impact.scene.shipped import replace_all
-from fem_impact.scene.types import Scene
-from fem_impact.scene.write import to_dict
+from fem_impact.scene.types import Scene, to_dict
 
 SCHEMA = "fem-impact/cost/6"
 FINER = 1  # levels beyond those of the default run

@@ -37,8 +37,7 @@ from fem_impact.outcome.strikes import Strikes
 from fem_impact.progress import Notice
 from fem_impact.run.simulate import begin
 from fem_impact.scene.impact import FIRST
-from fem_impact.scene.types import Scene
-from fem_impact.scene.write import digest, to_toml
+from fem_impact.scene.types import Scene, digest, to_toml
 from fem_impact.tables.text import plain
 
 # shifts of a meshed barrier's grid along t, in cells at the contact, at which a level runs: one or both

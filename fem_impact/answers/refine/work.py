@@ -12,8 +12,7 @@ from fem_impact.errors import ResultError
 from fem_impact.jobs.job import Job, JobKind
 from fem_impact.outcome.record import Outcome
 from fem_impact.run.program import source_digest
-from fem_impact.scene.types import Scene
-from fem_impact.scene.write import digest
+from fem_impact.scene.types import Scene, digest
 
 # processor time of the levels of a default run over that planned of its last one, and of each finer level
 # over the one before: about, for the order of jobs and a first forecast

@@ -27,8 +27,7 @@ from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.limitation import texts
 from fem_impact.outcome.record import installed_versions
 from fem_impact.progress import tell_cell
-from fem_impact.scene.types import Scene
-from fem_impact.scene.write import digest
+from fem_impact.scene.types import Scene, digest
 from fem_impact.tables.text import plain
 
 PLACES = {1: 21, 2: 7, 3: 5, 4: 3}

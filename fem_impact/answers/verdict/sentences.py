@@ -18,8 +18,7 @@ from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.impact import FIRST
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.shapes import NamedShape
-from fem_impact.scene.types import Scene
-from fem_impact.scene.write import digest, to_dict
+from fem_impact.scene.types import Scene, digest, to_dict
 from fem_impact.tables.text import with_band, wrapped
 
 SCHEMA = "fem-impact/verdict/2"

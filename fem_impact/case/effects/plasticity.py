@@ -7,7 +7,6 @@ from fem_impact.case.effects.slots import Effect, ModelSpec
 from fem_impact.errors import SceneError
 from fem_impact.physics import hardening
 from fem_impact.physics.contact import LIMIT_PRESSURE, ContactPair
-from fem_impact.physics.hardening import johnson_cook, ramberg_osgood
 from fem_impact.scene.material import Material, RambergOsgoodFlow, TableFlow
 
 DEEP = 1.6  # peak Hertz pressure over yield stress at first yield, below the surface (Johnson 1985, eq 6.9)
@@ -75,13 +74,15 @@ def hardening_of(material: Material) -> hardening.HardeningLaw:
         if isinstance(flow, TableFlow):
             return hardening.TabulatedHardening(flow.points)
         if isinstance(flow, RambergOsgoodFlow):
-            return ramberg_osgood(material.yield_stress, flow.n)
+            return hardening.ramberg_osgood(material.yield_stress, flow.n)
         cold = (material.yield_stress, flow.B, flow.n)
         stated = (material.heat_capacity, flow.m, flow.melting, flow.reference, flow.heat_share)
         if None in stated:
-            return johnson_cook(*cold)
+            return hardening.johnson_cook(*cold)
         capacity, m, melting, reference, share = (number for number in stated if number is not None)
-        return johnson_cook(*cold, heat=share / (material.rho * capacity), span=melting - reference, m=m)
+        return hardening.johnson_cook(
+            *cold, heat=share / (material.rho * capacity), span=melting - reference, m=m
+        )
     key, value = "ultimate_stress", f"{material.ultimate_stress / 1e6:g} MPa"
     try:
         if material.law == "hardness" and material.hardness is not None:

@@ -13,14 +13,6 @@ from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.answers.verdict.effect import solid_effect
 from fem_impact.arrays import Array
 from fem_impact.evidence.studies import criterion_findings as findings
-from fem_impact.evidence.studies.criterion_findings import (
-    HERTZ,
-    LEVELS,
-    STEEPEST,
-    YIELDING,
-    crossing,
-    exponent,
-)
 from fem_impact.evidence.studies.report_parts import rests_on
 from fem_impact.evidence.studies.rod_theory import blind_ratio, spring_bounce, static_restitution, whole_ratio
 from fem_impact.evidence.studies.rods import (
@@ -55,9 +47,9 @@ SURFACES, QUICK_SURFACES = ("contaminated", "machined"), ("machined",)
 END_GAMMAS, QUICK_END_GAMMAS = (10.0, 45.0), (14.0,)  # of elastic rods that confirm the modal fidelity
 
 MODAL = {
-    HERTZ[0]: DroppedRod(0.1, tip_radius=TIP),
-    HERTZ[1]: DroppedRod(0.1),
-    YIELDING: DroppedRod(0.1, yields=True),
+    findings.HERTZ[0]: DroppedRod(0.1, tip_radius=TIP),
+    findings.HERTZ[1]: DroppedRod(0.1),
+    findings.YIELDING: DroppedRod(0.1, yields=True),
 }
 """Kinds of contact by the modal fidelity, each a rod whose length, diameter and angle are then varied."""
 SPRING = "linear spring"
@@ -196,13 +188,13 @@ def conclude(request: Request, results: Results) -> StudyReport:
     blind = table[table.family == BLIND]
     on_spring = [
         {**rod.inputs, "contact": SPRING, "rod": rod, **spring_bounce(rod)}
-        for rod in rods_over_angles(MODAL[HERTZ[1]], request.quick)
+        for rod in rods_over_angles(MODAL[findings.HERTZ[1]], request.quick)
     ]
     by_modes = angle_rows(table[table.family != BLIND])
     every = DataFrame([*by_modes, *on_spring, *solid_rows(solid, results)])
     angles, ends = every[every.contact != ENDS], every[every.contact == ENDS]
-    upright = among(angles, contact=YIELDING, diameter_m=BODY)
-    upright = upright[upright.angle_deg <= STEEPEST]
+    upright = among(angles, contact=findings.YIELDING, diameter_m=BODY)
+    upright = upright[upright.angle_deg <= findings.STEEPEST]
     upright = upright.assign(
         e_static_give=[static_restitution(rod) for rod in upright.rod], e_vibrating=upright.e
     )
@@ -240,11 +232,12 @@ def level_table(rods: DataFrame) -> Table:
         diameters = {d: group for d, group in of_contact.groupby("diameter_m")}
         thinnest, thickest = (min(diameters), max(diameters)) if len(diameters) > 1 else (None, None)
         for title, measure in {"error of e": "error_of_e", "spread of e": "spread_of_e"}.items():
-            for level in LEVELS:
+            for level in findings.LEVELS:
                 onsets = [
-                    crossing(diameters[d], level, measure) if d else None for d in (thinnest, BODY, thickest)
+                    findings.crossing(diameters[d], level, measure) if d else None
+                    for d in (thinnest, BODY, thickest)
                 ]
-                rows.append([contact, title, level, *onsets, exponent(of_contact, level, measure)])
+                rows.append([contact, title, level, *onsets, findings.exponent(of_contact, level, measure)])
     head = ("contact", "measure", "level", "gamma_thinnest", "gamma_19_mm", "gamma_thickest", "exponent")
     return Table.of(head, rows)
 

@@ -12,7 +12,6 @@ from pandas import DataFrame
 from fem_impact import Scene, load
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.evidence.studies import gamma_figures as figures
-from fem_impact.evidence.studies.gamma_figures import plain_line
 from fem_impact.evidence.studies.report_parts import rests_on
 from fem_impact.evidence.studies.rods import (
     CLOSE,
@@ -203,7 +202,7 @@ def findings(points: DataFrame) -> list[str]:
 
 def how_much(curve: DataFrame, kind: str) -> str:
     """Return vibration of the paper's rods, in the surface state of `PLAIN`."""
-    shares = {p.length_m: share(p) for p in _known(plain_line(curve, kind))}
+    shares = {p.length_m: share(p) for p in _known(figures.plain_line(curve, kind))}
     rods = [f"{shares[length]} ({rod} rod)" for rod, length in PAPER_RODS.items() if length in shares]
     tip = f"A{'n' if kind == 'elastic' else ''} {kind} tip ({PLAIN[kind]}, 45 degrees, 2.1 m/s)"
     return f"{tip} leaves as vibration, of E_0: {', '.join(rods)}." if rods else ""
@@ -211,7 +210,7 @@ def how_much(curve: DataFrame, kind: str) -> str:
 
 def where_it_peaks(curve: DataFrame, kind: str) -> str:
     """Return the slenderness of most vibration, and what makes it fall beyond."""
-    points = [p for p in _known(plain_line(curve, kind)) if p.E_vib_over_E_0_own_mesh is not None]
+    points = [p for p in _known(figures.plain_line(curve, kind)) if p.E_vib_over_E_0_own_mesh is not None]
     if len(points) < 2:
         return ""
     top = max(points, key=_vibration)
@@ -245,7 +244,7 @@ def what_the_limit_says(curve: DataFrame) -> str:
     """Return vibration and e at the limit of Eq 29, and where vibration passes `ONE_PERCENT`."""
     sentences = []
     for kind, state in PLAIN.items():
-        points = _known(plain_line(curve, kind))
+        points = _known(figures.plain_line(curve, kind))
         for p in [p for p in points if abs(p.gamma - LIMIT) < 1e-6]:
             change = ""
             if p.e_edge is not None and p.e_edge_rigid is not None:
@@ -280,7 +279,7 @@ def other_inputs(points: DataFrame, kind: str) -> str:
         for p in _known(points[(points.family == "other inputs") & (points.contact == kind)])
         if abs(p.gamma - usual.gamma) < ALIKE
     ]
-    curve = among(plain_line(points[points.family == "curve"], kind), length_m=usual.length)
+    curve = among(figures.plain_line(points[points.family == "curve"], kind), length_m=usual.length)
     if not changed or curve.empty:
         return ""
     return (

@@ -14,7 +14,6 @@ from fem_impact import Outcome, Scene, known, load, replace_all, simulate
 from fem_impact.answers.compare import MEASURED
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.evidence.studies import joint
-from fem_impact.evidence.studies.joint import LEVEL, JointError, of_set, stored_rows
 from fem_impact.evidence.studies.report_parts import asked_sets, error_panel, rests_on
 from fem_impact.evidence.studies.validated import SHOWN
 from fem_impact.figures.panels import Picture
@@ -67,10 +66,10 @@ def conclude(request: Request, results: JobResults) -> StudyReport:
         (
             *(name, inputs),
             *(number for at in range(len(SHOWN)) for number in (one.E[at] + D[at], one.E[at], one.u[at])),
-            *(one.distance, one.p, "rejected" if one.p < LEVEL else "agrees"),
+            *(one.distance, one.p, "rejected" if one.p < joint.LEVEL else "agrees"),
         )
         for name, of_inputs in found.items()
-        for D in [[row["D"] for row in stored_rows()[name]]]
+        for D in [[row["D"] for row in joint.stored_rows()[name]]]
         for inputs, one in of_inputs.items()
     ]
     sentences = _sentences(found)
@@ -99,11 +98,11 @@ def _left_out(results: JobResults) -> list[str]:
     return [told] if none else []
 
 
-def _joint(name: str, inputs: str, request: Request, results: JobResults) -> JointError | None:
+def _joint(name: str, inputs: str, request: Request, results: JobResults) -> joint.JointError | None:
     """Return the joint error of a set with some inputs; None where a run failed or has no band."""
-    stored = stored_rows()[name]
+    stored = joint.stored_rows()[name]
     if inputs == DEFAULT:
-        return of_set(name, request, results, stored)
+        return joint.of_set(name, request, results, stored)
     run = results.get(_job(name, inputs).name)
     if not isinstance(run, Outcome):
         return None
@@ -112,17 +111,17 @@ def _joint(name: str, inputs: str, request: Request, results: JobResults) -> Joi
         for row, (S, band) in zip(stored, map(run.estimate, KEYS), strict=True)
         if band is not None
     ]
-    return of_set(name, request, results, rows) if len(rows) == len(stored) else None
+    return joint.of_set(name, request, results, rows) if len(rows) == len(stored) else None
 
 
-def _sentences(found: Mapping[str, Mapping[str, JointError]]) -> list[str]:
+def _sentences(found: Mapping[str, Mapping[str, joint.JointError]]) -> list[str]:
     """Return of every inputs how many sets are rejected, and the mean distance of the numbers."""
     told = []
     for inputs in (DEFAULT, *INPUTS):
         of = [one[inputs] for one in found.values() if inputs in one]
         if not of:
             continue
-        rejected = [one.set for one in of if one.p < LEVEL]
+        rejected = [one.set for one in of if one.p < joint.LEVEL]
         away = np.sqrt(np.mean([(one.E / one.u) ** 2 for one in of], axis=0))
         parts = ", ".join(f"{name} {far:.2g}" for name, far in zip(SHOWN, away, strict=True))
         told.append(
@@ -132,7 +131,7 @@ def _sentences(found: Mapping[str, Mapping[str, JointError]]) -> list[str]:
     return told
 
 
-def _picture(found: Mapping[str, Mapping[str, JointError]]) -> Picture:
+def _picture(found: Mapping[str, Mapping[str, joint.JointError]]) -> Picture:
     """Return E / u_val of each number, a panel each, of every inputs by sets."""
     panels = []
     for at, name in enumerate(SHOWN):

@@ -21,7 +21,7 @@ from fem_impact.outcome.keys import Unknown, known
 from fem_impact.outcome.record import Outcome
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load, replace_all
-from fem_impact.scene.write import digest
+from fem_impact.scene.types import digest
 from fem_impact.solid.build import build
 from meshes import SKIN, thicknesses
 

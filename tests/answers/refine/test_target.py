@@ -21,7 +21,7 @@ from fem_impact.outcome.record import Outcome
 from fem_impact.progress import Notice, Progress
 from fem_impact.run.resolution import without_end
 from fem_impact.scene.shipped import load, replace, replace_all
-from fem_impact.scene.write import to_dict
+from fem_impact.scene.types import to_dict
 
 ASKED = replace(load("t5b"), "accuracy", "5 %")
 FINEST = "0.001 %"

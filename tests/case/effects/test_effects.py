@@ -17,7 +17,7 @@ from fem_impact.physics.contact_law import thornton
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.shipped import replace as changed
-from fem_impact.scene.write import to_dict
+from fem_impact.scene.types import to_dict
 from fem_impact.solid.build import build
 from fem_impact.solid.contact.plane import PlaneContact
 from fem_impact.solid.contact.surface import SurfaceContact

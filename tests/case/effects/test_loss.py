@@ -11,7 +11,7 @@ from fem_impact.physics.viscous import viscous_restitution
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load, replace
-from fem_impact.scene.write import to_dict
+from fem_impact.scene.types import to_dict
 
 STEEL = {"name": "elastic steel", "E": "210 GPa", "nu": 0.3, "rho": "7850 kg/m3"}
 CLOSED = ("rigid", "modal")

@@ -11,7 +11,7 @@ from fem_impact.errors import SceneError
 from fem_impact.physics.hardening import Skin
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load, replace_all
-from fem_impact.scene.write import digest, to_dict
+from fem_impact.scene.types import digest, to_dict
 from fem_impact.solid.build import Builder
 from fem_impact.solid.skin import below_outline, strengths
 from meshes import drawn_depths

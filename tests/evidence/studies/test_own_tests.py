@@ -20,7 +20,7 @@ from fem_impact.scene.library import stated
 from fem_impact.scene.own_tests import read_means
 from fem_impact.scene.read import read_toml
 from fem_impact.scene.shipped import load, replace
-from fem_impact.scene.write import to_toml
+from fem_impact.scene.types import to_toml
 from rigid.experiments import measured_set
 
 pytestmark = pytest.mark.usefixtures("unrendered")

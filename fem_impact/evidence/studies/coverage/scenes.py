@@ -27,8 +27,7 @@ from fem_impact.evidence.studies.coverage.families import (
 )
 from fem_impact.evidence.studies.coverage.twelve import TWELVE
 from fem_impact.scene.library import materials
-from fem_impact.scene.types import MEASURED_SETS, Scene
-from fem_impact.scene.write import to_toml
+from fem_impact.scene.types import MEASURED_SETS, Scene, to_toml
 
 SEED = 20261126
 """Of the scenes by which the reduced model tells its error."""

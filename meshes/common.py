@@ -1,6 +1,11 @@
-"""Errors of the mesh package."""
+"""Array types and errors of the mesh package."""
 
-__all__ = ["ClosedEndError", "MeshError", "MissingReaderError"]
+import numpy as np
+import numpy.typing as npt
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+BoolArray = npt.NDArray[np.bool_]
 
 
 class MeshError(ValueError):
