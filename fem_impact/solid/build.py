@@ -31,8 +31,8 @@ from fem_impact.solid.contact.surface import SurfaceContact
 from fem_impact.solid.elastic import Dashpots, ElasticRod, Weight
 from fem_impact.solid.frame import FixedFrame, TurningFrame, mass_centre
 from fem_impact.solid.ground import Ground
-from fem_impact.solid.items import Force, Impulse
 from fem_impact.solid.model import Model
+from fem_impact.solid.state import Force, Impulse
 from meshes import SKIN, RodMesh, face_at, owners
 from rigid import Faceted
 

@@ -19,7 +19,7 @@ import numpy as np
 
 from fem_impact.errors import ResultError
 from fem_impact.files.atomic import write_bytes
-from fem_impact.solid.model import State
+from fem_impact.solid.state import State
 
 
 class Moving(Protocol):

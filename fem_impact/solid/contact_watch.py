@@ -9,7 +9,8 @@ from fem_impact.case.record import BodyRecord, ContactRecord, Site
 from fem_impact.solid.contact.moving_plane import MovingPlane
 from fem_impact.solid.contact.plane import PlaneContact
 from fem_impact.solid.contact.surface import SurfaceContact
-from fem_impact.solid.model import Model, State
+from fem_impact.solid.model import Model
+from fem_impact.solid.state import State
 from meshes import HexMesh, edge_lengths
 
 ON_PLANE = 1e-11  # m, within which a node that was stopped at a rigid plane lies on it

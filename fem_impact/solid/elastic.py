@@ -13,7 +13,7 @@ from fem_impact.fem.layout import DofLayout, MassPoints
 from fem_impact.fem.slices import SliceOperator
 from fem_impact.fem.sparse import NodeProduct
 from fem_impact.solid.frame import FixedFrame, TurningFrame
-from fem_impact.solid.model import State
+from fem_impact.solid.state import State
 
 
 @dataclass(slots=True)

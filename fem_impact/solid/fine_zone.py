@@ -14,7 +14,8 @@ import numpy as np
 from fem_impact.arrays import Array, Ints
 from fem_impact.fem.hexmodes import CORNERS, SIGNS
 from fem_impact.solid.contact.surface import SurfaceContact
-from fem_impact.solid.model import Model, State
+from fem_impact.solid.model import Model
+from fem_impact.solid.state import State
 from fem_impact.solid.stepguard import when_and_where
 from meshes import SKIN
 

@@ -18,8 +18,7 @@ from fem_impact.fem.layout import DofLayout
 from fem_impact.solid.contact.book import ContactBook
 from fem_impact.solid.contact.plane import PlaneContact
 from fem_impact.solid.contact.surface import SurfaceContact
-from fem_impact.solid.items import Impulse
-from fem_impact.solid.model import State
+from fem_impact.solid.state import Impulse, State
 
 
 @dataclass(slots=True)

@@ -11,8 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from fem_impact.arrays import Array
-from fem_impact.solid.items import Item
-from fem_impact.solid.model import State
+from fem_impact.solid.state import Item, State
 
 # the accounts of all ledgers, 0 where the effect is off; items may add others
 ACCOUNTS = (

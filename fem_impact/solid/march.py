@@ -4,7 +4,8 @@ from collections.abc import Sequence
 from typing import Protocol
 
 from fem_impact.fem.kernels import kernel
-from fem_impact.solid.model import Model, State
+from fem_impact.solid.model import Model
+from fem_impact.solid.state import State
 
 
 class Observer(Protocol):

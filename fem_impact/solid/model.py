@@ -1,10 +1,10 @@
-"""The constant data of a run: numbering, masses, the items of the time loop; and the state that they move."""
+"""The constant data of a run: numbering, masses, and the items of the time loop."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,37 +19,12 @@ from fem_impact.solid.contact.plane import PlaneContact
 from fem_impact.solid.contact.surface import SurfaceContact
 from fem_impact.solid.elastic import ElasticRod
 from fem_impact.solid.ground import Ground
-from fem_impact.solid.items import Force, Impulse, Item
 from fem_impact.solid.ledger import Ledger
+from fem_impact.solid.state import Force, Impulse, Item, State
 
 if TYPE_CHECKING:
     from fem_impact.solid.rigid_rest import ElasticNose
     from fem_impact.solid.yielding import YieldingZone
-
-
-@dataclass(slots=True)
-class State:
-    """State of a run; all vectors are flat and numbered by :class:`~fem_impact.fem.layout.DofLayout`.
-
-    Attributes
-    ----------
-    x, v, force : (size,) float64, m, m/s (half a step behind x), N
-    time : s
-    step : number of steps done
-    dt : step that led to ``x`` (s); 0 before the first
-    dt_next : step to take, s
-    kick : time over which the present forces act on the velocities, s
-    """
-
-    moving: ClassVar[tuple[str, ...]] = ("x", "v", "force", "time", "step", "dt", "dt_next", "kick")
-    x: Array
-    v: Array
-    force: Array
-    time: float = 0.0
-    step: int = 0
-    dt: float = 0.0
-    dt_next: float = 0.0
-    kick: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

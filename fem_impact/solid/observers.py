@@ -12,8 +12,9 @@ from fem_impact.files.fields_write import FieldWriter
 from fem_impact.progress import Progress
 from fem_impact.solid.contact.book import ContactBook
 from fem_impact.solid.ledger import Ledger
-from fem_impact.solid.model import Model, State
+from fem_impact.solid.model import Model
 from fem_impact.solid.rodview import FieldSampler, RodState
+from fem_impact.solid.state import State
 from fem_impact.tables.history import HistoryWriter
 
 QUIET = 20e-6  # s without contact before the free flight is evaluated: waves cross the block a few times

@@ -16,7 +16,8 @@ from fem_impact.fem.elements import lame_constants
 from fem_impact.fem.flight import FreeVibration, RigidMotion, flight, rigid_motion
 from fem_impact.fem.hexmodes import reference_gradients
 from fem_impact.scene.material import Material
-from fem_impact.solid.model import Model, State
+from fem_impact.solid.model import Model
+from fem_impact.solid.state import State
 from meshes import HexMesh
 
 

@@ -28,10 +28,11 @@ from fem_impact.solid.checkpoint import Checkpoint
 from fem_impact.solid.fine_zone import left_zones, outside_zones, skin_shares
 from fem_impact.solid.frame import mass_centre
 from fem_impact.solid.march import Observer, advance, evaluate, march
-from fem_impact.solid.model import Model, State
+from fem_impact.solid.model import Model
 from fem_impact.solid.observers import ProgressObserver
 from fem_impact.solid.rodview import RodState, modes_of
 from fem_impact.solid.shares import run_time_shares
+from fem_impact.solid.state import State
 from fem_impact.solid.watchers import Stopwatch, Watchers
 
 if TYPE_CHECKING:

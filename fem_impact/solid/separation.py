@@ -10,9 +10,10 @@ from fem_impact.arrays import Array
 from fem_impact.fem.flight import FreeVibration, RigidMotion
 from fem_impact.physics.beam import HORIZON
 from fem_impact.solid.contact.surface import SurfaceContact
-from fem_impact.solid.model import Model, State
+from fem_impact.solid.model import Model
 from fem_impact.solid.observers import QUIET
 from fem_impact.solid.rodview import RodState
+from fem_impact.solid.state import State
 
 SAMPLE = 2e-6  # s, interval at which the free flight is evaluated
 

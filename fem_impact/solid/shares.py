@@ -8,7 +8,7 @@ from time import process_time
 from typing import TYPE_CHECKING
 
 from fem_impact.solid.frame import TurningFrame
-from fem_impact.solid.model import State
+from fem_impact.solid.state import State
 
 if TYPE_CHECKING:
     from fem_impact.solid.heatwatch import HeatWatch

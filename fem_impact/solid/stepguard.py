@@ -11,7 +11,8 @@ from scipy.sparse.linalg import LinearOperator
 from fem_impact.arrays import Array, Ints
 from fem_impact.errors import RunError
 from fem_impact.fem.stable import gradient_squares, stable_step
-from fem_impact.solid.model import Model, State
+from fem_impact.solid.model import Model
+from fem_impact.solid.state import State
 
 if TYPE_CHECKING:
     from fem_impact.solid.yielding import YieldingZone

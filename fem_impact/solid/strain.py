@@ -13,8 +13,9 @@ from fem_impact.errors import SceneError
 from fem_impact.fem.flight import FreeVibration
 from fem_impact.files.waves import Ringing, Waves, write_waves
 from fem_impact.physics.beam import bar_speed, bending_group_speed
-from fem_impact.solid.model import Model, State
+from fem_impact.solid.model import Model
 from fem_impact.solid.rodview import RodState
+from fem_impact.solid.state import State
 
 if TYPE_CHECKING:
     from fem_impact.case.case import Case

@@ -18,7 +18,7 @@ from fem_impact.arrays import Array, Ints
 from fem_impact.fem.kernels import kernel
 from fem_impact.fem.sparse import NodeProduct
 from fem_impact.solid.ground import Ground
-from fem_impact.solid.model import State
+from fem_impact.solid.state import State
 
 
 @dataclass(slots=True)

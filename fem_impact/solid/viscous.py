@@ -20,8 +20,8 @@ import numpy as np
 from fem_impact.arrays import Array
 from fem_impact.physics.viscous import LinearSolid
 from fem_impact.solid.elastic import ElasticRod
-from fem_impact.solid.model import State
 from fem_impact.solid.rigid_rest import ElasticNose
+from fem_impact.solid.state import State
 
 
 @dataclass(slots=True)

@@ -21,10 +21,11 @@ from fem_impact.solid.contact.surface import SurfaceContact
 from fem_impact.solid.contact_watch import ContactWatch
 from fem_impact.solid.fine_zone import SkinWatch
 from fem_impact.solid.march import Observer
-from fem_impact.solid.model import Model, State
+from fem_impact.solid.model import Model
 from fem_impact.solid.observers import AddedMass, Frames, History, PeakForce, Watch, history_column
 from fem_impact.solid.rodview import FieldSampler, RodState
 from fem_impact.solid.separation import Separation
+from fem_impact.solid.state import State
 from fem_impact.solid.stepguard import SMALLEST, THIN_CRUSHED, StepGuard
 from fem_impact.solid.strain import StrainWatch
 from fem_impact.tables.history import HISTORY, HistoryWriter

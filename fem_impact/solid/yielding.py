@@ -12,7 +12,7 @@ from fem_impact.arrays import Array, Ints
 from fem_impact.fem.elements import lame_constants
 from fem_impact.fem.hexmodes import CORNERS, DUMMY_EDGE, LANES, reference_gradients
 from fem_impact.physics.hardening import FlowCurve, HardeningLaw, RateLaw
-from fem_impact.solid.model import State
+from fem_impact.solid.state import State
 from fem_impact.solid.yielding_kernel import ROWS, Blocks, elastic_energy, subtract_nodal, update
 
 Counts = NDArray[np.uint32]

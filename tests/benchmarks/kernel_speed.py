@@ -26,7 +26,8 @@ from fem_impact.fem.sparse import assemble, tie_operator
 from fem_impact.scene.shipped import load
 from fem_impact.solid.build import build
 from fem_impact.solid.march import advance, evaluate
-from fem_impact.solid.model import Model, State
+from fem_impact.solid.model import Model
+from fem_impact.solid.state import State
 from fem_impact.solid.yielding import YieldingZone
 
 Row = tuple[str, int, float, float]  # part, elements, ns an element-step, over the CSR product's

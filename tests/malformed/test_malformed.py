@@ -33,7 +33,7 @@ from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load
 from fem_impact.scene.types import to_dict, to_toml
 from fem_impact.solid.checkpoint import Checkpoint
-from fem_impact.solid.model import State
+from fem_impact.solid.state import State
 from fem_impact.tables.table import read_csv
 
 FEW = settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))

@@ -3,7 +3,7 @@
 import numpy as np
 
 import meshes
-from fem_impact.solid.model import State
+from fem_impact.solid.state import State
 from meshes import Zone
 from meshes.block import box_cells
 

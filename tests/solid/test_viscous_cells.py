@@ -10,7 +10,7 @@ from fem_impact.physics.viscous import PACE, UNITS, linear_solid
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.read import read_dict
 from fem_impact.solid.frame import FixedFrame
-from fem_impact.solid.model import State
+from fem_impact.solid.state import State
 from fem_impact.solid.viscous import MaxwellCells
 
 

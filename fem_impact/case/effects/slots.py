@@ -80,7 +80,7 @@ class Effect:
     fidelities : models that compute it. The others leave an effect of the program out, and refuse a scene
         with one of another package
     forces, impulses : return items of the finite-element model that add forces or change velocities
-        (`fem_impact.solid.items`), made from its `fem_impact.solid.build.Builder`
+        (`fem_impact.solid.state`), made from its `fem_impact.solid.build.Builder`
     """
 
     name: str

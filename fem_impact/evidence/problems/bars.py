@@ -47,7 +47,8 @@ from fem_impact.scene.fields import Element
 from fem_impact.scene.impact import Impact
 from fem_impact.solid.contact.plane import PlaneContact
 from fem_impact.solid.march import march
-from fem_impact.solid.model import Model, State
+from fem_impact.solid.model import Model
+from fem_impact.solid.state import State
 from meshes import OUTER, SKIN, HexMesh
 
 

@@ -30,7 +30,7 @@ from fem_impact.physics.indentation import FACES, FRICTION, FRICTIONS, share, vi
 from fem_impact.scene.library import material
 from fem_impact.solid.contact.surface import SurfaceContact
 from fem_impact.solid.march import march
-from fem_impact.solid.model import State
+from fem_impact.solid.state import State
 from fem_impact.solid.stepguard import StepGuard
 from meshes import Zone
 

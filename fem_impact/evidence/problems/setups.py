@@ -25,7 +25,8 @@ from fem_impact.scene.types import Accuracy, Save
 from fem_impact.solid.build import build
 from fem_impact.solid.ledger import Ledger
 from fem_impact.solid.march import march
-from fem_impact.solid.model import Model, State
+from fem_impact.solid.model import Model
+from fem_impact.solid.state import State
 from fem_impact.solid.stepguard import SMALLEST, StepGuard
 from meshes import HexMesh
 

@@ -36,7 +36,8 @@ from fem_impact.evidence.problems.problem import Check, Solved, Values, defaults
 from fem_impact.evidence.references.axisymmetric import Metal, taylor_bar
 from fem_impact.evidence.references.rod_end import bar_speed
 from fem_impact.physics.hardening import linear_hardening
-from fem_impact.solid.model import Model, State
+from fem_impact.solid.model import Model
+from fem_impact.solid.state import State
 
 PRINTED = defaults("taylor")
 COPPER = ("speed", "E", "nu", "rho", "yield_stress", "hardening")  # of them those that size leaves

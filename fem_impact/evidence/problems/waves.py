@@ -23,8 +23,9 @@ from fem_impact.fem.sparse import assemble, assemble_mass, tie_operator
 from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.solid.march import march
-from fem_impact.solid.model import Model, State
+from fem_impact.solid.model import Model
 from fem_impact.solid.rodview import modes_of
+from fem_impact.solid.state import State
 
 MOST = 0.005  # relative error of a frequency that is allowed on any mesh
 BENDING = (4.730, 7.853, 10.996)  # wave numbers of slender free bars times the length

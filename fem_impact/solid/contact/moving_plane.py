@@ -16,7 +16,7 @@ from fem_impact.solid.contact.points import (
     settle,
 )
 from fem_impact.solid.ground import Ground
-from fem_impact.solid.model import State
+from fem_impact.solid.state import State
 
 
 @dataclass(slots=True)

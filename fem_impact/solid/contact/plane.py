@@ -9,7 +9,7 @@ from fem_impact.arrays import Array, Ints
 from fem_impact.fem.kernels import kernel
 from fem_impact.fem.sliding import factor_at, speed_table
 from fem_impact.solid.contact.book import MOVING, ContactBook, StepRecord
-from fem_impact.solid.model import State
+from fem_impact.solid.state import State
 
 
 @dataclass(slots=True)

@@ -32,7 +32,7 @@ from fem_impact.solid.contact.points import (
     rod_over_barrier,
     settle,
 )
-from fem_impact.solid.model import State
+from fem_impact.solid.state import State
 
 
 @dataclass(slots=True)
