@@ -16,7 +16,7 @@ from fem_impact.case.effects.skin import NOT_RIGID, require_skins
 from fem_impact.case.effects.slots import ModelSpec
 from fem_impact.case.elastic_only import require_crushing_named
 from fem_impact.case.layers import block_of, require_layers, thin_layer
-from fem_impact.case.mesh import require_mesh
+from fem_impact.case.mesh import require_gauge, require_mesh
 from fem_impact.case.metals import unknowns
 from fem_impact.case.plates import is_thin, require_plate, require_plate_mesh, too_thin
 from fem_impact.case.record import ContactRecord
@@ -97,6 +97,7 @@ class Case:
         if self.record is None:
             require_fine_zone(self.bodies)
         require_mesh(self.scene.projectile, self.scene.across)
+        require_gauge(self.scene)
         if self.meshed_through:
             require_plate_mesh(self.bodies, self.zones.base, block_of(self.bodies, self.zones))
         if not slots.vibrating:

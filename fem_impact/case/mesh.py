@@ -1,4 +1,4 @@
-"""Whether a turned projectile can be meshed: found before any work, on a mesh without its fine zone."""
+"""Whether a projectile can be meshed and read, found before any work, on a mesh without its fine zone."""
 
 from dataclasses import replace
 from functools import lru_cache
@@ -9,11 +9,13 @@ import numpy as np
 import meshes
 from fem_impact.errors import SceneError
 from fem_impact.scene.projectile import ProjectileSpec
+from fem_impact.scene.types import Scene
 from rigid import Turned
 
 FINER = (8, 10, 12, 16, 20)  # cells over the diameter that are tried for a remedy
 THICKEST, TRIALS = 1.5, 12  # closed ends that are tried: up to so many diameters, and how many
 NO_MESH = "fidelity rigid needs no mesh; the modes of modal are those of a mesh."
+SLICES = 1 / 3  # of the diameter: height over the tip at which the slices of a rod may begin
 FARTHER = "Let the bore end farther from the end of the projectile, or be open there."
 
 
@@ -21,6 +23,22 @@ def require_mesh(rod: ProjectileSpec, across: int) -> None:
     """Refuse a turned projectile of which no mesh can be made (SceneError), with remedies that were tried."""
     if not rod.is_rod and rod.own_mesh is None:
         _require_mesh(rod, across)
+
+
+def require_gauge(scene: Scene) -> None:
+    """Refuse a strain gauge where no mesh has slices, beside the tip or beyond the end (SceneError).
+
+    Where the slices of a mesh begin is known when it stands, see `fem_impact.solid.strain.StrainWatch`.
+    """
+    rod, gauge = scene.projectile, scene.save.gauge
+    least = SLICES * rod.diameter if rod.is_rod else 0.0
+    if gauge is not None and not least < gauge < rod.length:
+        raise SceneError(
+            "lies where the strain along the axis is not read.",
+            key="save.gauge",
+            value=f"{gauge * 1e3:.4g} mm",
+            remedy=f"Give a place between {least * 1e3:.4g} and {rod.length * 1e3:.4g} mm from the tip.",
+        )
 
 
 @lru_cache(maxsize=256)

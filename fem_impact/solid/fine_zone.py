@@ -54,10 +54,12 @@ def depths(model: Model) -> Array:
     corners = points[quads]
     across = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
     np.add.at(normals, quads, across[:, None])
-    nearest = skin[KDTree(points[skin]).query(points)[1]]
-    length = np.maximum(np.linalg.norm(normals[nearest], axis=1), 1e-300)
-    away = ((points - points[nearest]) * normals[nearest]).sum(axis=1)
-    under[places[:, 2]] = np.abs(away) / length
+    distance, at = KDTree(points[skin]).query(points)
+    normal = normals[skin[at]]
+    away = np.abs(((points - points[skin[at]]) * normal).sum(axis=1))
+    length = np.linalg.norm(normal, axis=1)
+    # faces back to back at an edge without thickness have no common normal
+    under[places[:, 2]] = np.divide(away, length, out=distance, where=length > 0)
     return np.asarray(under)
 
 
@@ -70,8 +72,9 @@ def _work_above(zone: YieldingZone, nodes: Array) -> float:
     middle = 0.5 * (top + bottom)
     low = nodes @ SHAPES.T > middle
     # a cell from face to face has nodes alike deep: it lies above or below as a whole
-    upper_end, height = np.where(low, middle, top), np.maximum(0.5 * (bottom - top), 1e-300)
-    above = np.clip((DEPTH - upper_end) / height, 0.0, 1.0)
+    upper_end, height = np.where(low, middle, top), np.broadcast_to(0.5 * (bottom - top), low.shape)
+    whole = np.where(upper_end < DEPTH, 1.0, 0.0)
+    above = np.divide(np.clip(DEPTH - upper_end, 0.0, height), height, out=whole, where=height > 0)
     strain, work = zone.spent()
     total = strain.sum(axis=1)
     parts = np.divide((above * strain).sum(axis=1), total, out=np.zeros_like(total), where=total > 0)

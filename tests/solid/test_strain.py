@@ -80,6 +80,9 @@ def test_a_strain_gauge_needs_no_file_and_a_place_on_the_rod():
         SceneError, match=r"save\.gauge = .59 mm.: lies where .* Give 19.* to 58.* mm from the tip"
     ):
         solve(Case.of(replace(mid, save=replace(mid.save, gauge=0.059))))
+    for place in (0.006, 0.061):  # no mesh has slices there
+        with pytest.raises(SceneError, match=r"save\.gauge.*between 6\.333 and 60 mm"):
+            Case.of(replace(mid, save=replace(mid.save, gauge=place)))
 
 
 def test_samples_resolve_the_wave_and_both_ends_of_the_run_are_known(upright):

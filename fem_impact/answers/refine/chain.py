@@ -33,7 +33,6 @@ from fem_impact.outcome.keys import Unknown, known
 from fem_impact.outcome.limitation import limitations
 from fem_impact.outcome.record import Outcome
 from fem_impact.outcome.strike_text import levels_told
-from fem_impact.outcome.strikes import Strikes
 from fem_impact.progress import Notice
 from fem_impact.run.simulate import begin
 from fem_impact.scene.impact import FIRST
@@ -247,18 +246,9 @@ class LevelChain:
     def forecast_s(self, splits: int) -> float:
         """Return about the wall time, s, of a level whose mesh is not made yet, from that of the last one."""
         last = self.done[-1]
-        one = last.wall_s / (1 + last.repeats) / turns(len(last.outcomes), self.workers)
+        took_s = longest_s([one.cost.whole_wall for one in last.outcomes], self.workers)
+        one = took_s / turns(len(last.outcomes), self.workers)
         return float(one * MIDDLE ** (splits - last.splits) * turns(self._runs, self.workers))
-
-    def _sharing(self, scene: Scene) -> list[Scene]:
-        """Return the scenes that run on one mesh: a scene at places of the grid, or beside its twin."""
-        accuracy = scene.accuracy
-        if self.twin is not None:
-            return [scene, replace(self.twin, accuracy=accuracy)]
-        shifts = [(accuracy.grid_shift + offset) % 1.0 for offset in self._offsets]
-        first, *others = (replace(scene, accuracy=replace(accuracy, grid_shift=shift)) for shift in shifts)
-        # a film is made of the first alone: storing frames takes a tenth of a quick run
-        return [first, *(replace(one, save=replace(one.save, frames=0, strain_samples=0)) for one in others)]
 
     def _run_level(self, splits: int) -> None:
         """Run a level, again with more room where it needs that, and add it to what is done."""
@@ -267,7 +257,13 @@ class LevelChain:
         before = known = self.done[-1].found if self.done else self.meshes.expected(splits)
         if last:
             scene = replace(scene, save=self.scene.save)
-        scenes, begun, room = self._sharing(scene), now(), 1.0
+        accuracy, still = scene.accuracy, replace(scene.save, frames=0, strain_samples=0)
+        shifts = [(accuracy.grid_shift + offset) % 1.0 for offset in self._offsets]
+        places = [replace(scene, accuracy=replace(accuracy, grid_shift=shift)) for shift in shifts]
+        # a film is made of the first alone: storing frames takes a tenth of a quick run
+        scenes = [*places[:1], *(replace(one, save=still) for one in places[1:])]
+        scenes += [replace(self.twin, accuracy=accuracy)] if self.twin else []
+        begun, room, took_s, earlier = now(), 1.0, 0.0, [0.0] * len(scenes)
         kept: LevelRun | None = None
         for repeats in range(MOST_REPEATS + 1):
             planned = [] if self.done or repeats else [self.meshes.pilot]
@@ -287,8 +283,9 @@ class LevelChain:
             ended = all(outcome.validity.finished for outcome in outcomes)
             size = contact_edge(cases[0].bodies)  # as it came out, which is not always as asked for
             # without a first compilation of the kernels, and with what ran before an interruption
-            took_s = (1 + repeats) * longest_s([one.cost.whole_wall for one in outcomes], self.workers)
-            level = LevelRun(splits, size, tuple(cases), outcomes, record, took_s, repeats)
+            took_s += longest_s([one.cost.whole_wall for one in outcomes], self.workers)
+            level = LevelRun(splits, size, tuple(cases), outcomes, record, took_s, repeats, tuple(earlier))
+            earlier = [t + one.cost.whole_cpu for t, one in zip(earlier, outcomes, strict=True)]
             zones = cases[0].zones
             if record.crushed and zones.skin_rows + zones.rod_rows and repeats < MOST_REPEATS:
                 before = replace(before, crushed=True)  # again, without thin rows and columns
@@ -330,18 +327,25 @@ class LevelChain:
         upto = self.done[: self.counted]
         counted, beyond = upto[-1], self.done[self.counted :]
         limits, bands = level_limits([level.runs for level in upto])
+        why = bands if isinstance(bands, Unknown) else UNRESOLVED
+        if bands is why:
+            limits = bands = Unknown(f"{why.reason}; {self._finer}")
         short = self.meshes.lacking(counted.splits, counted.record, self.finest)
+        short, narrow = (one and f"{one}: {self._finer}." for one in (short, counted.narrow))
         cut = beyond[0].stopped if beyond else self.failed
         ended = f"The numbers are those of level {len(upto)}: level {len(upto) + 1} was cut off. {cut}"
         outcome = counted.outcome if self.scene.accuracy.unresolved == "report" else counted.withheld
         said, missed = outcome.validity, self._not_begun
         if self.scene.accuracy.target:
-            errors, none = self._errors, bands if isinstance(bands, Unknown) else UNRESOLVED
-            missed = self._missed(errors, none)
+            errors = self._errors
+            reached = [f"{name} is known to {plain(100 * error, 2)} %" for name, error in errors.items()]
+            told, wanted = " and ".join(reached) or why.reason, 100 * self.scene.accuracy.target
+            missed = f"The wanted {wanted:.3g} % is not reached: {told}. {self.advice[0]}"
+            missed = "" if self._reached(errors) else missed
             said = replace(
                 said,
                 accuracy_target=self.scene.accuracy.target,
-                achieved_error=max(errors.values()) if errors else none,
+                achieved_error=max(errors.values()) if errors else why,
                 achieved_wall=self.spent_s,
             )
         validity = replace(
@@ -351,35 +355,33 @@ class LevelChain:
             limitations=(
                 *outcome.validity.limitations,
                 *limitations("run", ended if cut else "", missed),
-                *limitations("resolution", counted.left, counted.narrow if len(upto) > 1 else "", short),
+                *limitations("resolution", counted.left, narrow if len(upto) > 1 else "", short),
                 *limitations("resolution", counted.without_thin),
                 *limitations("resolution", levels_told([level.outcome.strikes for level in upto])),
             ),
         )
+        strikes = outcome.strikes
+        if len(upto) > 1 and self.scene.impact.until != FIRST:
+            from fem_impact.answers.refine.strikes import open_by_levels
+            from fem_impact.run.certain import with_spread
+
+            strikes = with_spread(counted.cases[0], strikes, open_by_levels(upto))
         return replace(
             outcome,
             validity=validity,
-            strikes=self._strikes(upto, outcome.strikes),
+            strikes=strikes,
             provenance=replace(outcome.provenance, scene_digest=digest(self.scene)),
         )
 
-    def _strikes(self, upto: Sequence[LevelRun], strikes: Strikes) -> Strikes:
-        """Return the strikes with what is certain of them, by those of all levels."""
-        if len(upto) < 2 or self.scene.impact.until == FIRST:
-            return strikes
-        from fem_impact.answers.refine.strikes import open_by_levels
-        from fem_impact.run.certain import with_spread
-
-        return with_spread(upto[-1].cases[0], strikes, open_by_levels(upto))
-
-    def _missed(self, errors: Mapping[str, float], none: Unknown) -> str:
-        """Say why the wanted error is not reached, or why there is ``none``, and what more would cost."""
-        if self._reached(errors):
-            return ""
-        reached = [f"{name} is known to {plain(100 * error, 2)} %" for name, error in errors.items()]
-        told = " and ".join(reached) or none.reason
-        wanted = 100 * (self.scene.accuracy.target or 0.0)
-        return f"The wanted {wanted:.3g} % is not reached: {told}. {self.advice[0]}"
+    @property
+    def _finer(self) -> str:
+        """Say what adds a finer level than those that have run, or why nothing does."""
+        if self.done[-1].record.crushed:
+            return "cells were crushed, and finer ones would be sooner: fidelity rigid or modal has none"
+        if self.failed or self.following is not None:
+            return "a finer level gave no result" if self.failed else "a larger budget adds a finer level"
+        levels = f"accuracy.levels = {self.scene.accuracy.levels + 1}"
+        return f"{'a smaller accuracy.tip_size' if self.meshes.is_sized else levels} adds a finer level"
 
     @property
     def advice(self) -> tuple[str, int | None]:
@@ -389,7 +391,7 @@ class LevelChain:
             return f"{name} gave no result: {self.failed}", None
         then = self.following
         if then is None:
-            return "No finer level is tried.", None
+            return f"No finer level is tried: {self._finer}.", None
         more_s = self.forecast_s(then)
         enough = enough_s(self.spent_s, more_s)
         return f"{name} takes about {about_s(more_s)} more: for it give a budget of {enough} s.", enough

@@ -11,7 +11,7 @@ Levels that agree by chance cannot know the energy of vibration better than its 
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import pairwise, zip_longest
 from math import hypot, sqrt
 from statistics import fmean, stdev
 
@@ -24,8 +24,8 @@ VIBRATION = KEY_TABLE["E_vib_over_E_0"]
 """Key of the quantity whose band has a floor, see `vibration_floor`."""
 MeshNumbers = Mapping[str, float] | Unknown
 """Numbers by the key of an outcome that they are about, or why there are none."""
-UNRESOLVED = Unknown("the last level did not resolve the contact; accuracy.levels = 4 adds a finer one")
-ALONE = Unknown("one level alone tells no error; a larger budget adds a finer one")
+UNRESOLVED = Unknown("the last level did not resolve the contact")
+ALONE = Unknown("one level alone tells no error")
 
 # Lowest order of convergence in the band of two meshes. Over thirteen sets and nine quantities, 82 % of
 # such bands contain the limit of all three meshes, and all of them do within the band of that limit; the
@@ -65,7 +65,8 @@ class MeshRuns:
     size : edge of the cells that resolve the contact, m
     runs : outcomes, one for each place of the barrier's grid, or those of a scene and its twin
     resolved, wide : whether they resolve their contact, and also across its narrow side
-    repeats : how often the level ran again with more room
+    repeats : how often the level ran again, with more room or without thin cells
+    earlier : processor time, s, of each run before the last of these
     """
 
     size: float
@@ -73,11 +74,19 @@ class MeshRuns:
     resolved: bool = True
     wide: bool = True
     repeats: int = 0
+    earlier: Sequence[float] = ()
+
+    @property
+    def times(self) -> list[float]:
+        """Processor time, s, of each run with its repeats."""
+        return [
+            run.cost.whole_cpu + before for run, before in zip_longest(self.runs, self.earlier, fillvalue=0.0)
+        ]
 
     @property
     def cpu_s(self) -> float:
-        """Processor time, s, of all runs, each as often as the level was repeated."""
-        return (1 + self.repeats) * sum(run.cost.whole_cpu for run in self.runs)
+        """Processor time, s, of all runs with their repeats."""
+        return sum(self.times)
 
     def values(self, keys: Sequence[Key]) -> list[float]:
         """Return the sums of keys in the runs that know one of them."""

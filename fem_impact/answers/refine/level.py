@@ -33,7 +33,8 @@ class LevelRun:
     cases, outcomes : of its last runs: at the places of the barrier's grid, or of a scene and its twin
     record : what they found together
     wall_s : wall time, s, of all its runs
-    repeats : how often it ran again with more room
+    repeats : how often it ran again, with more room or without thin cells
+    earlier : processor time, s, of each run before the last of these
     late : why another repeat has no outcome, where the budget did not hold it
     """
 
@@ -44,6 +45,7 @@ class LevelRun:
     record: ContactRecord
     wall_s: float
     repeats: int = 0
+    earlier: tuple[float, ...] = ()
     late: str = ""
 
     @property
@@ -69,8 +71,7 @@ class LevelRun:
             return ""
         return (
             f"The contact is {rows} node{'s' * (rows > 1)} wide across its narrow side, and {ROWS} resolve "
-            f"it: half-widths are {NARROW:g} times the largest change from level to level. A larger "
-            "accuracy.levels or budget adds finer levels."
+            f"it: half-widths are {NARROW:g} times the largest change from level to level"
         )
 
     @property
@@ -111,7 +112,7 @@ class LevelRun:
         """What its limits follow from."""
         resolved = self.record.resolved
         wide = resolved and self.record.rows >= ROWS
-        return MeshRuns(self.size, list(self.outcomes), resolved, wide, self.repeats)
+        return MeshRuns(self.size, list(self.outcomes), resolved, wide, self.repeats, self.earlier)
 
 
 def simulate_level(case: Case, options: RunOptions) -> tuple[Outcome, ContactRecord]:

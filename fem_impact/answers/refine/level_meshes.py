@@ -9,13 +9,13 @@ from math import log2
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.case import Case
 from fem_impact.case.cells import body_cell, level_size, levels_of, rod_cell
+from fem_impact.case.mesh import SLICES
 from fem_impact.case.record import ContactRecord, expected_record
 from fem_impact.case.recorded import patch_radius
 from fem_impact.scene.fields import LEVELS
 from fem_impact.scene.types import Scene
 
 JUMP = 2  # splits between two levels at most: a record holds the places of cells four times as large
-SLICES = 1 / 3  # of the diameter: height over the tip at which the slices of a body may begin
 
 
 @dataclass(frozen=True)
@@ -79,7 +79,7 @@ class LevelMeshes:
             return ""
         return (
             f"The contact, {2e3 * radius:.2g} mm wide, would be resolved as advised by cells halved "
-            f"{wanted} times more: give a larger accuracy.levels or budget."
+            f"{wanted} times more"
         )
 
     @property

@@ -233,7 +233,9 @@ def test_a_budget_ends_the_levels_and_tells_what_is_missing():
     outcome = levels.run()
     assert len(levels.done) == 1
     assert any("give a budget of" in getattr(one, "text", "") for one in notices)
-    assert any("larger accuracy.levels or budget" in one.text for one in outcome.validity.limitations)
+    assert any(
+        "times more: a larger budget adds a finer level" in one.text for one in outcome.validity.limitations
+    )
 
 
 def test_a_level_that_leaves_its_zones_is_repeated_with_more_room(monkeypatch):

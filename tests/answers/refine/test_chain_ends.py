@@ -34,6 +34,12 @@ def level():
     return levels.done[0]
 
 
+def lasting(level, seconds):
+    """Return the level as if its run had taken so long."""
+    cost = replace(level.outcome.cost, wall=seconds, setup_wall=0.0, cpu=seconds, setup_cpu=0.0)
+    return replace(level, wall_s=seconds, outcomes=(replace(level.outcome, cost=cost),))
+
+
 def test_two_levels_are_two(level):
     scene = replace(FREE, accuracy=replace(FREE.accuracy, levels=2))
     levels = LevelChain(Case(scene), done=[level])
@@ -58,7 +64,7 @@ def test_a_smaller_step_follows_where_the_budget_does_not_hold_the_larger(level)
     steps = {}
     for levels in (3, 4):
         scene = replace(QUICK, accuracy=replace(QUICK.accuracy, levels=levels))
-        chain = LevelChain(Case(scene), done=[replace(level, wall_s=10.0)], budget_s=40.0)
+        chain = LevelChain(Case(scene), done=[lasting(level, 10.0)], budget_s=40.0)
         steps[levels] = chain._next
         chain.budget_s = 80.0
         assert chain._next == level.splits + (1 if levels == 3 else 2)
@@ -68,11 +74,12 @@ def test_a_smaller_step_follows_where_the_budget_does_not_hold_the_larger(level)
 def test_a_pilot_alone_keeps_its_numbers_and_tells_the_budget_of_a_second_level(level):
     told = []
     scene = replace(FREE, accuracy=replace(FREE.accuracy, unresolved="report"))
-    resolved = replace(level, wall_s=10.0, record=replace(level.record, resolved=True))
+    resolved = replace(lasting(level, 10.0), record=replace(level.record, resolved=True))
     levels = LevelChain(Case(scene), RunOptions(progress=told.append), budget_s=20.0, done=[resolved])
     outcome = levels.run()
     assert known(outcome.restitution.edge.e) == known(level.outcome.restitution.edge.e)
-    assert "one level alone" in outcome.validity.mesh_band.reason
+    reason = "one level alone tells no error; a larger budget adds a finer level"
+    assert outcome.validity.mesh_band == Unknown(reason)
     (said,) = [one.text for one in outcome.validity.limitations if "give a budget of" in one.text]
     assert "10 s of the budget of 20 s are used up. Level 2, finer, takes about" in said
     assert said in told[-1].text
@@ -83,6 +90,20 @@ def test_smaller_cells_do_not_follow_crushed_ones(level):
     assert levels._next is not None
     levels.done[0] = replace(level, record=replace(level.record, crushed=True))
     assert levels._next is None
+    assert "fidelity rigid or modal has none" in levels.run().validity.mesh_band.reason
+
+
+def test_where_levels_end_unresolved_the_remedy_is_one_that_adds_a_finer_one(level):
+    """Three levels more than asked for have run already: one more has to be asked for."""
+    for scene, remedy in ((FREE, "accuracy.levels = 4"), (QUICK, "a smaller accuracy.tip_size")):
+        levels = LevelChain(Case(scene), done=[level])
+        levels.done = [
+            replace(level, splits=splits) for splits in range(levels.finest - 2, levels.finest + 4)
+        ]
+        validity = levels.run().validity
+        assert validity.mesh_band.reason.endswith(f"; {remedy} adds a finer level")
+    more = replace(FREE, accuracy=replace(FREE.accuracy, levels=4))
+    assert LevelChain(Case(more), done=levels.done)._next == levels.done[-1].splits + 1
 
 
 def test_each_repeat_has_twice_the_room_of_the_one_before(level, monkeypatch):
@@ -90,12 +111,13 @@ def test_each_repeat_has_twice_the_room_of_the_one_before(level, monkeypatch):
 
     def left(scene, fidelity, options, case):
         rooms.append((case.record.rod.reach, case.record.barrier.spread))
-        return level.outcome, replace(level.record, left=True)
+        return lasting(level, float(len(rooms))).outcome, replace(level.record, left=True)
 
     monkeypatch.setattr(level_module, "simulate_recorded", left)
     levels = LevelChain(Case(QUICK), done=[level])
     levels._run_level(2)
     assert levels.done[-1].repeats == 2
+    assert levels.done[-1].wall_s == levels.done[-1].runs.cpu_s == 1.0 + 2.0 + 3.0
     assert rooms == [(k * level.record.rod.reach, k * level.record.barrier.spread) for k in (1.0, 2.0, 4.0)]
 
 
