@@ -115,20 +115,22 @@ def _hardest(strikes: Strikes) -> list[str]:
 
     Of one behind the last certain strike, only one path of many, the hardest of the certain ones is told.
     """
-    each, certain, agree = known(strikes.each), or_none(strikes.certain), or_none(strikes.hardest_agree)
-    kinds: tuple[tuple[str, int | Unknown, Callable[[StrikeRecord], float], str], ...] = (
-        ("energy", strikes.hardest_energy, lambda one: one.lost, "rigid motion from {before} J to {after} J"),
-        ("force", strikes.hardest_force, lambda one: one.force or 0.0, "{force} N"),
-        ("friction heat", strikes.hardest_heat, lambda one: one.friction, "{friction} J"),
+    each, certain = known(strikes.each), or_none(strikes.certain)
+    by_energy, by_force, by_heat = (
+        ("energy", strikes.hardest_energy, strikes.hardest_agree),
+        ("force", strikes.hardest_force, strikes.force_agree),
+        ("friction heat", strikes.hardest_heat, strikes.heat_agree),
+    )
+    sizes: tuple[tuple[Callable[[StrikeRecord], float], str], ...] = (
+        (lambda one: one.lost, "rigid motion from {before} J to {after} J"),
+        (lambda one: one.force or 0.0, "{force} N"),
+        (lambda one: one.friction, "{friction} J"),
     )
     told = []
-    for name, number, size, what in kinds:
+    for (name, number, agree), (size, what) in zip((by_energy, by_force, by_heat), sizes, strict=True):
         if isinstance(number, Unknown):
             continue
-        first, same = (
-            "",
-            f", the hardest in {agree} of 64 sequences" if name == "energy" and agree is not None else "",
-        )
+        first, same = "", "" if isinstance(agree, Unknown) else f", the hardest in {agree} of 64 sequences"
         if certain is not None and number > certain:
             first, same = f" not certain (strike {number} of this path{same}); of the certain ones", ""
             number = 1 + max(range(certain), key=lambda at: size(each[at]))

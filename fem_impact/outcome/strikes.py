@@ -130,6 +130,13 @@ class Strikes:
         "-",
         "Of those 64 sequences, how many have the same strike as the hardest by energy.",
     )
+    force_agree: int | Unknown = key(
+        "strikes_hardest_by_force_agree",
+        "-",
+        "The same by force; a strike of another part than this run's has the largest force over impulse of "
+        "this run's strikes.",
+    )
+    heat_agree: int | Unknown = key("strikes_hardest_by_heat_agree", "-", "The same by friction.")
     other_end_low: Num = key(
         "strikes_other_end_over_first_low",
         "-",

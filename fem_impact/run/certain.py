@@ -7,7 +7,7 @@ what their model leaves open, as long as the same parts of the body strike.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import takewhile
 from math import copysign, exp, log, pi, radians
@@ -39,6 +39,7 @@ EXACT = Unknown(
     "rigid theory tells no error of its own, and the scene states no interval: surface.friction_low and "
     "friction_high, strikes.angle_error or speed_error"
 )
+FORCELESS = Unknown("one of the first strikes has no force: it is rigid, without duration")
 UNTOLD = "fidelity", "part", "damping", "taken", "other"
 """What of a strike has no half-width: see `NO_ERROR`."""
 NAMES = {key.path[-1]: key.name for key in keys_of(StrikeRecord) if key.path[-1] not in UNTOLD}
@@ -102,6 +103,9 @@ def with_spread(case: Case, strikes: Strikes, meshed: Sequence[Doubt | None] = (
         )
     certain, length = _common([own, plain, *runs]), case.contact.body.length
     ends = [other_end(run, length) for run in runs]
+    # a strike of a part that the run's own is not of comes by the law of rigid runs, without a force
+    forces = [one.force / one.impulse_n for one in own[:SEEN] if one.force and one.impulse_n]
+    push = max(forces) if len(forces) == len(own[:SEEN]) else 0.0
     first, rubbed = other_end(plain, length), sum(one.friction for one in plain)
     later = known(strikes.friction) - sum(one.friction for one in own[:SEEN])
     return replace(
@@ -112,7 +116,9 @@ def with_spread(case: Case, strikes: Strikes, meshed: Sequence[Doubt | None] = (
             for number, struck in _by_number(runs)
         ),
         holds=_holds(case, each),
-        hardest_agree=sum(_hardest(run) == _hardest(own) for run in runs),
+        hardest_agree=_agree(own, runs, lambda one: one.lost),
+        force_agree=_agree(own, runs, lambda one: one.force or one.impulse_n * push) if push else FORCELESS,
+        heat_agree=_agree(own, runs, lambda one: one.friction),
         friction_half=later + _half([sum(one.friction for one in run) for run in runs], rubbed),
         other_end_low=_moved(strikes.other_end, first, _quantile(ends, INNER[0])),
         other_end_high=_moved(strikes.other_end, first, _quantile(ends, INNER[1])),
@@ -120,8 +126,9 @@ def with_spread(case: Case, strikes: Strikes, meshed: Sequence[Doubt | None] = (
 
 
 def _without(strikes: Strikes, why: Unknown) -> Strikes:
-    told = "certain", "spread", "holds", "hardest_agree", "friction_half", "other_end_low", "other_end_high"
-    unknown: dict[str, Any] = dict.fromkeys(told, why)
+    told = "certain", "spread", "holds", "friction_half", "other_end_low", "other_end_high"
+    agree = "hardest_agree", "force_agree", "heat_agree"
+    unknown: dict[str, Any] = dict.fromkeys((*told, *agree), why)
     return replace(strikes, **unknown)
 
 
@@ -312,9 +319,12 @@ def _by_number(runs: Sequence[Sequence[StrikeRecord]]) -> Iterator[tuple[int, li
         yield number, [run[number - 1] for run in runs if len(run) >= number]
 
 
-def _hardest(run: Sequence[StrikeRecord]) -> int:
-    """Return the place of the strike that takes most from the rigid motion."""
-    return int(np.argmax([one.lost for one in run[:SEEN]]))
+def _agree(
+    own: Sequence[StrikeRecord], runs: Sequence[Sequence[StrikeRecord]], size: Callable[[StrikeRecord], float]
+) -> int:
+    """Return how many runs have the same strike as the hardest by a size as the run's ``own``."""
+    hardest = [int(np.argmax([size(one) for one in run[:SEEN]])) for run in (own, *runs)]
+    return sum(one == hardest[0] for one in hardest[1:])
 
 
 def _half(values: Sequence[float], plain: float) -> float:
