@@ -39,7 +39,7 @@ def standing(end_time_s: float, note: str, eta_s: float | None, setup_s: float) 
 
 def setting_up(end_time_s: float, note: str, eta_s: float | None = None, setup_s: float = 0.0) -> Progress:
     """Return the report of a run that makes its mesh and finds the modes of its rod before the first step."""
-    doing = "setting up: mesh and modes of the rod"
+    doing = "setting up: mesh and modes of the projectile"
     return Progress(0.0, end_time_s, 0, 0.0, doing, eta_s, note, setup_s=setup_s)
 
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from fem_impact.case import limits
@@ -198,10 +199,9 @@ class Case:
         unstated = limitations("input", *unknowns(self.bodies), limits.unused(self.scene, self.fidelity))
         if not meshed:
             skin = NOT_RIGID if "machined-skin" in self.active else ""
-            return (*of_scene, *limitations("model", skin), *unstated)
+            return self.said((*of_scene, *limitations("model", skin), *unstated))
         one_mesh = self.record is not None or self.scene.accuracy.levels == 1
-        return (
-            *of_scene,
+        of_mesh = (
             *limitations("input", *neglected(self.choices)),
             *limitations("model", thin_layer(self.bodies)),
             # a record shows how wide the contact is
@@ -209,8 +209,12 @@ class Case:
             *limitations("resolution", thin_cells(self.scene.projectile)),
             # of levels only a mesh that follows a record is known
             *limitations("resolution", *(unresolved_skins(self.slots, self.zones) if one_mesh else ())),
-            *unstated,
         )
+        return self.said((*of_scene, *of_mesh, *unstated))
+
+    def said(self, of: Iterable[Limitation]) -> tuple[Limitation, ...]:
+        """Return limitations whose sentences call the body what it is."""
+        return tuple(replace(one, text=self.scene.projectile.named(one.text)) for one in of)
 
     @cached_property
     def size(self) -> RunSize:

@@ -153,10 +153,11 @@ def _long(case: Case, statement: dict[str, Any], place: Path) -> str:
     lines += _flow_lines(statement)
     lines += ["", "Values used where a scene does not state them"]
     lines += _wrapped(f"{d['key']} = {d['value']}: {d['source']}" for d in statement["defaults"])
+    rod = case.scene.projectile
     lines += ["", "Projectile", *_drawing(case)]
     lines += _wrapped([*statement["mesh"], *_body_lines(statement["body"], _bends_as(case))])
     lines += ["", "Effects"]
-    lines += [line for choice in case.choices for line in _effect_lines(choice)]
+    lines += [rod.named(line) for choice in case.choices for line in _effect_lines(choice)]
     return "\n".join([*lines, *_size_lines(case), *_end_lines(case, statement)]) + "\n"
 
 
@@ -180,14 +181,13 @@ def _short(case: Case, statement: dict[str, Any]) -> str:
     size = f"{1e3 * rod.length:.4g} mm x {1e3 * rod.diameter:.4g} mm"
     parts += [f"{one.material.name} ({one.name})" for one in rod.regions]
     main = [] if rod.segments else [rod.material.name]
-    lines += _wrapped(
-        [f"{size} of {', '.join(main + parts)}{case.scene.projectile.bored}", *statement["mesh"]]
-    )
+    lines += _wrapped([f"{size} of {', '.join(main + parts)}{rod.bored}", *statement["mesh"]])
     lines += _wrapped(_body_lines(statement["body"], _bends_as(case)))
     lines += ["", "Barrier and contact", *_wrapped(_contact_lines(case))]
-    lines += ["", "Laws in force", *_wrapped(statement["laws"].values()), "", "Effects"]
+    laws = (f"{place.removesuffix('.material')}: {law}" for place, law in statement["laws"].items())
+    lines += ["", "Laws in force", *_wrapped(laws), "", "Effects"]
     lines += _wrapped(
-        f"on  {one.name}{' (forced)' if one.forced else ''}: {_decided(one)}"
+        rod.named(f"on  {one.name}{' (forced)' if one.forced else ''}: {_decided(one)}")
         for one in case.choices
         if one.on
     )

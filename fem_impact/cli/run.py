@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import shlex
 import sys
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from contextlib import closing
 from pathlib import Path
 from time import perf_counter
@@ -118,7 +118,7 @@ def run(options: Options) -> int:
     else:
         own_tests = (scene.measured or "").endswith(OWN)
         spread = friction_spread(scene, case.fidelity, outcome) if outcome.validity.finished else None
-        print_outcome(outcome, out, own_tests, spread, scene.accuracy.target_of)
+        print_outcome(outcome, out, own_tests, spread, scene.accuracy.target_of, scene.projectile.named)
         if scene.impact.until != FIRST:
             from fem_impact.cli.strikes import print_strikes
 
@@ -211,11 +211,13 @@ def print_outcome(
     own_tests: bool = False,
     spread: FrictionSpread | None = None,
     target_of: str | None = None,
+    named: Callable[[str], str] = str,
 ) -> None:
     """Print the motion after impact, where the energy went, and every limitation.
 
     ``own_tests``: the scene names tests of the user's own, with whose arms e is worked out if they state any.
-    ``spread``: what the interval of friction changes, told beside each number.
+    ``spread``: what the interval of friction changes, told beside each number. ``named`` calls the body of a
+    label what it is.
     """
     lines = [headed(outcome.provenance.scene_id, outcome.provenance.scene_title), ""]
     lines += [*wrapped(spread.said), ""] if spread and spread.said else []
@@ -232,7 +234,7 @@ def print_outcome(
     # the keys of the listed shares of E_0 by their labels
     energy = outcome.energy
     listed = {
-        _label(share, energy): share.key
+        named(_label(share, energy)): share.key
         for share in shares("terminal")
         if not (share.key.path[-1] in _IF_ON and isinstance(share.of(energy), Unknown))
     }

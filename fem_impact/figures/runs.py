@@ -23,7 +23,7 @@ MOST = 800
 
 
 def force_picture(history: Table, contacts: Sequence[ContactInterval]) -> Picture:
-    """Return normal and tangential contact force on the whole rod, contact intervals shaded.
+    """Return normal and tangential contact force on the whole projectile, contact intervals shaded.
 
     Parameters
     ----------
@@ -42,8 +42,8 @@ def force_picture(history: Table, contacts: Sequence[ContactInterval]) -> Pictur
         Series("tangential (up the slope)", time * 1e6, tangential / 1e3, "dashed", "vermilion"),
     )
     intervals = [ShadedInterval(c.start * 1e6, c.end * 1e6, f"{c.impulse_n:.3g} N s") for c in contacts]
-    panel = Panel("", "time, µs", "contact force on the rod, kN", series, intervals=tuple(intervals))
-    caption = "Contact force on the whole rod; contact intervals shaded, with their normal impulse."
+    panel = Panel("", "time, µs", "contact force on the projectile, kN", series, intervals=tuple(intervals))
+    caption = "Contact force on the whole projectile; contact intervals shaded, with their normal impulse."
     numbers = Table.of(FORCE_COLUMNS, zip(time, normal, tangential, strict=True))
     return Picture("force", caption, (panel,), 1, numbers)
 

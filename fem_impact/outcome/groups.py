@@ -82,13 +82,13 @@ class Validity:
 
 @group
 class RodMotion:
-    """The rod and its motion at first contact and after the last separation, gravity removed."""
+    """The projectile and its motion at first contact and after the last separation, gravity removed."""
 
     friction: float = key(
         "friction_f", "-", "Coulomb coefficient that went in (not the impulse ratio mu that came out)."
     )
-    alpha: float = key("alpha_rad", "rad", "Angle between rod axis and barrier normal.")
-    mass: float = key("mass_kg", "kg", "Mass of the whole rod as modelled.")
+    alpha: float = key("alpha_rad", "rad", "Angle between projectile axis and barrier normal.")
+    mass: float = key("mass_kg", "kg", "Mass of the whole projectile as modelled.")
     k_squared: float = key(
         "k_squared_m2", "m2", "Squared radius of gyration about b through the mass centre."
     )
@@ -113,7 +113,7 @@ class RodMotion:
 
 @group
 class BarrierMotion:
-    """The barrier as a whole, before and after the impact; the rod's velocities are in the same frame."""
+    """The barrier as a whole, before and after the impact, in the frame of the projectile's velocities."""
 
     mass: Num = key("barrier_mass_kg", "kg", "Mass of a barrier that is free to move.")
     v_bn: float = key("v_bn_m_per_s", "m/s", "Normal velocity of the barrier at first contact.")
@@ -131,14 +131,15 @@ class BarrierMotion:
     angular_momentum_error: Num = key(
         "angular_momentum_error",
         "-",
-        "Change of the angular momentum of rod and barrier about their common mass centre, less gravity's "
-        "part, over the rod's momentum at first contact times the distance between the mass centres.",
+        "Change of the angular momentum of projectile and barrier about their common mass centre, less "
+        "gravity's part, over the projectile's momentum at first contact times the distance between the mass "
+        "centres.",
     )
     momentum_error: Num = key(
         "momentum_error",
         "-",
-        "Change of the momentum of rod and barrier together, less gravity's part, over the rod's at first "
-        "contact as seen from the barrier.",
+        "Change of the momentum of projectile and barrier together, less gravity's part, over the "
+        "projectile's at first contact as seen from the barrier.",
     )
 
 
@@ -184,7 +185,7 @@ class Energy:
     E_0: float = key(
         "E_0_J",
         "J",
-        "Kinetic energy of the whole rod at first contact. It is that seen from a moving barrier.",
+        "Kinetic energy of the whole projectile at first contact. It is that seen from a moving barrier.",
     )
     rigid: Num = share(
         "E_r_over_E_0",
@@ -206,16 +207,18 @@ class Energy:
     friction: Num = share("W_friction_over_E_0", "Work turned to heat by friction at the contact")
     skin: Num = share(
         "W_skin_over_E_0",
-        "Friction work, and plastic work of rod and barrier down to 0.1 mm below their surfaces",
+        "Friction work, and plastic work of projectile and barrier down to 0.1 mm below their surfaces",
     )
-    skin_rod: Num = share("W_skin_rod_over_E_0", "Plastic work of the rod down to 0.1 mm below its surface")
+    skin_rod: Num = share(
+        "W_skin_rod_over_E_0", "Plastic work of the projectile down to 0.1 mm below its surface"
+    )
     skin_barrier: Num = share(
         "W_skin_barrier_over_E_0", "Plastic work of the barrier down to 0.1 mm below its surface"
     )
-    plastic_rod: Num = share("E_plastic_rod_over_E_0", "Plastic work in the rod")
+    plastic_rod: Num = share("E_plastic_rod_over_E_0", "Plastic work in the projectile")
     plastic_barrier: Num = share("E_plastic_barrier_over_E_0", "Plastic work in the barrier")
     locked_rod: Num = share(
-        "E_locked_rod_over_E_0", "Elastic energy held by residual stress in the rod, no vibration"
+        "E_locked_rod_over_E_0", "Elastic energy held by residual stress in the projectile, no vibration"
     )
     locked_barrier: Num = share(
         "E_locked_barrier_over_E_0", "Elastic energy held by residual stress in the barrier, no vibration"
@@ -252,7 +255,7 @@ class Energy:
 
 @group
 class ContactInterval:
-    """One interval of contact, with its impulses on the whole rod."""
+    """One interval of contact, with its impulses on the whole projectile."""
 
     start: float = key("start_s", "s", "First touch.")
     end: float = key("end_s", "s", "Separation.")
@@ -267,12 +270,12 @@ class ContactInterval:
 
 @group
 class ContactSite:
-    """One place of contact of the whole rod: the skin of the rod that was pressed, as it lay before."""
+    """One place of contact: the skin of the projectile that was pressed, as it lay before."""
 
     start: float = key("start_s", "s", "First touch there.")
     end: float = key("end_s", "s", "Last touch there.")
-    impulse_n: float = key("impulse_n_Ns", "N s", "Normal impulse on the rod.")
-    impulse_t: float = key("impulse_t_Ns", "N s", "Tangential impulse on the rod, up the slope.")
+    impulse_n: float = key("impulse_n_Ns", "N s", "Normal impulse on the projectile.")
+    impulse_t: float = key("impulse_t_Ns", "N s", "Tangential impulse on the projectile, up the slope.")
     low_t: float = key("low_t_m", "m", "Lower end along t, from the place that touches first.")
     high_t: float = key("high_t_m", "m", "Upper end along t.")
     width: float = key("width_m", "m", "Width across the plane of motion.")
@@ -292,7 +295,7 @@ class Markers:
 
 @group
 class Readings:
-    """What else a test may measure: the dent that stays, and the strain that a gauge on the rod shows."""
+    """What else a test may measure: the dent that stays, and the strain of a gauge on the projectile."""
 
     dent_depth: Num = key(
         "dent_depth_m", "m", "Depth of the dent that stays in the barrier, under the surface around it.", True
@@ -313,7 +316,7 @@ class Contact:
     """The contact over time, and what a camera would have seen of the motion that it leaves."""
 
     intervals: tuple[ContactInterval, ...] | Unknown = key(
-        "contacts", "s, N s", "Each contact interval with its impulses on the rod."
+        "contacts", "s, N s", "Each contact interval with its impulses on the projectile."
     )
     sites: tuple[ContactSite, ...] | Unknown = key(
         "contact_sites", "s, N s, m", "Each place of contact: when, with which impulses, how wide and deep."
@@ -321,9 +324,12 @@ class Contact:
     strikes_again: bool | Unknown = key(
         "strikes_again",
         "",
-        "True when the mass centre still comes down after the last separation: the rod strikes once more.",
+        "True when the mass centre still comes down after the last separation: the projectile strikes once "
+        "more.",
     )
-    peak_force: Num = key("peak_force_N", "N", "Largest normal force on the rod, mean over 2 us.", True)
+    peak_force: Num = key(
+        "peak_force_N", "N", "Largest normal force on the projectile, mean over 2 us.", True
+    )
     readings: Readings
     markers: Markers
 
@@ -370,7 +376,7 @@ class RunCost:
 
     steps: int | Unknown = key("steps", "-", "Time steps taken.")
     element_steps: int | Unknown = key("element_steps", "-", "Elements times steps, summed.")
-    elements_rod: int | Unknown = key("elements_rod", "-", "Elements of the meshed (half) rod.")
+    elements_rod: int | Unknown = key("elements_rod", "-", "Elements of the meshed (half) projectile.")
     elements_barrier: int | Unknown = key("elements_barrier", "-", "Elements of the meshed (half) barrier.")
     elements_yielding: int | Unknown = key("elements_yielding", "-", "Elements whose material could yield.")
     wall: float = key("wall_s", "s", "Wall time of the time loop, compilation apart.")
@@ -381,7 +387,7 @@ class RunCost:
     setup_cpu: Num = key("setup_cpu_s", "s", "Processor time around the time loop, compilation apart.")
     peak_memory: Num = key("peak_memory_MB", "MB", "Largest resident memory, in 10^6 bytes.")
     min_step: Num = key("min_step_s", "s", "Smallest time step.")
-    tip_size: Num = key("tip_size_m", "m", "Smallest element edge of the rod, at its tip.")
+    tip_size: Num = key("tip_size_m", "m", "Smallest element edge of the projectile, at its tip.")
     barrier_size: Num = key("barrier_size_m", "m", "Smallest element edge of the barrier along its surface.")
     mass_scaling: Num = key(
         "mass_scaling", "-", "Square of the step over that with true masses; 1: masses are true."

@@ -63,7 +63,7 @@ class Outcome:
     >>> round(outcome.restitution.edge.e, 2)
     0.31
     >>> outcome.energy.vibration
-    Unknown(reason='a rigid rod in an impact without duration does not know it')
+    Unknown(reason='a rigid body in an impact without duration does not know it')
     """
 
     provenance: Provenance

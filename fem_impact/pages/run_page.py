@@ -127,7 +127,9 @@ def run_page(folder: Path) -> str:
     outcome = Outcome.read(folder / "outcome.json")
     scene = _stated(folder)
     rigid = rigid_theory(outcome, scene)
-    shares = html.figure(partition_picture(outcome), make_directory(folder / "figures"))
+    shares = html.figure(
+        sections.named(partition_picture(outcome), scene), make_directory(folder / "figures")
+    )
     stop = "" if outcome.validity.finished else ": at the stop of this unfinished run"
     costs = sections.key_table(outcome, _keys("cost"))
     body = (
@@ -140,7 +142,7 @@ def run_page(folder: Path) -> str:
         html.section("Motion", _folded(outcome, "velocities and impulse ratios", MOTION, rigid)),
         _strikes(outcome, scene, folder),
         sections.waves_section(folder),
-        sections.history_figures(outcome, folder),
+        sections.history_figures(outcome, folder, scene=scene),
         html.section(
             "Contact",
             sections.contact_places(outcome),

@@ -1,12 +1,14 @@
 """Sections that the reports share, and model beside measured tests."""
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from html import escape
 from pathlib import Path
 from typing import Any
 
 from fem_impact.answers.compare import compare
 from fem_impact.errors import ResultError, SceneError
+from fem_impact.figures.panels import Picture
 from fem_impact.figures.runs import comparison_picture, force_picture, ledger_picture, waves_picture
 from fem_impact.figures.style import percent
 from fem_impact.files.atomic import make_directory
@@ -76,7 +78,25 @@ def validity(rows: Sequence[Outcome]) -> html.Markup:
     return html.section("Range of validity", html.bullets(_sentences(rows, "range", "model")))
 
 
-def history_figures(outcome: Outcome, folder: Path, again: bool = True) -> html.Markup:
+def named(picture: Picture, scene: Scene | None) -> Picture:
+    """Return a picture of one run whose labels call the body what it is."""
+    if scene is None:
+        return picture
+    of = scene.projectile.named
+    return replace(
+        picture,
+        panels=tuple(
+            replace(
+                panel,
+                rows=tuple(map(of, panel.rows)),
+                series=tuple(replace(one, label=of(one.label)) for one in panel.series),
+            )
+            for panel in picture.panels
+        ),
+    )
+
+
+def history_figures(outcome: Outcome, folder: Path, again: bool = True, scene: Scene | None = None) -> html.Markup:
     """Return ledger and contact force over time, or the sentence that says why they are missing.
 
     With ``again`` False, figures newer than history.csv are not drawn again.
@@ -87,7 +107,7 @@ def history_figures(outcome: Outcome, folder: Path, again: bool = True) -> html.
     try:
         history = read_history(folder / "history.csv")
         figures = make_directory(folder / "figures")
-        ledger = html.figure(ledger_picture(history, outcome.energy.E_0), figures, since)
+        ledger = html.figure(named(ledger_picture(history, outcome.energy.E_0), scene), figures, since)
         force = html.figure(force_picture(history, or_none(outcome.contact.intervals) or ()), figures, since)
     except ResultError as error:
         return html.section("Over time", html.paragraph(f"No curves over time: {error}"))
@@ -103,12 +123,12 @@ def waves_section(folder: Path) -> html.Markup:
         drawn = html.figure(waves_picture(read_waves(stored)), make_directory(folder / "figures"))
     except ResultError as error:
         drawn = html.paragraph(f"No diagram of the waves: {error}")
-    return html.section("Waves along the rod", drawn)
+    return html.section("Waves along the projectile", drawn)
 
 
 def film_section(folder: Path) -> html.Markup:
     """Return the film of the run, nothing when there is none."""
-    shown = html.film(folder, "Waves in the rod; scales are written on the picture.")
+    shown = html.film(folder, "Waves in the projectile; scales are written on the picture.")
     return html.section("Film of the waves", *([shown, html.paragraph(LENGTHS)] if shown.text else []))
 
 
@@ -160,7 +180,7 @@ def estimated(outcome: Outcome, key: Key) -> str:
 
 
 def contacts_table(outcome: Outcome) -> html.Markup:
-    """Return the contact intervals with their impulses on the whole rod."""
+    """Return the contact intervals with their impulses on the whole projectile."""
     head = ("contact", "start, µs", "end, µs", "normal impulse, N s", "tangential, N s", "ratio")
     intervals = or_none(outcome.contact.intervals) or ()
     rows: list[list[Cell]] = []
@@ -168,7 +188,7 @@ def contacts_table(outcome: Outcome) -> html.Markup:
         times = (f"{contact.start * 1e6:.1f}", f"{contact.end * 1e6:.1f}")
         normal, tangential = contact.impulse_n, contact.impulse_t
         rows.append([at, *times, normal, tangential, tangential / normal if normal else None])
-    return html.table(Table.of(head, rows), "Contact intervals, impulses on the whole rod.")
+    return html.table(Table.of(head, rows), "Contact intervals, impulses on the whole projectile.")
 
 
 def contact_places(outcome: Outcome) -> html.Markup:

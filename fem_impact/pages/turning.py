@@ -61,7 +61,7 @@ def write_view(folder: Path, out: Path, span: Span, field: str) -> RenderResult:
     motion = prepare(movement, field, times)
     (title, made, _, _), style = context(folder), FIELDS[field]
     lead = (
-        f"The whole rod, its deformation magnified {motion.peak:g} times, fading to true size at the "
+        f"The whole projectile, its deformation magnified {motion.peak:g} times, fading to true size at the "
         f"contact; colours: {style.name}, {style.unit}. Drag to turn, turn the wheel or pinch to come "
         "nearer, drag the slider to move in time."
     )
@@ -80,7 +80,7 @@ def _shown(motion: FilmData, times: np.ndarray) -> dict[str, Any]:
     mesh = {**skin, **states[first], **_colours(motion)}
     panel = {
         "title": "",
-        "alt": "the rod on the barrier, to be turned",
+        "alt": "the projectile on the barrier, to be turned",
         "height": HEIGHT,
         "data": [mesh],
         "layout": _layout(names, first, _eye(motion, times, nodes)),

@@ -157,7 +157,9 @@ class Reduction:
         of_result = limitations("result", *shown, gravity, again)
         outcome = Outcome(
             provenance=origin,
-            validity=_validity(end, failed, again, unmeshed, (*limited, *case.limitations, *of_result)),
+            validity=_validity(
+                end, failed, again, unmeshed, case.said((*limited, *case.limitations, *of_result))
+            ),
             motion=self.motion,
             barrier=self.barrier,
             restitution=self.restitution,

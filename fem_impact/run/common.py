@@ -30,7 +30,7 @@ HARDER = Unknown(
 )
 HARD = "neither body yields, so that no hardness limits the pressure of a touching spot"
 UNDETERMINED = Unknown("the contact point does not approach, or no moment acts about the mass centre: 0 / 0")
-NO_PUSH = Unknown("gravity has drawn the rod to the barrier more than that has pushed it away")
+NO_PUSH = Unknown("gravity has drawn the projectile to the barrier more than that has pushed it away")
 MELTS = "melt; melting is left out"
 """End of the reason of a temperature beyond a melting point."""
 RESIDUAL_LIMIT = 1e-4  # of E_0: above it a run failed

@@ -58,7 +58,7 @@ def _strikes_of(
         none = unknown(Strikes, f"the motion after the first impact is not known: {why}")
         return replace(none, until=case.scene.impact.until), ()
     strikes = course.body.strikes(course.state, course.finish, *course.held)
-    return strikes, limitations("model", *course.told, *RULES, *course.body.doubts())
+    return strikes, case.said(limitations("model", *course.told, *RULES, *course.body.doubts()))
 
 
 @dataclass(eq=False)

@@ -29,12 +29,12 @@ CHOICES = Unknown("effects are weighed for the finite elements; `fem-impact chec
 NOT_MESHED = Unknown("the reduced model has no elements")
 NO_STRESS = Unknown("the reduced model does not compute residual stress")
 SOFT_ROD = Unknown(
-    "the work in the surface of a rod that is softer than the barrier is known by finite elements alone: "
-    "this model was .14 and .17 of E_0 too high in two scenes"
+    "the work in the surface of a projectile that is softer than the barrier is known by finite elements "
+    "alone: this model was .14 and .17 of E_0 too high in two scenes"
 )
 UNDAMPED = Unknown("the reduced model has no material damping")
 UNSENT = Unknown("a local contact law sends no waves into the barrier")
-KEPT = Unknown("the modes of a rod are computed once and kept")
+KEPT = Unknown("the modes of a body are computed once and kept")
 
 
 def closed(

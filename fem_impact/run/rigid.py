@@ -32,7 +32,7 @@ MEAN_HEAT = (
     "Heat by closed form, from the mean friction power of the estimated contact: in seven scenes its flash "
     "temperature rise was 0.3 to 1.3 times that of finite elements."
 )
-UNKNOWN = "a rigid rod in an impact without duration does not know it"
+UNKNOWN = "a rigid body in an impact without duration does not know it"
 ASSUMPTIONS = (
     "The rod is rigid, the contact one point of its tip, and the impact takes no time.",
     "The impulse ratio follows from the sliding path with Coulomb's f: no ploughing, no elastic shear.",

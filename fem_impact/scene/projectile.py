@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import pairwise
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from fem_impact.arrays import Array, Ints
     from rigid import Body, Faceted, Turned
 
+ROD = re.compile(r"(?<![-\w])(?<!measured )rod(?![-\w])")  # no part of a name, nor one of the paper's
 SECTIONS = 400  # over the length, at which a wall is looked at
 # Cells over the diameter; of a body whose mean wall is a THIN-th of its mean diameter or less, so many that
 # the period of its ovalling is right to 0.4 to 1.3 %: with 8 it is 5 to 7 % too short, of rings of any wall
@@ -124,6 +126,10 @@ class ProjectileSpec:
         if self.is_ball or self.is_short:
             return "ball" if self.is_ball else "disc"
         return "body" if self.shape is not None else "tube" if self.bore else "rod"
+
+    def named(self, sentence: str) -> str:
+        """Return a sentence about a rod with what this is, `called`, in its place."""
+        return ROD.sub(self.called, sentence)
 
     @property
     def is_short(self) -> bool:

@@ -75,12 +75,15 @@ def test_words_and_table_name_the_hardest_strike_and_the_other_end(strikes):
 
 
 def test_the_hardest_strike_is_told_of_the_certain_ones_and_the_agreement_with_it(strikes):
-    certain = replace(strikes, certain=1, hardest_heat=2, hardest_energy=1, hardest_agree=41)
+    certain = replace(strikes, certain=1, hardest_heat=2, hardest_energy=1, hardest_agree=41, heat_agree=39)
     energy, heat = (one for one in told(certain) if one.startswith("Hardest"))
     speed = f"{strikes.each[0].approach:.4g} m/s"
     assert energy.startswith(f"Hardest by energy: strike 1, tip at {speed}: rigid motion from ")
     assert energy.endswith(" J, the hardest in 41 of 64 sequences.")
-    assert "not certain (strike 2 of this path); of the certain ones strike 1, " in heat
+    assert (
+        "not certain (strike 2 of this path, the hardest in 39 of 64 sequences); of the certain ones strike 1, "
+        in heat
+    )
 
 
 def test_the_pages_of_a_run_show_the_strikes(tmp_path):

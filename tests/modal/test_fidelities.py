@@ -141,7 +141,7 @@ def test_compare_and_tables_take_what_is_not_known():
     rows = compare(simulate(load("t5b"), "rigid"))
     by_name = {row["quantity"]: row for row in rows}
     assert by_name["vibration/E_0"]["model"] is None
-    assert "not known: a rigid rod" in by_name["vibration/E_0"]["verdict"]
+    assert "not known: a rigid body" in by_name["vibration/E_0"]["verdict"]
     assert by_name["mu"]["verdict"] == "inside"
 
 

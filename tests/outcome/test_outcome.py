@@ -96,7 +96,7 @@ def test_texts_for_the_eye_are_short_and_have_units():
 
 
 def test_docstrings_name_unit_and_meaning():
-    assert "E_0 : J\n    Kinetic energy of the whole rod at first contact." in Energy.__doc__
+    assert "E_0 : J\n    Kinetic energy of the whole projectile at first contact." in Energy.__doc__
 
 
 def test_an_outcome_travels_between_processes():

@@ -126,9 +126,9 @@ def test_rigid_theory_stands_beside_the_numbers(run):
 
 
 def test_the_waves_have_a_diagram_with_data(run):
-    assert "Waves along the rod" not in read(write_report(run))[1]
+    assert "Waves along the projectile" not in read(write_report(run))[1]
     result_maker.write_waves(run / "waves.h5")
-    assert "Waves along the rod" in read(write_report(run))[1]
+    assert "Waves along the projectile" in read(write_report(run))[1]
     assert (run / "figures" / "waves.csv").is_file()
     (run / "waves.h5").write_bytes(b"no waves")
     assert "No diagram of the waves" in read(write_report(run))[1]
