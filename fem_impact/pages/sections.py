@@ -96,7 +96,9 @@ def named(picture: Picture, scene: Scene | None) -> Picture:
     )
 
 
-def history_figures(outcome: Outcome, folder: Path, again: bool = True, scene: Scene | None = None) -> html.Markup:
+def history_figures(
+    outcome: Outcome, folder: Path, again: bool = True, scene: Scene | None = None
+) -> html.Markup:
     """Return ledger and contact force over time, or the sentence that says why they are missing.
 
     With ``again`` False, figures newer than history.csv are not drawn again.

@@ -80,10 +80,8 @@ def test_the_hardest_strike_is_told_of_the_certain_ones_and_the_agreement_with_i
     speed = f"{strikes.each[0].approach:.4g} m/s"
     assert energy.startswith(f"Hardest by energy: strike 1, tip at {speed}: rigid motion from ")
     assert energy.endswith(" J, the hardest in 41 of 64 sequences.")
-    assert (
-        "not certain (strike 2 of this path, the hardest in 39 of 64 sequences); of the certain ones strike 1, "
-        in heat
-    )
+    assert "not certain (strike 2 of this path, the hardest in 39 of 64 sequences); of the certain" in heat
+    assert "ones strike 1, " in heat
 
 
 def test_the_pages_of_a_run_show_the_strikes(tmp_path):
