@@ -22,8 +22,8 @@ from fem_impact.version import __version__ as __version__
 if TYPE_CHECKING:
     from fem_impact.answers.simulate import simulate
     from fem_impact.answers.sweep import sweep
+    from fem_impact.answers.sweep_results import Results
     from fem_impact.answers.validate import Validation, validate
-    from fem_impact.answers.vary import Results
     from fem_impact.answers.verdict.assess import Verdict, assess
     from fem_impact.case.case import Case
     from fem_impact.fem.exchange import to_meshio, to_pyvista, to_skfem
@@ -79,7 +79,7 @@ __all__ = [
 _PLACES = {
     "Case": "case.case:Case",
     "Outcome": "outcome.record:Outcome",
-    "Results": "answers.vary:Results",
+    "Results": "answers.sweep_results:Results",
     "RunOptions": "options:RunOptions",
     "Scene": "scene.types:Scene",
     "Unknown": "outcome.keys:Unknown",

@@ -1,4 +1,4 @@
-"""The mesh of hexahedra that all builders make, its making from plain cells, and the tables of its cells."""
+"""The mesh of hexahedra that all builders make, its making from plain cells, and the tables of a cell."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -7,9 +7,9 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sp
 
-from meshes.common import BoolArray, FloatArray, IntArray, MeshError
+from meshes.common import FloatArray, IntArray, MeshError
 
-#: (8, 3) corner places in the unit cube.
+#: (8, 3) corner places in the unit cube, in VTK order.
 CORNERS: IntArray = np.array(
     [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]], dtype=np.int64
 )
@@ -24,26 +24,6 @@ EDGES: IntArray = np.array(
 FACES: IntArray = np.array(
     [[0, 4, 7, 3], [1, 2, 6, 5], [0, 1, 5, 4], [2, 3, 7, 6], [0, 3, 2, 1], [4, 5, 6, 7]], dtype=np.int64
 )
-
-#: (6, 4) edges whose two ends both lie on each face.
-FACE_EDGES: IntArray = np.nonzero([np.isin(EDGES, face).all(axis=1) for face in FACES])[1].reshape(6, 4)
-
-
-def _children() -> IntArray:
-    """(8, 8) columns of the 27 nodes that each child takes, in VTK order."""
-    edges, faces = CORNERS[EDGES].sum(axis=1), CORNERS[FACES].sum(axis=1) // 2
-    lattice = np.concatenate([2 * CORNERS, edges, faces, [[1, 1, 1]]])  # (27, 3) node places, 0 to 2
-    places = CORNERS[:, None, :] + CORNERS[None, :, :]
-    return np.asarray((places[:, :, None] == lattice).all(axis=-1).argmax(axis=-1))
-
-
-CHILDREN: IntArray = _children()
-
-#: (8, 6) True where face f of child c lies on face f of its parent.
-CHILD_KEEPS_FACE: BoolArray = np.array(
-    [[CORNERS[c, f // 2] == f % 2 for f in range(6)] for c in range(8)], dtype=np.bool_
-)
-
 
 SKIN = 0
 SYMMETRY = 1

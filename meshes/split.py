@@ -1,4 +1,7 @@
-"""Splitting cells 2 x 2 x 2 with shared nodes, and the places of the new nodes."""
+"""Splitting cells 2 x 2 x 2 with shared nodes, and the places of the new nodes.
+
+The 27 nodes of a split cell stand in the order 8 corners, 12 edge middles, 6 face centres, 1 centre.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -7,16 +10,25 @@ import numpy as np
 import numpy.typing as npt
 
 from meshes.common import BoolArray, FloatArray, IntArray
-from meshes.hexmesh import (
-    CHILD_KEEPS_FACE,
-    CHILDREN,
-    EDGES,
-    FACE_EDGES,
-    FACES,
-    SKIN,
-    HexMesh,
-    face_keys,
-    match_faces,
+from meshes.hexmesh import CORNERS, EDGES, FACES, SKIN, HexMesh, face_keys, match_faces
+
+#: (6, 4) edges whose two ends both lie on each face.
+FACE_EDGES: IntArray = np.nonzero([np.isin(EDGES, face).all(axis=1) for face in FACES])[1].reshape(6, 4)
+
+
+def _children() -> IntArray:
+    """(8, 8) columns of the 27 nodes that each child takes, in VTK order."""
+    edges, faces = CORNERS[EDGES].sum(axis=1), CORNERS[FACES].sum(axis=1) // 2
+    lattice = np.concatenate([2 * CORNERS, edges, faces, [[1, 1, 1]]])  # (27, 3) node places, 0 to 2
+    places = CORNERS[:, None, :] + CORNERS[None, :, :]
+    return np.asarray((places[:, :, None] == lattice).all(axis=-1).argmax(axis=-1))
+
+
+CHILDREN: IntArray = _children()
+
+#: (8, 6) True where face f of child c lies on face f of its parent.
+CHILD_KEEPS_FACE: BoolArray = np.array(
+    [[CORNERS[c, f // 2] == f % 2 for f in range(6)] for c in range(8)], dtype=np.bool_
 )
 
 #: Moves points (k, 3), m, onto the exact surface, each in the middle of its parents (k, c, 3), m.

@@ -15,19 +15,8 @@ import numpy as np
 
 from fem_impact.answers.report import Request, Sheet, StudyReport, StudyResult, publish
 from fem_impact.answers.simulate import compiled, simulate
-from fem_impact.answers.vary import (
-    HIGH,
-    SHORT,
-    Results,
-    SweepRow,
-    Variation,
-    cases,
-    in_unit,
-    listed,
-    measure,
-    require_columns,
-    row_of,
-)
+from fem_impact.answers.sweep_results import HIGH, SHORT, Results, SweepRow, require_columns, row_of
+from fem_impact.answers.vary import Variation, cases, in_unit, listed, measure
 from fem_impact.case.effects.heating import thermal
 from fem_impact.errors import FemImpactError, UsageError, did_you_mean
 from fem_impact.figures.panels import Panel, Picture, Series

@@ -5,17 +5,9 @@ from fem_impact.case.effects.heating import thermal
 from fem_impact.case.effects.plasticity import hardening_of
 from fem_impact.case.elastic_only import left_out
 from fem_impact.physics.hardening import TABOR_STRAIN, rate_gain, rate_law
+from fem_impact.scene import material as materials
 from fem_impact.scene.inputs import materials_of, melting
 from fem_impact.scene.library import family_of
-from fem_impact.scene.material import (
-    Flow,
-    JohnsonCookFlow,
-    JohnsonCookRate,
-    Material,
-    RambergOsgoodFlow,
-    Rate,
-    TableFlow,
-)
 from fem_impact.scene.surface_table import known_pair
 
 RATES = (1e2, 1e3, 1e4)  # 1/s, at which flow stresses are told
@@ -40,11 +32,11 @@ def unknowns(bodies: Bodies) -> tuple[str, ...]:
     return tuple(sentence for sentence in sentences if sentence)
 
 
-def _metals(bodies: Bodies) -> dict[str, Material]:
+def _metals(bodies: Bodies) -> dict[str, materials.Material]:
     return {"rod": bodies.contact.rod, "barrier": bodies.contact.barrier}
 
 
-def _body(body: str, metal: Material, bodies: Bodies) -> str:
+def _body(body: str, metal: materials.Material, bodies: Bodies) -> str:
     used, effects = body == "rod" or bodies.contact.compliant, bodies.scene.effects
     if used and not metal.yields:
         lost = left_out(metal, "contact-loss" in bodies.effects)
@@ -114,7 +106,7 @@ def laws(bodies: Bodies) -> dict[str, str]:
     }
 
 
-def _law(place: str, metal: Material, bodies: Bodies) -> str:
+def _law(place: str, metal: materials.Material, bodies: Bodies) -> str:
     body = "rod" if place.startswith("projectile") else "barrier"
     later, effects = ".segments[" in place and place != FIRST, bodies.effects
     inner = later or ".mesh_materials." in place
@@ -130,7 +122,7 @@ def _law(place: str, metal: Material, bodies: Bodies) -> str:
     return f"{_curve(metal)}{rate}"
 
 
-def _curve(metal: Material) -> str:
+def _curve(metal: materials.Material) -> str:
     """Return the flow curve in words."""
     start = f"yields at {_MPa(metal.yield_stress)}"
     if metal.plastic_modulus is not None:
@@ -143,20 +135,20 @@ def _curve(metal: Material) -> str:
     return f"{start}, power law through the ultimate stress {_MPa(metal.ultimate_stress)}"
 
 
-def _flow(flow: Flow) -> str:
-    if isinstance(flow, TableFlow):
+def _flow(flow: materials.Flow) -> str:
+    if isinstance(flow, materials.TableFlow):
         return f"along a table of {len(flow.points)} points, flat behind {flow.points[-1][0]:g}"
-    if isinstance(flow, RambergOsgoodFlow):
+    if isinstance(flow, materials.RambergOsgoodFlow):
         return f"its .2 % proof stress, by Ramberg and Osgood with n {flow.n:g}"
-    assert isinstance(flow, JohnsonCookFlow)
+    assert isinstance(flow, materials.JohnsonCookFlow)
     heat = ", softened by the heat that stays" if flow.m is not None else ", without temperature"
     return f"by Johnson and Cook with B {_MPa(flow.B)}, n {flow.n:g}{heat}"
 
 
-def _rate(rate: Rate | None) -> str:
+def _rate(rate: materials.Rate | None) -> str:
     if rate is None:
         return ", at any strain rate: no rate data"
-    if isinstance(rate, JohnsonCookRate):
+    if isinstance(rate, materials.JohnsonCookRate):
         return f", times Johnson and Cook's rate factor with C {rate.C:g}"
     return f", times Cowper and Symonds' rate factor with D {rate.D:g} /s, q {rate.q:g}"
 

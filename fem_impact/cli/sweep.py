@@ -19,7 +19,7 @@ from fem_impact.jobs.executors import cores, on_scheduler
 from fem_impact.options import FIDELITIES
 
 if TYPE_CHECKING:
-    from fem_impact.answers.vary import Results
+    from fem_impact.answers.sweep_results import Results
 
 
 def add_options(parser: CommandParser) -> None:
@@ -48,7 +48,8 @@ def sweep(options: Options) -> int:
     """Compute all combinations, write table and figures, and print the findings."""
     from fem_impact.answers.sweep import FIDELITY, cases_digest
     from fem_impact.answers.sweep import sweep as swept
-    from fem_impact.answers.vary import cases, require_columns
+    from fem_impact.answers.sweep_results import require_columns
+    from fem_impact.answers.vary import cases
 
     columns = [name.strip() for name in options.columns.split(",")] if options.columns else []
     require_columns(columns)

@@ -16,18 +16,8 @@ from typing import Any, ClassVar, get_type_hints
 
 from fem_impact.errors import UsageError, did_you_mean
 from fem_impact.files.atomic import read_signed, read_text, signed, write_text
+from fem_impact.outcome import groups
 from fem_impact.outcome.check import SCHEMA_VERSION, check_record
-from fem_impact.outcome.groups import (
-    BarrierMotion,
-    Contact,
-    Energy,
-    Heat,
-    Provenance,
-    Restitution,
-    RodMotion,
-    RunCost,
-    Validity,
-)
 from fem_impact.outcome.keys import Key, Num, Unknown, keys_of, or_none
 from fem_impact.outcome.strikes import Strikes
 from fem_impact.plugins import providers
@@ -66,16 +56,16 @@ class Outcome:
     Unknown(reason='a rigid body in an impact without duration does not know it')
     """
 
-    provenance: Provenance
-    validity: Validity
-    motion: RodMotion
-    barrier: BarrierMotion
-    restitution: Restitution
-    energy: Energy
-    contact: Contact
-    heat: Heat
+    provenance: groups.Provenance
+    validity: groups.Validity
+    motion: groups.RodMotion
+    barrier: groups.BarrierMotion
+    restitution: groups.Restitution
+    energy: groups.Energy
+    contact: groups.Contact
+    heat: groups.Heat
     strikes: Strikes
-    cost: RunCost
+    cost: groups.RunCost
 
     schema_version: ClassVar[int] = SCHEMA_VERSION
 

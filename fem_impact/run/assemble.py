@@ -8,22 +8,7 @@ from typing import Self
 from fem_impact.arrays import Array
 from fem_impact.case.case import Case
 from fem_impact.case.effects.registry import EFFECTS
-from fem_impact.outcome.groups import (
-    BarrierMotion,
-    Contact,
-    ContactInterval,
-    ContactSite,
-    EffectChoice,
-    Energy,
-    Heat,
-    Markers,
-    Provenance,
-    Readings,
-    Restitution,
-    RodMotion,
-    RunCost,
-    Validity,
-)
+from fem_impact.outcome import groups
 from fem_impact.outcome.keys import Num, Unknown, unknown
 from fem_impact.outcome.limitation import Limitation, limitations
 from fem_impact.outcome.record import Outcome, installed_versions, utc_now
@@ -46,7 +31,7 @@ from fem_impact.scene.impact import FIRST
 from fem_impact.scene.types import digest
 
 NO_READINGS = unknown(
-    Readings, "only finite elements follow the dent that stays and the strain along the projectile"
+    groups.Readings, "only finite elements follow the dent that stays and the strain along the projectile"
 )
 ONE_POINT = Unknown("only finite elements find where the bodies touch: this fidelity has one contact point")
 NO_TARGET = Unknown("the scene gives a mesh, not the error it allows")
@@ -94,9 +79,9 @@ class Reduction:
 
     case: Case
     end: ImpactEnd
-    motion: RodMotion
-    barrier: BarrierMotion
-    restitution: Restitution
+    motion: groups.RodMotion
+    barrier: groups.BarrierMotion
+    restitution: groups.Restitution
 
     @classmethod
     def of(cls, case: Case, end: ImpactEnd) -> Self:
@@ -112,18 +97,18 @@ class Reduction:
 
     def outcome(
         self,
-        energy: Energy,
-        markers: Markers,
-        heat: Heat,
-        cost: RunCost,
+        energy: groups.Energy,
+        markers: groups.Markers,
+        heat: groups.Heat,
+        cost: groups.RunCost,
         *,
         peak_force: Num,
-        choices: tuple[EffectChoice, ...] | Unknown,
+        choices: tuple[groups.EffectChoice, ...] | Unknown,
         unmeshed: str,
         limited: Iterable[Limitation],
         withheld: str = "",
-        sites: tuple[ContactSite, ...] | Unknown = ONE_POINT,
-        readings: Readings = NO_READINGS,
+        sites: tuple[groups.ContactSite, ...] | Unknown = ONE_POINT,
+        readings: groups.Readings = NO_READINGS,
     ) -> Outcome:
         """Return the outcome; what a failed, cut off or unresolved run does not know is unknown there.
 
@@ -141,7 +126,7 @@ class Reduction:
         gravity, ruled = _gravity(case, end.contacts)
         failed = _open_ledger(end.missing) or ruled
         cut = failed or ("" if end.separated else end.reason)
-        origin = Provenance(
+        origin = groups.Provenance(
             fidelity=case.fidelity,
             scene_id=case.scene.id,
             scene_title=case.scene.title,
@@ -164,7 +149,7 @@ class Reduction:
             barrier=self.barrier,
             restitution=self.restitution,
             energy=energy,
-            contact=Contact(
+            contact=groups.Contact(
                 intervals=_intervals(end.contacts, unmeshed),
                 sites=sites,
                 strikes_again=comes_down(end.leaving) if end.finished else CUT_OFF,
@@ -182,9 +167,9 @@ class Reduction:
 
 def _validity(
     end: ImpactEnd, failed: str, again: str, unmeshed: str, limited: tuple[Limitation, ...]
-) -> Validity:
+) -> groups.Validity:
     """Return how far to trust one run, which may have ``failed`` for a reason or strike ``again``."""
-    return Validity(
+    return groups.Validity(
         finished=end.finished and not failed,
         stopped_because=f"{failed or end.reason} {again}".rstrip(),
         limitations=limited,
@@ -197,11 +182,11 @@ def _validity(
     )
 
 
-def _intervals(contacts: Array | None, why: str) -> tuple[ContactInterval, ...] | Unknown:
+def _intervals(contacts: Array | None, why: str) -> tuple[groups.ContactInterval, ...] | Unknown:
     if contacts is None:
         return Unknown(why)
     return tuple(
-        ContactInterval(start=start, end=end, impulse_n=normal, impulse_t=tangential)
+        groups.ContactInterval(start=start, end=end, impulse_n=normal, impulse_t=tangential)
         for start, end, normal, tangential in contacts.tolist()
     )
 

@@ -12,7 +12,8 @@ from outcome_maker import altered, outcome
 
 import fem_impact
 from fem_impact.answers.sweep import MOST_ROWS, publish_sweep, sweep
-from fem_impact.answers.vary import COLUMNS, SHORT, Results, SweepRow, Variation, cases, in_unit
+from fem_impact.answers.sweep_results import COLUMNS, SHORT, Results, SweepRow
+from fem_impact.answers.vary import Variation, cases, in_unit
 from fem_impact.cli.values import read_values
 from fem_impact.errors import SceneError, UsageError
 from fem_impact.files.run_directory import earlier_runs

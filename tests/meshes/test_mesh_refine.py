@@ -6,8 +6,8 @@ from mesh_shapes import area_vectors, contact_zone, edge_radius, flux_volume, in
 
 import meshes
 from meshes.gauss import GRADIENTS, jacobians
-from meshes.hexmesh import CORNERS, EDGES, FACE_EDGES, FACES
-from meshes.split import Birth
+from meshes.hexmesh import CORNERS, EDGES, FACES
+from meshes.split import FACE_EDGES, Birth
 
 small = st.floats(0.0, 1.0)
 
