@@ -1,7 +1,5 @@
 """What can go wrong for a user: typed errors, each with the exit code that the command line returns."""
 
-from __future__ import annotations
-
 import json
 import re
 from collections.abc import Callable, Collection, Iterable
@@ -62,7 +60,7 @@ class SceneError(StatementError):
 
     exit_code: ClassVar[int] = 3
 
-    def under(self, prefix: str, source: str = "") -> SceneError:
+    def under(self, prefix: str, source: str = "") -> "SceneError":
         """Return the same complaint, with its key placed below ``prefix`` and its file named."""
         key = ".".join(part for part in (prefix, self.key) if part)
         return SceneError(

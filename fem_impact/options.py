@@ -1,15 +1,10 @@
 """How a run is carried out: where its files go, who is told, how it is kept. None of it changes a number."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from fem_impact.progress import Notice, Progress
-
+from fem_impact.progress import Notice, Progress
 
 FIDELITIES = ("rigid", "modal", "solid")  # models of a scene, the cheapest first
 CHECKPOINT_INTERVAL = 30.0  # s of wall time

@@ -1,7 +1,5 @@
 """A projectile bounded by flat facets, of any shape with a plane of symmetry, such as that of a mesh."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 
@@ -102,7 +100,7 @@ class Faceted:
         """Slenderness coefficient (Eq 29) with the largest width, m^-0.3815."""
         return float(slenderness(self.length, self.diameter))
 
-    def reversed(self) -> Faceted:
+    def reversed(self) -> "Faceted":
         """Return the body with its tail as its tip: turned by half a turn in the plane of motion."""
         low, high, mass, x, z, xx, zz = self.parts.T
         length = self.length

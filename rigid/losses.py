@@ -1,7 +1,5 @@
 """Energy losses: from velocities (Eq 20, 21, 26), from coefficients (Eq 23-25), at most by any contact."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from numpy.typing import ArrayLike
@@ -18,7 +16,7 @@ class Losses(NamedTuple):
     E_r: Floats
     E_0: Floats
 
-    def fractions(self) -> Losses:
+    def fractions(self) -> "Losses":
         """All four divided by E_0."""
         return Losses(*(value / self.E_0 for value in self))
 

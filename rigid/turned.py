@@ -1,7 +1,5 @@
 """A projectile turned from its profile: outer radius and bore along the axis, densities along the axis."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 from itertools import pairwise
@@ -232,7 +230,7 @@ class Turned:
         line = hull(both_sides(self.outline), LEVEL * self.length)
         return cut(rounds_of(line, CORNER), math.pi)
 
-    def reversed(self) -> Turned:
+    def reversed(self) -> "Turned":
         """Return the body with its tail as its tip."""
         behind, ends = self.outline[::-1] * (1, -1) + (0, self.length), [end for end, _ in self.density]
         if behind[0, 0] > 0.0:

@@ -1,7 +1,5 @@
 """One scene with values varied in all combinations: table, figures, report, and a store to go on from."""
 
-from __future__ import annotations
-
 import tempfile
 from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
@@ -9,7 +7,7 @@ from contextlib import nullcontext
 from dataclasses import replace
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -27,13 +25,9 @@ from fem_impact.jobs.run import run_jobs
 from fem_impact.jobs.store import STORE
 from fem_impact.options import FIDELITIES
 from fem_impact.outcome.record import KEY_TABLE, KEYS
-from fem_impact.progress import Notice, watched
+from fem_impact.progress import Notice, ProgressMeter, watched
 from fem_impact.scene.shipped import named
 from fem_impact.scene.types import Scene, digest
-
-if TYPE_CHECKING:
-    from fem_impact.progress import ProgressMeter
-
 
 FIDELITY = "modal"
 """Fidelity of a sweep unless stated: a run takes some ten milliseconds."""

@@ -1,7 +1,5 @@
 """The case of a scene: what it calls for, compiled once before any mesh is made, and handed on."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -56,7 +54,7 @@ class Case:
     dent: AnyZones | None = None
 
     @classmethod
-    def of(cls, scene: Scene, fidelity: str = "solid", record: ContactRecord | None = None) -> Case:
+    def of(cls, scene: Scene, fidelity: str = "solid", record: ContactRecord | None = None) -> "Case":
         """Return the case of a scene that the fidelity can compute.
 
         Raises

@@ -1,7 +1,5 @@
 """Where two bodies touched and flowed in a run, for the meshes of the next; what may touch at first."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from hashlib import sha256
@@ -50,7 +48,7 @@ class BodyRecord:
     reach: float
     spread: float
 
-    def wider(self, factor: float) -> BodyRecord:
+    def wider(self, factor: float) -> "BodyRecord":
         """Return the record with so many times the room around it."""
         return replace(self, reach=factor * self.reach, spread=factor * self.spread)
 
@@ -130,7 +128,7 @@ class ContactRecord:
         return held.getvalue()
 
     @classmethod
-    def read(cls, path: Path) -> ContactRecord:
+    def read(cls, path: Path) -> "ContactRecord":
         """Read a record back (ResultError: it is missing, damaged or of another run)."""
         check_digest(path)
         try:
@@ -146,7 +144,7 @@ class ContactRecord:
         )
         return cls(rod, barrier, sites, left, resolved, crushed)
 
-    def wider(self, factor: float = 2.0) -> ContactRecord:
+    def wider(self, factor: float = 2.0) -> "ContactRecord":
         """Return a record after which the next mesh holds more room ready around what is known."""
         barrier = self.barrier and self.barrier.wider(factor)
         return replace(self, rod=self.rod.wider(factor), barrier=barrier)

@@ -1,7 +1,5 @@
 """The command line: its options, its parser, the list of all commands, and how a line is read."""
 
-from __future__ import annotations
-
 import argparse
 import sys
 from collections.abc import Callable, Collection, Iterator, Sequence
@@ -17,7 +15,7 @@ from fem_impact.options import CHECKPOINT_INTERVAL
 class Options(argparse.Namespace):
     """Options of the command line; those of other commands than the given one have their defaults."""
 
-    handler: Callable[[Options], int] | None = None
+    handler: "Callable[[Options], int] | None" = None
     version: bool = False
     json: bool = False
     quiet: bool = False

@@ -1,7 +1,5 @@
 """Values of ``--vary`` and ``--uncertain``: lists and ranges with units, tables and files."""
 
-from __future__ import annotations
-
 import re
 import tomllib
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """Numbering of the unknowns in the flat vectors of the time loop, and the mass points of the rod's slices."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from math import pi
 
@@ -121,7 +119,7 @@ class MassPoints:
         density: float,
         linear: tuple[int, int, int] = MIRRORED,
         bore: float = 0.0,
-    ) -> MassPoints:
+    ) -> "MassPoints":
         """Return the mass points of a rod with row-sum masses ``mass`` (cells, 8), kg.
 
         The section is taken as the circle of its area, or as the ring around a ``bore`` of a radius, m. A

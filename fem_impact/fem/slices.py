@@ -5,8 +5,6 @@ layer therefore has A21 to the layer below, A11 + A22 on itself and A12 to the l
 are the same for all layers and stored once.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -39,14 +37,14 @@ class SliceOperator:
         apply_slices(self.start, self.columns, self.below, self.own, self.above, ends, d, y)
 
     @classmethod
-    def none(cls) -> SliceOperator:
+    def none(cls) -> "SliceOperator":
         """Return the operator of a body without slices."""
         empty = np.zeros(0)
         start, columns = np.zeros(1, np.int64), np.zeros(0, np.int64)
         return cls(start, columns, empty, empty, empty, empty, empty)
 
     @classmethod
-    def of_rod(cls, rod: RodMesh, K: Array) -> SliceOperator:
+    def of_rod(cls, rod: RodMesh, K: Array) -> "SliceOperator":
         """Build from a rod's mesh with slices and the element matrices (m, 24, 24) of its first slice."""
         section = np.full(len(rod.mesh.points), -1)
         section[rod.body_nodes[:, :2].T] = np.arange(len(rod.body_nodes))
@@ -54,7 +52,7 @@ class SliceOperator:
         return cls.of(K, section[first[:, :4]], section[first[:, 4:]])
 
     @classmethod
-    def of(cls, K: Array, lower_nodes: Ints, upper_nodes: Ints) -> SliceOperator:
+    def of(cls, K: Array, lower_nodes: Ints, upper_nodes: Ints) -> "SliceOperator":
         """Build from the element matrices (m, 24, 24) of one slice.
 
         ``lower_nodes`` and ``upper_nodes`` are (m, 4): section numbers of each cell's two quads, so

@@ -1,7 +1,5 @@
 """Sparse operators over the free unknowns: assembly with hanging nodes, and compiled products."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -107,7 +105,7 @@ class NodeProduct:
     product: Array
 
     @classmethod
-    def of(cls, matrix: sp.csr_matrix, places: Ints, origin: Array | None = None) -> NodeProduct:
+    def of(cls, matrix: sp.csr_matrix, places: Ints, origin: Array | None = None) -> "NodeProduct":
         """Build from a stiffness (size, size), N/m, and the unknowns (n, 3) of the free nodes.
 
         Nodes whose rows are empty are left out. ``origin`` (size,), m: positions without force (default 0).
@@ -205,7 +203,7 @@ class Hanging:
     weights: Array
 
     @classmethod
-    def of(cls, parts: list[tuple[sp.csr_matrix, Ints]]) -> Hanging:
+    def of(cls, parts: list[tuple[sp.csr_matrix, Ints]]) -> "Hanging":
         """Build from the meshes' (tie, unknowns (n, 3) of all nodes)."""
         slaves, counts, masters, weights = [], [], [], []
         for tie, places in parts:

@@ -1,7 +1,5 @@
 """Films of one run, and of several side by side, from their result directories."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -211,7 +209,7 @@ class PairBackground:
         titles: Sequence[str],
         made: Sequence[str],
         curves: Sequence[frame.Curve],
-    ) -> PairBackground:
+    ) -> "PairBackground":
         """Draw the still parts once, with title and force curve of each run."""
         drawn = frame.blank(layout)
         frame.heading(drawn, layout, TITLE)

@@ -1,7 +1,5 @@
 """A frame of a film: what stands around its views, still or moving."""
 
-from __future__ import annotations
-
 import functools
 import io
 from collections.abc import Callable, Sequence
@@ -54,8 +52,8 @@ class FilmBackground:
 
     layout: FrameLayout
     base: Image.Image
-    strip: Strip
-    profile: StrainProfile | None
+    strip: "Strip"
+    profile: "StrainProfile | None"
 
     @classmethod
     def make(
@@ -66,7 +64,7 @@ class FilmBackground:
         made: str,
         curve: Curve,
         times: np.ndarray,
-    ) -> FilmBackground:
+    ) -> "FilmBackground":
         """Draw the still parts once."""
         drawn, waves = blank(layout), motion.movement.waves if motion.field == "strain" else None
         heading(drawn, layout, title)
@@ -212,7 +210,7 @@ class Strip:
     track: tuple[float, float, float, float]
 
     @classmethod
-    def draw(cls, drawn: Figure, frame: Frame, place: Rectangle, curve: Curve, limits: Limits) -> Strip:
+    def draw(cls, drawn: Figure, frame: Frame, place: Rectangle, curve: Curve, limits: Limits) -> "Strip":
         """Draw the curve into a figure that is as large as the frame."""
         axes = curve_axes(drawn, frame, place, "time, µs", "normal force, kN")
         first, last, largest = limits
@@ -266,7 +264,7 @@ class StrainProfile:
     @classmethod
     def draw(
         cls, drawn: Figure, frame: Frame, place: Rectangle, waves: Waves, times: np.ndarray
-    ) -> StrainProfile:
+    ) -> "StrainProfile":
         """Draw the axes into a figure that is as large as the frame, high enough for all times."""
         limit = 1.1e6 * max(float(np.abs(part).max()) for part in waves.strain(times))
         inner = Rectangle(place.left + 54, place.top + 6, place.width - 66, place.height - 48)

@@ -1,7 +1,5 @@
 """Store of answers by the key of the job, in one SQLite file that only the process of the study writes."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import sqlite3
@@ -42,7 +40,7 @@ class Store:
 
     @classmethod
     @contextmanager
-    def open(cls, path: Path) -> Iterator[Store]:
+    def open(cls, path: Path) -> "Iterator[Store]":
         """Open the file, make it if it is not there, and close it at the end.
 
         Raises

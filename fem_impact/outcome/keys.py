@@ -3,8 +3,6 @@
 The table of keys, the checks of a file, its text and the attributes in docstrings are made from these.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, fields, is_dataclass
 from operator import attrgetter
@@ -114,7 +112,7 @@ class Key:
     nullable: bool = False
     banded: bool = False
     path: tuple[str, ...] = ()
-    entries: tuple[Key, ...] = ()
+    entries: "tuple[Key, ...]" = ()
     entry: type = object
     choices: tuple[str, ...] = ()
     of: Callable[[object], Any] = field(init=False, repr=False)

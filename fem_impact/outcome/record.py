@@ -1,7 +1,5 @@
 """The record of a run, written as flat JSON with a checksum and read back with all checks."""
 
-from __future__ import annotations
-
 import json
 import platform
 from collections.abc import Mapping
@@ -163,7 +161,7 @@ class Outcome:
         return write_text(path, self.to_json())
 
     @classmethod
-    def read(cls, path: str | Path) -> Outcome:
+    def read(cls, path: str | Path) -> "Outcome":
         """Read a record back, refusing one that is damaged, edited or of another version.
 
         Parameters
@@ -180,12 +178,12 @@ class Outcome:
         return cls.from_json(read_text(file), source=str(file))
 
     @classmethod
-    def from_json(cls, text: str, source: str = "JSON text") -> Outcome:
+    def from_json(cls, text: str, source: str = "JSON text") -> "Outcome":
         """Read a record from text, as strictly as from a file."""
         return cls.from_dict(read_signed(text, source), source)
 
     @classmethod
-    def from_dict(cls, values: Mapping[str, Any], source: str = "outcome") -> Outcome:
+    def from_dict(cls, values: Mapping[str, Any], source: str = "outcome") -> "Outcome":
         """Make a record from its flat keys with plain JSON values.
 
         Raises

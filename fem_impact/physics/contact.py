@@ -10,8 +10,6 @@ plastic with the limiting pressure p = 2.8 sigma_y of the softer body, pi p R d^
 depth d than R1 says, as behind a sharp edge, R1 is that of the parabola as wide there, w^2 / (8 d).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import copysign, cos, inf, pi, sin, sqrt
@@ -98,7 +96,7 @@ class ContactPair:
     plate: Plate | None = None
 
     @cached_property
-    def elastic(self) -> ContactPair:
+    def elastic(self) -> "ContactPair":
         """The same bodies, none of which yields."""
         return replace(self, rod_yields=False, barrier_yields=False)
 

@@ -1,7 +1,5 @@
 """Isotropic hardening laws of the J2 material."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from itertools import pairwise
 from math import log, log1p, sqrt
@@ -131,7 +129,7 @@ class Hardening:
         return PowerLaw(self.yield_stress, self.slope, self.exponent)
 
     @property
-    def power(self) -> Hardening:
+    def power(self) -> "Hardening":
         """The power law that stands for this curve: itself."""
         return self
 

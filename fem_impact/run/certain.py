@@ -4,14 +4,12 @@ Each is that of a rigid body whose strikes are moved from its law by as much as 
 what their model leaves open, as long as the same parts of the body strike.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import takewhile
 from math import copysign, exp, log, pi, radians
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -21,11 +19,9 @@ from fem_impact.outcome.keys import Num, Unknown, keys_of, known, or_none
 from fem_impact.outcome.strikes import StrikeRecord, Strikes, StrikeSpread
 from fem_impact.run.modal_error import FACTORS, HELD, LEAST_VIBRATION, TOLD, VIBRATION, place_at, stored
 from fem_impact.run.strikes import Followed, other_end
+from fem_impact.scene.types import Scene
 from rigid import critical_ratio
 from rigid.strikes import State, Strike
-
-if TYPE_CHECKING:
-    from fem_impact.scene.types import Scene
 
 RUNS = 64
 """Sequences over what is not known."""

@@ -1,15 +1,13 @@
 """Strikes of the reduced model one after the other: between them its modes swing on and are damped."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from math import sqrt
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.optimize import brentq
 
 from fem_impact.arrays import Array
+from fem_impact.case.case import Case
 from fem_impact.case.effects.damping import loss_factor
 from fem_impact.case.effects.registry import AUTO
 from fem_impact.modal.impact import Arrival, ModalResult
@@ -20,9 +18,6 @@ from fem_impact.outcome.strikes import StrikeRecord
 from fem_impact.run.modal import closed
 from fem_impact.run.strikes import LEAST_BY_LAW, Followed
 from rigid.strikes import Finish, State, next_touch
-
-if TYPE_CHECKING:
-    from fem_impact.case.case import Case
 
 MOST = 40
 """Strikes that modes compute at most."""
@@ -69,7 +64,7 @@ class ModalCourse:
     damped: float = 0.0
 
     @classmethod
-    def at_first(cls, case: Case, followed: Followed) -> ModalCourse:
+    def at_first(cls, case: Case, followed: Followed) -> "ModalCourse":
         """Return the course after the first strike.
 
         It ends sooner than a first impact that stands by itself, which counts what touches much later to it.
@@ -80,7 +75,7 @@ class ModalCourse:
         return course
 
     @classmethod
-    def going_on(cls, case: Case, followed: Followed, state: State) -> ModalCourse:
+    def going_on(cls, case: Case, followed: Followed, state: State) -> "ModalCourse":
         """Return the course of a rod at rest in itself that moves on from a ``state``."""
         rod = modal_rod(case.bodies, case.slots.vibrating)
         rest = np.zeros(len(rod.omega))

@@ -1,22 +1,14 @@
 """Identity of the program: the digest of its sources and libraries, and the stamp of stored results."""
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Iterator
 from functools import cache
 from importlib import metadata
 from importlib.resources import files
-from typing import TYPE_CHECKING
+from importlib.resources.abc import Traversable
 
 from fem_impact.plugins import providers
-from fem_impact.scene.types import digest
-
-if TYPE_CHECKING:
-    from importlib.resources.abc import Traversable
-
-    from fem_impact.scene.types import Scene
-
+from fem_impact.scene.types import Scene, digest
 
 ROOMS = (
     *("fem_impact/scene", "fem_impact/physics", "fem_impact/case", "fem_impact/fem", "fem_impact/solid"),

@@ -1,31 +1,26 @@
 """The rigid fidelity: impulses of a rigid rod along its sliding path, restitution by Thornton's law."""
 
-from __future__ import annotations
-
 import time
 from dataclasses import replace
 from functools import partial
 from math import isinf
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import rigid
+from fem_impact.case.case import Case
 from fem_impact.case.effects.heating import halves
 from fem_impact.outcome.groups import Energy, Heat, Markers, RodMotion, RunCost
 from fem_impact.outcome.keys import Unknown, known, unknown
 from fem_impact.outcome.limitation import limitations
 from fem_impact.outcome.record import Outcome
+from fem_impact.physics.contact import ContactPair
 from fem_impact.physics.contact_law import ContactLaw, contact_law
 from fem_impact.physics.contact_law import restitution as thornton
 from fem_impact.physics.flash import closed_form
 from fem_impact.physics.viscous import viscous_restitution
 from fem_impact.run.assemble import ImpactEnd, Reduction
 from fem_impact.run.common import MASSIVE, after, flow_left_out, heat, plastic_shares
-
-if TYPE_CHECKING:
-    from fem_impact.case.case import Case
-    from fem_impact.physics.contact import ContactPair
-    from fem_impact.scene.sliding import SpeedTable
-
+from fem_impact.scene.sliding import SpeedTable
 
 STIFF_PLATE = "Bending of the plate, which takes energy and lowers e, is left out."
 MEAN_HEAT = (

@@ -6,8 +6,6 @@ oscillator. The barrier is a new block under each strike, but where an earlier o
 block of that strike goes on, with its dent, hardening and residual stress.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field, replace
 from math import sqrt
 from typing import NamedTuple
@@ -135,7 +133,7 @@ class SolidCourse:
     told: list[str] = field(default_factory=list)
 
     @classmethod
-    def at_first(cls, body: Followed, end: SolidResult) -> SolidCourse:
+    def at_first(cls, body: Followed, end: SolidResult) -> "SolidCourse":
         """Return the course after the first strike.
 
         The body has the inertia of its mesh from then on.

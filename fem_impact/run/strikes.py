@@ -1,20 +1,20 @@
 """The strikes after the first impact, by rigid theory: each with the restitution of its own contact."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import copysign, cos, hypot, inf, pi, remainder, sin
-from typing import TYPE_CHECKING
 
 from fem_impact.case.bodies import LaterStrike
+from fem_impact.case.case import Case
 from fem_impact.case.effects.registry import AUTO
 from fem_impact.outcome.keys import Num, Unknown, unknown
 from fem_impact.outcome.strikes import StrikeRecord, Strikes
 from fem_impact.physics.contact import ContactPair
 from fem_impact.run.common import rod_flows
 from fem_impact.run.rigid import NormalLoss, normal_loss
+from fem_impact.scene.material import Material
+from fem_impact.scene.types import Scene
 from rigid import GRAVITY, Body, kinetic_energy
 from rigid.strikes import (
     LEAST,
@@ -31,11 +31,6 @@ from rigid.strikes import (
     outline,
     sequence,
 )
-
-if TYPE_CHECKING:
-    from fem_impact.case.case import Case
-    from fem_impact.scene.material import Material
-    from fem_impact.scene.types import Scene
 
 BESIDE = 1e-6  # rad from the end of a corner's inclinations, at which it touches alone
 NO_FORCE = Unknown("a rigid impact without duration has no force")
@@ -110,7 +105,7 @@ class Followed:
     moved: Moved = as_it_is
 
     @classmethod
-    def of(cls, case: Case) -> Followed:
+    def of(cls, case: Case) -> "Followed":
         """Return the body of a case, that has not struck."""
         g, vertical = gravity_of(case.scene), case.scene.impact.vertical
         pull = Pull(g * cos(vertical), g * sin(vertical), case.contact.body.k2, case.contact.f)

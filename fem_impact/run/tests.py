@@ -1,13 +1,11 @@
 """The measured tests that a scene repeats: a published set, or the user's own."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import hypot
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 import numpy as np
 
@@ -16,7 +14,7 @@ from fem_impact.case.bodies import Bodies
 from fem_impact.outcome.keys import Num, Unknown
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.scene.own_tests import Camera, Mean, holds_means, read_camera, read_means
-from fem_impact.scene.types import OWN
+from fem_impact.scene.types import OWN, Scene
 from rigid import Arms, kinetic_energy
 from rigid.experiments import (
     Statistic,
@@ -26,9 +24,6 @@ from rigid.experiments import (
     of_mean,
     statistic,
 )
-
-if TYPE_CHECKING:
-    from fem_impact.scene.types import Scene
 
 COVERAGE = 2.0  # standard uncertainties from the mean of one test to the ends of its interval
 

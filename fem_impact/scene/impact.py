@@ -1,7 +1,5 @@
 """The motion at first contact, stated in one of three ways: by a height, a speed or two velocities."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Collection
 from dataclasses import dataclass
@@ -64,7 +62,7 @@ class Impact:
         omega: float = 0.0,
         slope: float | None = None,
         until: str = FIRST,
-    ) -> Impact:
+    ) -> "Impact":
         """Return the impact of a rod that fell from rest by ``height``, m, down the vertical: v^2 = 2 g h."""
         fallen = _along(angle if slope is None else slope, _fallen(fields.HEIGHT.checked(height)))
         return cls(angle, *fallen, omega, height=height, slope=slope, until=until)
@@ -77,7 +75,7 @@ class Impact:
         omega: float = 0.0,
         slope: float | None = None,
         until: str = FIRST,
-    ) -> Impact:
+    ) -> "Impact":
         """Return the impact of a rod that moves along its axis at ``speed``, m/s."""
         along = _along(angle, fields.SPEED.checked(speed))
         return cls(angle, *along, omega, speed=speed, slope=slope, until=until)

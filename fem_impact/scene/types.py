@@ -4,8 +4,6 @@ SI units inside. Every part checks itself when it is made, so a scene from a fil
 are the same object and pass the same checks. `to_dict` and `to_toml` write a scene, `digest` names it.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 import os
@@ -183,7 +181,7 @@ class Scene:
         return {"projectile": self.projectile.material, "barrier": self.barrier.material}
 
     @property
-    def first_impact(self) -> Scene:
+    def first_impact(self) -> "Scene":
         """The scene without what follows its first impact."""
         return replace(self, impact=replace(self.impact, until=FIRST), strikes=Following())
 

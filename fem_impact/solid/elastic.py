@@ -1,7 +1,5 @@
 """Linear items: the elastic rod in its frame, the barrier block, dashpots, weight and modal damping."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import ClassVar
 
@@ -189,7 +187,7 @@ class ModalDamping:
         places: Ints,
         loss: float,
         step: float,
-    ) -> ModalDamping:
+    ) -> "ModalDamping":
         """Build with the interval of applications, in steps of ``step`` s, that the highest mode allows."""
         every = max(1, int(PHASE / modes.omega[-1] / step))
         weighted = np.ascontiguousarray(modes.shape.T * modes.mass)

@@ -6,8 +6,6 @@ foundation: so the barrier has the momentum that the rod loses. A plate has its 
 block or plane stays at rest in a frame that moves with the plate.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -42,7 +40,7 @@ class FoundationSprings:
     energy: float = 0.0
 
     @classmethod
-    def of(cls, springs: Array, layout: DofLayout, x: Array, effect: str) -> FoundationSprings:
+    def of(cls, springs: Array, layout: DofLayout, x: Array, effect: str) -> "FoundationSprings":
         """Build from the ``springs``, N/m, of all unknowns of a block; those along b move no foundation."""
         first, held = layout.barrier_slice.start, np.flatnonzero(springs)
         held = held[layout.ends(first + held) != layout.foundation[1]]

@@ -8,8 +8,6 @@ d = R^T x - X and U = d . K d / 2. The force is the full gradient of U, includin
 so linear and angular momentum and energy are all conserved, and a free rotation makes no force.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import ClassVar
 
@@ -67,7 +65,7 @@ class TurningFrame:
     work: Array = field(default_factory=lambda: np.zeros(2))
 
     @classmethod
-    def at(cls, x: Array, mass: Array, free: Ints) -> TurningFrame:
+    def at(cls, x: Array, mass: Array, free: Ints) -> "TurningFrame":
         """Start at positions ``x`` (size,) of free nodes with unknowns ``free`` (nodes, 3)."""
         reference = x.copy()
         reference[free] -= mass_centre(mass, x, free)

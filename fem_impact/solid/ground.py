@@ -1,7 +1,5 @@
 """Where the barrier's surface stands as a whole, and how it moves: for what compares the rod with it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,7 +24,7 @@ class Ground:
     centre: Array
 
     @classmethod
-    def of(cls, layout: DofLayout, centre: Array) -> Ground:
+    def of(cls, layout: DofLayout, centre: Array) -> "Ground":
         """Return the motion of a barrier whose foundation has its mass ``centre`` (2,), m."""
         return cls(layout.foundation, layout.turn, centre)
 

@@ -1,7 +1,5 @@
 """Observer of the friction power and the loaded contact area of a run."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import ClassVar
 
@@ -51,7 +49,7 @@ class HeatWatch:
     power: list[float] = field(default_factory=list)
     patch: list[float] = field(default_factory=list)
     speed: list[float] = field(default_factory=list)
-    surface: PlaneSurface | PairSurface = field(init=False)
+    surface: "PlaneSurface | PairSurface" = field(init=False)
     taken: float = 0.0
     pushed: float = 0.0
 

@@ -1,7 +1,5 @@
 """The rod's motion and the fields, read from a state in the barrier frame or in the rod's own frame."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import cos, sin
@@ -47,7 +45,7 @@ class RodState:
     modes: RodModes
 
     @classmethod
-    def of(cls, model: Model, modes: RodModes | None = None) -> RodState:
+    def of(cls, model: Model, modes: RodModes | None = None) -> "RodState":
         """Compute the modes, unless they are known, and pick the rim."""
         mesh, n = model.geometry.rod.mesh, model.layout.rod_size
         places = model.layout.rod[~mesh.is_hanging]
@@ -165,7 +163,7 @@ class FieldSampler:
     whole: bool
 
     @classmethod
-    def of(cls, model: Model, view: RodState, bodies: Bodies) -> FieldSampler:
+    def of(cls, model: Model, view: RodState, bodies: Bodies) -> "FieldSampler":
         """Prepare."""
         g = model.geometry
         points, cells, places = g.rod_points, g.rod.mesh.cells, model.layout.rod

@@ -1,14 +1,13 @@
 """The strain along the rod's axis, read from the motion of its sections, and the observer that stores it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar, Self
+from typing import ClassVar, Self
 
 import numpy as np
 
 from fem_impact.arrays import Array
+from fem_impact.case.case import Case
 from fem_impact.errors import SceneError
 from fem_impact.fem.flight import FreeVibration
 from fem_impact.files.waves import Ringing, Waves, write_waves
@@ -16,9 +15,6 @@ from fem_impact.physics.beam import bar_speed, bending_group_speed
 from fem_impact.solid.model import Model
 from fem_impact.solid.rodview import RodState
 from fem_impact.solid.state import State
-
-if TYPE_CHECKING:
-    from fem_impact.case.case import Case
 
 HELD = 0.999  # share of the vibration energy in the modes that are stored for the free flight
 

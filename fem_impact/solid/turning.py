@@ -7,8 +7,6 @@ momentum and energy are conserved for any angle: -R y on the block and R y on th
 torque sum(y_t l_n - y_n l_t) on its angle.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -43,7 +41,7 @@ class TurningBlock:
     effect: str = "barrier-elastic"
 
     @classmethod
-    def of(cls, stiffness: NodeProduct, place: slice, ground: Ground, effect: str) -> TurningBlock:
+    def of(cls, stiffness: NodeProduct, place: slice, ground: Ground, effect: str) -> "TurningBlock":
         """Build from a stiffness whose origin is the block at the start, m."""
         stiffness.origin[:, [0, 2]] -= ground.centre
         seen, pulled = np.zeros((2, (place.stop - place.start) // 3, 3))
@@ -143,7 +141,7 @@ class TurningDashpots:
     @classmethod
     def of(
         cls, places: Ints, damping: Array, inverse_mass: Array, ground: Ground, first: int
-    ) -> TurningDashpots:
+    ) -> "TurningDashpots":
         """Build for unknowns of a block that begins at the index ``first``."""
         along, (c_t, c_n) = (places - first) % 3, ground.centre
         beside, across = places + np.array([2, 0, -2])[along], ground.foundation[2 - along]

@@ -9,8 +9,6 @@ where c is the share of the stiffness that stays for ever and g, theta those of 
 item adds K d, this one the rest, K w with w = g c q - (1 - c) d.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from math import expm1
 from typing import ClassVar
@@ -58,7 +56,7 @@ class MaxwellCells:
     lost: float = 0.0
 
     @classmethod
-    def of(cls, rod: ElasticRod | ElasticNose, solid: LinearSolid) -> MaxwellCells:
+    def of(cls, rod: ElasticRod | ElasticNose, solid: LinearSolid) -> "MaxwellCells":
         """Return the elements of a rod at rest."""
         q, pull, before, w, y = np.zeros((5, len(rod.d)))
         return cls(rod, solid, q, pull, before, w, y)

@@ -1,7 +1,5 @@
 """The zone that may yield: blocks of elements with J2 plasticity."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -61,7 +59,7 @@ class YieldingZone:
         full: bool = False,
         strength: Array | None = None,
         cells: Ints | None = None,
-    ) -> YieldingZone:
+    ) -> "YieldingZone":
         """Build from places (m, 8, 3) and start positions (m, 8, 3) of the elements' nodes.
 
         ``strength`` (m, 8) is a factor of the flow stress at each Gauss point, 1 unless given; ``cells``

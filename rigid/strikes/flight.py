@@ -1,7 +1,5 @@
 """Free flight over a barrier, exact: a parabola and a constant spin, until the outline touches."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from itertools import pairwise
@@ -34,7 +32,7 @@ class State(NamedTuple):
     V_t: float
     Omega: float
 
-    def flown(self, dt: float, g_n: float, g_t: float) -> State:
+    def flown(self, dt: float, g_n: float, g_t: float) -> "State":
         """Return the state after a flight of ``dt``, s, under accelerations g_n, g_t, m/s2, out of -n, -t."""
         return State(
             self.time + dt,

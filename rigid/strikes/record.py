@@ -1,7 +1,5 @@
 """What a sequence of strikes leaves: each strike, what lies between, and how it ended."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from enum import Enum
 
@@ -85,7 +83,7 @@ class Strike:
         """The motion just after it."""
         return self.before.state._replace(V_n=self.V_n, V_t=self.V_t, Omega=self.Omega)
 
-    def having(self, e: float, mu: float, friction: float, k2: float) -> Strike:
+    def having(self, e: float, mu: float, friction: float, k2: float) -> "Strike":
         """Return it with another restitution, impulse ratio and friction loss; as it is where it would jam.
 
         The contact point's normal velocity changes by p (1 + d_c (d_c - mu d_d)/k^2); ``k2``, m2.

@@ -1,7 +1,5 @@
 """The meshes of the levels of a scene: how often the cells at the contact are split on each."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from math import log2
@@ -31,7 +29,7 @@ class LevelMeshes:
 
     @classmethod
     @lru_cache(maxsize=1)
-    def of(cls, case: Case) -> LevelMeshes:
+    def of(cls, case: Case) -> "LevelMeshes":
         """Return those of a case, the same ones again for the case that was asked for last."""
         return cls(case)
 

@@ -4,8 +4,6 @@ The points were computed once by the reduced model (``tests/benchmarks/design_ch
 one curve: `collapse` says by how much points of like T1/tau and mu differ.
 """
 
-from __future__ import annotations
-
 import csv
 from dataclasses import dataclass
 from functools import cache
@@ -42,7 +40,7 @@ class ChartPoints:
     E_vib: Array
     yielding: Array
 
-    def where(self, chosen: Array) -> ChartPoints:
+    def where(self, chosen: Array) -> "ChartPoints":
         """Return some of the points."""
         columns = (self.ratio, self.mu, self.change, self.E_vib, self.yielding)
         return ChartPoints(self.made, *(column[chosen] for column in columns))

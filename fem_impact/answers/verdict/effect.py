@@ -1,7 +1,5 @@
 """What leaving vibration out changes: one pair of twins, by the reduced model or by finite elements."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
@@ -81,7 +79,7 @@ class VibrationEffect:
     errors: Mapping[str, float]
     alike: bool = True
 
-    def at_least(self, off: float) -> VibrationEffect:
+    def at_least(self, off: float) -> "VibrationEffect":
         """Return the change with a band no smaller than ``off``, an error that finite elements showed."""
         if off <= self.band:
             return self

@@ -5,8 +5,6 @@
 edges twice as far away.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from math import exp, log, sqrt
 
@@ -58,7 +56,7 @@ class PlateStrike:
     cells: int
 
     @classmethod
-    def of(cls, p: Values, model: Model, end: float) -> PlateStrike:
+    def of(cls, p: Values, model: Model, end: float) -> "PlateStrike":
         """Run a model until ``end``, s."""
         E_0 = 0.5 * spheres.ball_mass(p) * p["speed"] ** 2
         impact, ledger = (

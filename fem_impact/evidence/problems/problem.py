@@ -4,8 +4,6 @@ Every problem takes its physical parameters, stated in problems.toml, and return
 reference made by other means (`fem_impact.evidence.references`), with error, tolerance, verdict and cost.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
@@ -52,7 +50,7 @@ class Check:
     note: str = ""
 
     @classmethod
-    def shown(cls, name: str, unit: str, computed: float, reference: float, note: str) -> Check:
+    def shown(cls, name: str, unit: str, computed: float, reference: float, note: str) -> "Check":
         """Return a comparison that bears no verdict, for the reason in ``note``."""
         return cls(name, unit, computed, reference, inf, "shown", note)
 

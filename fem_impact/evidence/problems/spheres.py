@@ -1,7 +1,5 @@
 """A ball over a rigid plane or a block of its own kind: the parameters and the model of two problems."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from math import ceil, cos, inf, log2, pi, sin, sqrt
 
@@ -190,7 +188,7 @@ class SphereErrors:
     radiated: float
 
     @classmethod
-    def of(cls, p: Values, exact: HertzImpact) -> SphereErrors:
+    def of(cls, p: Values, exact: HertzImpact) -> "SphereErrors":
         """Return those of the parameters."""
         base, touch = 2 * p["radius"] / p["across"], plain_hertz(p, p["speed"]).radius
         edge = meshes.pole_edge(p["radius"], int(p["across"]))

@@ -5,8 +5,6 @@ updated Lagrangian, stress turned with the midpoint's spin (Hughes & Winget 1980
 von Mises' law returned along the radius (Wilkins 1964), lumped masses, central differences.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from math import pi, sqrt
@@ -63,7 +61,7 @@ class _Places:
     swell: Array
 
     @classmethod
-    def at(cls, x: Array) -> _Places:
+    def at(cls, x: Array) -> "_Places":
         """Return those of cells with corners at x (4, 2, m)."""
         J = np.einsum("gak,aim->gkim", SLOPE, x)
         det = J[:, 0, 0] * J[:, 1, 1] - J[:, 0, 1] * J[:, 1, 0]
@@ -167,7 +165,7 @@ class Body:
     def _at_corners(self, nodal: Array) -> Array:
         return np.asarray(nodal[self.corners].transpose(0, 2, 1))
 
-    def advance(self, stop: Callable[[Body], None]) -> None:
+    def advance(self, stop: "Callable[[Body], None]") -> None:
         """Take one step; ``stop`` corrects the velocities after the kick by the forces."""
         if self.steps % EVERY == 0:
             self.dt = COURANT * _edge(self._at_corners(self.x)) / self.metal.wave_speed

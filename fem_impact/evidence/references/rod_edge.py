@@ -12,8 +12,6 @@ with the half-space's C_n, C_t, the flexibility B of a free beam (`beam`) whose 
 gives the rod its volume, and the excess X of the edge: -0.8 along n, 2 to 3 along t, which shears the corner.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cache
 from math import ceil, cos, pi, sin
@@ -162,7 +160,7 @@ class _EdgeBody:
     component: Ints
 
     @classmethod
-    def of(cls, mesh: skfem.MeshTri, nu: float) -> _EdgeBody:
+    def of(cls, mesh: skfem.MeshTri, nu: float) -> "_EdgeBody":
         """Assemble; stiffness is quadratic in the order."""
         basis = skfem.Basis(mesh, skfem.ElementVector(skfem.ElementTriP2(), 3), intorder=5)
         none, one, two = (_elastic.assemble(basis, m=float(m), nu=nu) for m in range(3))

@@ -4,8 +4,6 @@ The point mass and the static rod use the contact law of the modal fidelity; the
 linear and solved exactly by its modes.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cache
 from math import pi, sqrt
@@ -98,7 +96,7 @@ class _System:
     c: Array
 
     @classmethod
-    def of(cls, K: Array, c: Array) -> _System:
+    def of(cls, K: Array, c: Array) -> "_System":
         """Return the modes of a mass-normalised stiffness (k, k), 1/s^2; negative round-off is set to 0."""
         omega_squared, shape = np.linalg.eigh(K)
         return cls(np.sqrt(np.maximum(omega_squared, 0.0)), shape, c)

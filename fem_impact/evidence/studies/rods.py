@@ -4,8 +4,6 @@ Rods differ in diameter, tip, speed, angle, friction, yielding; each runs with a
 studies are made from that table (`run_table`).
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from itertools import chain
@@ -194,7 +192,7 @@ class RodRun:
         return self.point if self.fidelity == "modal" else f"{self.point}-levels"
 
     @property
-    def twin(self) -> RodRun:
+    def twin(self) -> "RodRun":
         """The same run of the rod that cannot vibrate, at one place of the grid."""
         return replace(self, rod=replace(self.rod, vibrates=False), places=1, measured_set="")
 

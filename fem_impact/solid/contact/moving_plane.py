@@ -1,7 +1,5 @@
 """Contact of the rod's nodes with the rigid plane of a barrier that is free to move."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import ClassVar
 
@@ -43,7 +41,9 @@ class MovingPlane:
     book: ContactBook = field(default_factory=ContactBook)
 
     @classmethod
-    def of(cls, nodes: Ints, ground: Ground, inverse_mass: Array, f: Array, over_speed: Array) -> MovingPlane:
+    def of(
+        cls, nodes: Ints, ground: Ground, inverse_mass: Array, f: Array, over_speed: Array
+    ) -> "MovingPlane":
         """Build with room for all nodes; ``over_speed`` is a `fem_impact.fem.sliding.speed_table`."""
         return cls(nodes, ground, inverse_mass, f, make_points(len(nodes), over_speed))
 

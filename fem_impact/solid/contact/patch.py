@@ -1,7 +1,5 @@
 """Contact surfaces of quads and the search for the quad under a point, in the (t, b) plane."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np
@@ -173,7 +171,7 @@ class Patch(NamedTuple):
     bend: Array
     sag: float
 
-    def rounded(self, x: Array) -> Patch:
+    def rounded(self, x: Array) -> "Patch":
         """Return the patch with its quads bent to a round surface at positions ``x``, save at edges."""
         around = np.zeros((len(self.places), 3))
         vertex_normals(x, self.places, self.quads, self.mirrored, around)

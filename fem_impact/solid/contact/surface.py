@@ -14,8 +14,6 @@ friction's. Flat quads have edges, and every edge is a small step that acts like
 averaged normals of the deformed barrier count, which turn smoothly as a node slides.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import ClassVar
 
@@ -76,7 +74,7 @@ class SurfaceContact:
         play: float,
         band: float,
         x: Array,
-    ) -> SurfaceContact:
+    ) -> "SurfaceContact":
         """Build and find each node's first quad at positions ``x``; see `speed_table` for ``over_speed``."""
         last = np.concatenate([nearest_quads(x, rod, barrier), nearest_quads(x, barrier, rod)])
         return cls(
