@@ -16,7 +16,10 @@ ROOMS = (
     *("fem_impact/answers/refine", "fem_impact/answers/simulate.py"),
 )
 """Packages and modules whose code determines the numbers of an outcome."""
-DATA = ("fem_impact/scene/data", "fem_impact/case/data/summary.json", "rigid/experiments/data")
+DATA = (
+    *("fem_impact/scene/data", "fem_impact/case/data/effects.toml", "fem_impact/case/data/summary.json"),
+    "rigid/experiments/data",
+)
 """Files, and folders of files, that this code reads (expected times of effects are no result)."""
 KINDS = (".toml", ".csv", ".json")
 LIBRARIES = ("numpy", "scipy", "scikit-fem", "numba", "llvmlite")

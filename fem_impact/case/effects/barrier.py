@@ -6,15 +6,8 @@ The blocks stand on springs for the rest of a half-space (see `radiation` for th
 from itertools import pairwise
 
 from fem_impact.case.bodies import Bodies
-from fem_impact.case.effects.plasticity import SOURCE, buried_yield_ratio, first_yield_ratio, hardening_of
-from fem_impact.case.effects.slots import Effect, ModelSpec
-
-LEAST_SHARE = 0.02
-COMPLIANCE = (
-    "e of a yielding contact falls like E*^-1/2 (Thornton 1997, doi:10.1115/1.2787319), so a share s of the "
-    "compliance changes it by s/2, half of the 2 % that e may be off; E_vib falls like tau^-4 and tau grows "
-    "like E*^-0.4 (Hertz): 1.6 s"
-)
+from fem_impact.case.effects.plasticity import buried_yield_ratio, first_yield_ratio, hardening_of
+from fem_impact.case.effects.slots import ModelSpec
 
 
 def compliance_share(bodies: Bodies) -> float:
@@ -47,35 +40,3 @@ def fill_elastoplastic(bodies: Bodies, spec: ModelSpec) -> None:
     some = any(metal.yields for metal in under)  # then the first may be one that never yields
     spec.barrier_law = None if some and not first.yields else hardening_of(first)
     spec.under_laws = tuple(hardening_of(metal) if metal.yields else None for metal in under)
-
-
-RIGID = Effect(
-    "barrier-rigid",
-    "The barrier is a rigid plane.",
-    "The barrier is not rigid.",
-    "barrier's share of the contact compliance (rigid below the threshold)",
-    LEAST_SHARE,
-    COMPLIANCE,
-    compliance_share,
-    fill_rigid,
-)
-ELASTIC = Effect(
-    "barrier-elastic",
-    "The barrier is an elastic block on springs.",
-    "The barrier is no purely elastic block.",
-    "barrier's share of the contact compliance (elastic above, where nothing yields)",
-    LEAST_SHARE,
-    COMPLIANCE,
-    compliance_share,
-    fill_elastic,
-)
-ELASTOPLASTIC = Effect(
-    "barrier-elastoplastic",
-    "The barrier is a block on springs that yields under the contact.",
-    "The barrier does not yield.",
-    "peak pressure over first yield of the barrier, (v/v_yield)^0.4",
-    1.0,
-    SOURCE,
-    yield_ratio,
-    fill_elastoplastic,
-)

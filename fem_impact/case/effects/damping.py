@@ -3,7 +3,7 @@
 from math import pi
 
 from fem_impact.case.bodies import Bodies
-from fem_impact.case.effects.slots import Effect, ModelSpec
+from fem_impact.case.effects.slots import ModelSpec
 
 # where the rod's material states none: upper end of 2e-4 to 6e-4 for iron, Cremer, Heckl & Petersson 2005,
 # doi:10.1007/b137728 (read as quoted in manuals of engineering programs, halved to viscous ratios)
@@ -26,17 +26,3 @@ def number(bodies: Bodies) -> float:
 def fill(bodies: Bodies, spec: ModelSpec) -> None:
     """Set the loss factor."""
     spec.loss_factor = loss_factor(bodies)
-
-
-EFFECT = Effect(
-    "material-damping",
-    f"The rod's modes are damped (the loss factor of its material, or {LOSS_FACTOR:g}).",
-    "The rod's material does not damp.",
-    "eta omega_1 (tau + T1), damped share of the vibration",
-    0.05,
-    "a mode's energy decays like exp(-eta omega t); half of the 10 % that E_vib may be off",
-    number,
-    fill,
-    needs=("vibration",),
-    fidelities=("solid",),
-)

@@ -1,7 +1,7 @@
 """Coulomb friction between rod and barrier."""
 
 from fem_impact.case.bodies import Bodies
-from fem_impact.case.effects.slots import Effect, ModelSpec
+from fem_impact.case.effects.slots import ModelSpec
 
 
 def number(bodies: Bodies) -> float:
@@ -14,15 +14,3 @@ def fill(bodies: Bodies, spec: ModelSpec) -> None:
     """Set the Coulomb coefficient."""
     spec.friction = bodies.scene.surface.friction
     spec.friction_over_speed = bodies.friction_over_speed
-
-
-EFFECT = Effect(
-    "friction",
-    "Coulomb friction acts at every contact node, with stick, slip and reversal.",
-    "The contact is frictionless.",
-    "f",
-    0.005,
-    "Coulomb's law: the impulse ratio is at most f, so mu is off by no more than the threshold",
-    number,
-    fill,
-)

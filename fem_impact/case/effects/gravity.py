@@ -3,7 +3,7 @@
 from math import hypot
 
 from fem_impact.case.bodies import Bodies
-from fem_impact.case.effects.slots import Effect, ModelSpec
+from fem_impact.case.effects.slots import ModelSpec
 from rigid import GRAVITY
 
 
@@ -16,16 +16,3 @@ def number(bodies: Bodies) -> float:
 def fill(bodies: Bodies, spec: ModelSpec) -> None:
     """Set the acceleration."""
     spec.gravity = GRAVITY
-
-
-EFFECT = Effect(
-    "gravity",
-    "Gravity pulls the rod down while it touches and flies; its potential is an account of its own.",
-    "No gravity during the impact.",
-    "g (tau + T1)/v",
-    0.005,
-    "speed gained by falling while the impact lasts: e moves by about as much, a quarter of 2 %",
-    number,
-    fill,
-    fidelities=("modal", "solid"),
-)

@@ -1,7 +1,7 @@
 """Heating of the contact by friction, computed from the motion without acting on it."""
 
 from fem_impact.case.bodies import Bodies
-from fem_impact.case.effects.slots import Effect, ModelSpec
+from fem_impact.case.effects.slots import ModelSpec
 from fem_impact.errors import SceneError
 from fem_impact.physics.flash import Half, Halves, expected_rise
 
@@ -55,17 +55,3 @@ def fill(bodies: Bodies, spec: ModelSpec) -> None:
     """Turn on the record of the contact's heat; refuse a scene without conductivity and heat capacity."""
     halves(bodies)
     spec.heat = True
-
-
-EFFECT = Effect(
-    "contact-heating",
-    "The heat of friction and the flash temperature of the contact are followed.",
-    "The heat of the contact is not followed.",
-    "expected flash rise over the rise to ignition",
-    0.1,
-    "half-space conduction (Jaeger 1942; Tian & Kennedy 1994, doi:10.1115/1.2927035), ten times as safe",
-    number,
-    fill,
-    needs=("friction",),
-    fidelities=("rigid", "solid"),
-)

@@ -6,7 +6,7 @@ rod are a standard linear solid with that loss factor at the pace of the contact
 """
 
 from fem_impact.case.bodies import Bodies
-from fem_impact.case.effects.slots import Effect, ModelSpec
+from fem_impact.case.effects.slots import ModelSpec
 from fem_impact.errors import SceneError
 from fem_impact.physics.viscous import viscous_restitution
 
@@ -65,16 +65,3 @@ def _unheld(bodies: Bodies, spec: ModelSpec) -> str:
     if spec.rod_law is not None:
         return "a rod of finite elements that yields"
     return "a rod of several materials of finite elements" if len(bodies.rod.materials) > 1 else ""
-
-
-EFFECT = Effect(
-    "contact-loss",
-    "The contact is viscous: it loses what the loss factors of its materials say.",
-    "The contact loses nothing by viscosity.",
-    "what viscosity takes of e, 1 - e(eta)",
-    0.02,
-    "Kelvin and Voigt's solid in Hertz' contact; e follows from the loss factor alone (Willert 2020, "
-    "doi:10.3389/fmech.2020.00003); 2 % of e",
-    number,
-    fill,
-)

@@ -3,17 +3,13 @@
 from math import atan, inf, sqrt
 
 from fem_impact.case.bodies import Bodies
-from fem_impact.case.effects.slots import Effect, ModelSpec
+from fem_impact.case.effects.slots import ModelSpec
 from fem_impact.errors import SceneError
 from fem_impact.physics import hardening
 from fem_impact.physics.contact import LIMIT_PRESSURE, ContactPair
 from fem_impact.scene.material import Material, RambergOsgoodFlow, TableFlow
 
 DEEP = 1.6  # peak Hertz pressure over yield stress at first yield, below the surface (Johnson 1985, eq 6.9)
-SOURCE = (
-    "first yield of a Hertzian contact below the surface (Johnson 1985, eq 6.9) or, with friction, on it "
-    "(sec 7.1); the other body's limit pressure, 2.8 times its strength, caps the pressure"
-)
 HARDEST = 1.0  # plastic strain that no dent of a slender body exceeds by much: the largest seen is .95
 
 
@@ -103,15 +99,3 @@ def number(bodies: Bodies) -> float:
 def fill(bodies: Bodies, spec: ModelSpec) -> None:
     """Let the rod's tip yield."""
     spec.rod_law = hardening_of(bodies.contact.rod)
-
-
-EFFECT = Effect(
-    "rod-plasticity",
-    "The rod's tip yields (J2, isotropic hardening by its material's law).",
-    "The rod stays elastic.",
-    "peak pressure over first yield of the rod, (v/v_yield)^0.4",
-    1.0,
-    SOURCE,
-    number,
-    fill,
-)

@@ -1,7 +1,7 @@
 """Bending waves in a plate that is free underneath: they take energy from the blow and do not come back."""
 
 from fem_impact.case.bodies import Bodies
-from fem_impact.case.effects.slots import Effect, ModelSpec
+from fem_impact.case.effects.slots import ModelSpec
 from fem_impact.errors import SceneError
 from fem_impact.physics.plate import plate_impedance, zener_number
 
@@ -27,18 +27,3 @@ def fill(bodies: Bodies, spec: ModelSpec) -> None:
             remedy='Leave it out, or give barrier.support = "infinite" and barrier.thickness.',
         )
     spec.plate = plate_impedance(*bodies.contact.plate)
-
-
-EFFECT = Effect(
-    "plate-bending",
-    "The plate gives way as a whole, by F / (8 sqrt(D rho h)) or, where finite elements mesh it through, by "
-    "itself; bending waves run away in it.",
-    "The barrier does not bend.",
-    "Zener's lambda, m / (8 sqrt(D rho h) T)",
-    0.006,
-    "1 - e = 1.73 lambda for a small lambda (Zener 1941, doi:10.1103/PhysRev.59.669): 1 % of e, half of the "
-    "2 % that it may be off",
-    number,
-    fill,
-    fidelities=("modal", "solid"),
-)

@@ -3,7 +3,7 @@
 from math import sqrt
 
 from fem_impact.case.bodies import Bodies
-from fem_impact.case.effects.slots import Effect, ModelSpec
+from fem_impact.case.effects.slots import ModelSpec
 from fem_impact.errors import SceneError
 from fem_impact.physics.contact import impedance
 
@@ -46,18 +46,3 @@ def fill(bodies: Bodies, spec: ModelSpec) -> None:
             remedy='Leave "radiation" out of the effects, or "fixed" out of the scene.',
         )
     spec.radiating = True
-
-
-EFFECT = Effect(
-    "radiation",
-    "Waves leave the barrier block through its outer boundary.",
-    "Waves stay in the barrier block.",
-    "1.127 (v_n/c0)^0.6, radiated share of an elastic strike; of a part that lands flat the most it can be",
-    0.01,
-    "Hunter 1957, J. Mech. Phys. Solids 5, 162; of what lands flat, 4 Z z / (Z + z)^2 of the "
-    "impedances of bar and half-space (Gazetas 1991); a share w of the normal energy changes e by about w",
-    number,
-    fill,
-    needs=("barrier-elastic", "barrier-elastoplastic"),
-    fidelities=("solid",),
-)

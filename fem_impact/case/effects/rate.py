@@ -7,7 +7,7 @@ none, and the plan says so; no law of another metal takes its place.
 from dataclasses import replace
 
 from fem_impact.case.bodies import Bodies
-from fem_impact.case.effects.slots import Effect, ModelSpec
+from fem_impact.case.effects.slots import ModelSpec
 from fem_impact.physics.hardening import HardeningLaw, rate_gain, rate_law, strain_rate
 from fem_impact.scene.material import Material
 
@@ -29,17 +29,3 @@ def fill(bodies: Bodies, spec: ModelSpec) -> None:
 
 def _faster(law: HardeningLaw | None, metal: Material) -> HardeningLaw | None:
     return replace(law, rate=rate_law(metal)) if law else None
-
-
-EFFECT = Effect(
-    "rate-hardening",
-    "Flow stresses grow with the strain rate, by each metal's own law.",
-    "Flow stresses do not depend on the strain rate.",
-    "gain of the flow stress at the rate 0.4 a/(R tau) of the indentation",
-    0.03,
-    "e grows like sigma_y^(5/8) (Thornton 1997, doi:10.1115/1.2787319): 2 % of e are 3 % of sigma_y",
-    number,
-    fill,
-    needs=("rod-plasticity", "barrier-elastoplastic"),
-    fidelities=("solid",),
-)

@@ -1,6 +1,9 @@
 """All effects, in the order in which a scene names them and in which they fill a model."""
 
+import tomllib
 from collections.abc import Sequence
+from importlib.resources import files
+from typing import Any
 
 from fem_impact.case.effects import (
     barrier,
@@ -21,26 +24,36 @@ from fem_impact.case.effects.slots import Effect
 from fem_impact.errors import SceneError, did_you_mean
 from fem_impact.plugins import added, wrong
 
-EFFECTS: dict[str, Effect] = {
-    effect.name: effect
-    for effect in (
-        vibration.EFFECT,
-        friction.EFFECT,
-        plasticity.EFFECT,
-        barrier.RIGID,
-        barrier.ELASTIC,
-        barrier.ELASTOPLASTIC,
-        rate.EFFECT,
-        skin.EFFECT,
-        radiation.EFFECT,
-        plate.EFFECT,
-        gravity.EFFECT,
-        rotation.EFFECT,
-        damping.EFFECT,
-        loss.EFFECT,
-        heating.EFFECT,
-    )
+_COMPUTED = {
+    "vibration": (vibration.number, vibration.fill),
+    "friction": (friction.number, friction.fill),
+    "rod-plasticity": (plasticity.number, plasticity.fill),
+    "barrier-rigid": (barrier.compliance_share, barrier.fill_rigid),
+    "barrier-elastic": (barrier.compliance_share, barrier.fill_elastic),
+    "barrier-elastoplastic": (barrier.yield_ratio, barrier.fill_elastoplastic),
+    "rate-hardening": (rate.number, rate.fill),
+    "machined-skin": (skin.number, skin.fill),
+    "radiation": (radiation.number, radiation.fill),
+    "plate-bending": (plate.number, plate.fill),
+    "gravity": (gravity.number, gravity.fill),
+    "large-rotation": (rotation.number, rotation.fill),
+    "material-damping": (damping.number, damping.fill),
+    "contact-loss": (loss.number, loss.fill),
+    "contact-heating": (heating.number, heating.fill),
 }
+"""The number that decides each effect, and what it fills; its words and threshold: data/effects.toml."""
+_STATED = tomllib.loads(files("fem_impact.case").joinpath("data/effects.toml").read_text(encoding="utf-8"))
+
+
+def _effect(name: str) -> Effect:
+    stated: dict[str, Any] = {
+        key: tuple(value) if isinstance(value, list) else value for key, value in _STATED[name].items()
+    }
+    number, fill = _COMPUTED[name]
+    return Effect(name, number=number, fill=fill, **stated)
+
+
+EFFECTS = {name: _effect(name) for name in _COMPUTED}
 
 ADDED = added("effects", EFFECTS)
 """Effects of other packages, which are in force in the scenes alone that name them."""
@@ -52,9 +65,7 @@ for _name, _effect in ADDED.items():
 
 AUTO = "auto"
 NAMES = tuple(EFFECTS)
-BARRIERS = tuple(
-    effect.name for effect in (barrier.RIGID, barrier.ELASTIC, barrier.ELASTOPLASTIC)
-)  # by strength
+BARRIERS = ("barrier-rigid", "barrier-elastic", "barrier-elastoplastic")  # by strength
 _REMEDY = (
     f'Write "auto", ["auto", "NAME", "-NAME"], or the list of all effects wanted, out of: {", ".join(NAMES)}.'
 )

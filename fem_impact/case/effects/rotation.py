@@ -1,7 +1,7 @@
 """Large rotation: the linear part of the rod is linear in a frame that turns with it."""
 
 from fem_impact.case.bodies import Bodies
-from fem_impact.case.effects.slots import Effect, ModelSpec
+from fem_impact.case.effects.slots import ModelSpec
 from rigid import sliding_path
 
 
@@ -22,17 +22,3 @@ def number(bodies: Bodies) -> float:
 def fill(bodies: Bodies, spec: ModelSpec) -> None:
     """Let the frame of the linear part turn with the rod."""
     spec.turning_frame = True
-
-
-EFFECT = Effect(
-    "large-rotation",
-    "The rod's linear part is computed in a frame that turns with it.",
-    "Rotations are taken as small: modes keep the directions that they had at the start.",
-    "theta, angle turned until the impact is over, rad",
-    0.01,
-    "small-strain kinematics: forces on the modes point theta beside their direction, so E_vib is off by "
-    "2 theta, a fifth of the 10 % that it may be, for theta is known to a factor of two; arms by theta^2/2",
-    number,
-    fill,
-    fidelities=("modal", "solid"),
-)

@@ -7,7 +7,7 @@ read, so no shipped material has any; a hardness leaves a curve of them (`fem_im
 
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.effects.plasticity import hardening_of
-from fem_impact.case.effects.slots import Effect, ModelSpec
+from fem_impact.case.effects.slots import ModelSpec
 from fem_impact.errors import SceneError
 from fem_impact.physics.hardening import Skin
 from fem_impact.physics.indentation import HardnessTest, skin_depth
@@ -82,17 +82,3 @@ def require_skins(bodies: Bodies, fidelity: str) -> None:
             key="effects",
             remedy='Use fidelity solid, or add "-machined-skin" to effects.',
         )
-
-
-EFFECT = Effect(
-    "machined-skin",
-    "Cells under the machined surfaces are harder than the bulk.",
-    "The surfaces are as hard as the bulk.",
-    "gain of the flow stress, mean over a contact radius under the surface",
-    0.03,
-    "e grows like sigma_y^(5/8) (Thornton 1997, doi:10.1115/1.2787319): 2 % of e are 3 % of sigma_y",
-    number,
-    fill,
-    needs=("rod-plasticity", "barrier-elastoplastic"),
-    fidelities=("solid",),
-)

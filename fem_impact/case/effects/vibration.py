@@ -8,7 +8,7 @@ wide, or a mesh of the user's own no longer than wide, is all nose: it always vi
 from math import inf
 
 from fem_impact.case.bodies import Bodies
-from fem_impact.case.effects.slots import Effect, ModelSpec
+from fem_impact.case.effects.slots import ModelSpec
 
 
 def number(bodies: Bodies) -> float:
@@ -28,17 +28,3 @@ def number(bodies: Bodies) -> float:
 def fill(bodies: Bodies, spec: ModelSpec) -> None:
     """Let the body behind the nose deform."""
     spec.vibrating = True
-
-
-EFFECT = Effect(
-    "vibration",
-    "The rod is elastic: longitudinal and bending waves take energy, which rigid theory leaves out.",
-    "The rod is rigid behind its nose, which alone deforms.",
-    "longest period that the impact excites in the rod, over the contact time",
-    0.1,
-    "a half-sine pulse leaves ((2 tau/T1)^2 - 1)^-2 of the energy that a blow gives, 1e-4 at 0.2; "
-    "a yielding contact lets go in about half its time",
-    number,
-    fill,
-    fidelities=("modal", "solid"),
-)
