@@ -45,7 +45,7 @@ _COMPUTED = {
 _STATED = tomllib.loads(files("fem_impact.case").joinpath("data/effects.toml").read_text(encoding="utf-8"))
 
 
-def _effect(name: str) -> Effect:
+def _shipped(name: str) -> Effect:
     stated: dict[str, Any] = {
         key: tuple(value) if isinstance(value, list) else value for key, value in _STATED[name].items()
     }
@@ -53,7 +53,7 @@ def _effect(name: str) -> Effect:
     return Effect(name, number=number, fill=fill, **stated)
 
 
-EFFECTS = {name: _effect(name) for name in _COMPUTED}
+EFFECTS = {name: _shipped(name) for name in _COMPUTED}
 
 ADDED = added("effects", EFFECTS)
 """Effects of other packages, which are in force in the scenes alone that name them."""
