@@ -66,10 +66,7 @@ WEDGE = _Kind(
 )
 HEXAHEDRON = _Kind(
     "hexahedron",
-    (
-        *((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4)),
-        *((0, 4), (1, 5), (2, 6), (3, 7)),
-    ),
+    (*((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4)), *((0, 4), (1, 5), (2, 6), (3, 7))),
     tuple(tuple(int(corner) for corner in face) for face in FACES),
     CORNERS,
 )

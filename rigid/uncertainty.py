@@ -118,12 +118,7 @@ ARMS = ("d_c", "d_d")
 
 
 def first_order(
-    motion: Mapping[str, ArrayLike],
-    *,
-    d_c: float,
-    d_d: float,
-    k2: float,
-    errors: Errors | None = None,
+    motion: Mapping[str, ArrayLike], *, d_c: float, d_d: float, k2: float, errors: Errors | None = None
 ) -> dict[str, Estimate]:
     """Coefficients of the mean motion with their uncertainty, propagated linearly.
 

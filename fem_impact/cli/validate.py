@@ -23,9 +23,7 @@ ERRORS = ("number", "model S", "tests D", "S - D", "u_num", "u_input", "u_D", "v
 def add_options(parser: CommandParser) -> None:
     """State the command and its options."""
     parser.state(
-        validate,
-        "fem-impact validate t5b",
-        "fem-impact validate t5b --uncertain surface.friction=+-10%",
+        validate, "fem-impact validate t5b", "fem-impact validate t5b --uncertain surface.friction=+-10%"
     )
     add_scene(parser)
     add_uncertain(parser, "its part of the error is told")

@@ -48,10 +48,7 @@ def path_picture(each: Sequence[StrikeRecord], shape: Outline, gravity: tuple[fl
         "vermilion",
         texts=tuple(f"strike {k}: {one.part}, {one.approach:.3g} m/s" for k, one in enumerate(shown, 1)),
     )
-    bodies = (
-        Series("in flight", *flown, "thin", "grey"),
-        Series("at a strike", *struck, "line", "ink"),
-    )
+    bodies = (Series("in flight", *flown, "thin", "grey"), Series("at a strike", *struck, "line", "ink"))
     title = f"first {len(shown)} of {len(each)} strikes" if len(each) > len(shown) else ""
     panel = Panel(title, "along the barrier, mm", "over the barrier, mm", (*bodies, places), equal=True)
     caption = "The body at its strikes and at even times between them; flights alone are shown in between."

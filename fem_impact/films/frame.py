@@ -57,13 +57,7 @@ class FilmBackground:
 
     @classmethod
     def make(
-        cls,
-        layout: FrameLayout,
-        motion: FilmData,
-        title: str,
-        made: str,
-        curve: Curve,
-        times: np.ndarray,
+        cls, layout: FrameLayout, motion: FilmData, title: str, made: str, curve: Curve, times: np.ndarray
     ) -> "FilmBackground":
         """Draw the still parts once."""
         drawn, waves = blank(layout), motion.movement.waves if motion.field == "strain" else None

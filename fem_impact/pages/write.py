@@ -48,11 +48,7 @@ def write_report(result_dir: str | Path, again: bool = True) -> Path:
 
 
 def present(
-    runs: Iterable[Path],
-    study: Path,
-    progress: ProgressMeter,
-    frames: int,
-    executor: Executor | None = None,
+    runs: Iterable[Path], study: Path, progress: ProgressMeter, frames: int, executor: Executor | None = None
 ) -> list[str]:
     """Write film and page of each run and the page of the study; return what could not be made.
 

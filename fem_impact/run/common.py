@@ -7,13 +7,7 @@ import rigid
 from fem_impact.case.case import Case
 from fem_impact.case.effects.heating import halves
 from fem_impact.case.shaft import gives_elsewhere
-from fem_impact.outcome.groups import (
-    ArmCoefficients,
-    BarrierMotion,
-    Heat,
-    Restitution,
-    RodMotion,
-)
+from fem_impact.outcome.groups import ArmCoefficients, BarrierMotion, Heat, Restitution, RodMotion
 from fem_impact.outcome.keys import Num, Unknown, known, unknown
 from fem_impact.physics.flash import Flash, flash_bound
 from fem_impact.run.tests import tests_of

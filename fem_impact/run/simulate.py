@@ -57,10 +57,7 @@ def simulate(
 
 
 def simulate_recorded(
-    scene: Scene,
-    fidelity: str = "solid",
-    options: RunOptions = RunOptions(),
-    case: Case | None = None,
+    scene: Scene, fidelity: str = "solid", options: RunOptions = RunOptions(), case: Case | None = None
 ) -> tuple[Outcome, ContactRecord | None]:
     """Compute an impact as `simulate` does; return also where the bodies touched and flowed (solid).
 

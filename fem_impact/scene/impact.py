@@ -56,12 +56,7 @@ class Impact:
 
     @classmethod
     def dropped(
-        cls,
-        angle: float,
-        height: float,
-        omega: float = 0.0,
-        slope: float | None = None,
-        until: str = FIRST,
+        cls, angle: float, height: float, omega: float = 0.0, slope: float | None = None, until: str = FIRST
     ) -> "Impact":
         """Return the impact of a rod that fell from rest by ``height``, m, down the vertical: v^2 = 2 g h."""
         fallen = _along(angle if slope is None else slope, _fallen(fields.HEIGHT.checked(height)))
@@ -69,12 +64,7 @@ class Impact:
 
     @classmethod
     def thrown(
-        cls,
-        angle: float,
-        speed: float,
-        omega: float = 0.0,
-        slope: float | None = None,
-        until: str = FIRST,
+        cls, angle: float, speed: float, omega: float = 0.0, slope: float | None = None, until: str = FIRST
     ) -> "Impact":
         """Return the impact of a rod that moves along its axis at ``speed``, m/s."""
         along = _along(angle, fields.SPEED.checked(speed))

@@ -67,10 +67,7 @@ class TableFlow:
         if not 2 <= len(self.points) <= MOST_POINTS:
             raise SceneError(f"must hold 2 to {MOST_POINTS} points.", key="points", value=len(self.points))
         checked = tuple(
-            (
-                float(fields.PLASTIC_STRAIN.checked(strain)),
-                float(fields.FLOW_STRESS.checked(stress)),
-            )
+            (float(fields.PLASTIC_STRAIN.checked(strain)), float(fields.FLOW_STRESS.checked(stress)))
             for strain, stress in self.points
         )
         object.__setattr__(self, "points", checked)

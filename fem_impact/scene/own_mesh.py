@@ -244,9 +244,7 @@ def _numbered(
 
 @lru_cache(maxsize=8)
 def faceted_body(
-    mesh: OwnMesh,
-    density: tuple[tuple[float, float], ...],
-    regions: tuple[tuple[str, float], ...] = (),
+    mesh: OwnMesh, density: tuple[tuple[float, float], ...], regions: tuple[tuple[str, float], ...] = ()
 ) -> Faceted:
     """Return the rigid body of a mesh with densities, kg/m3, up to their ends, m from the tip.
 

@@ -20,12 +20,7 @@ REFUSED = {
 SOLIDS = ("ELEMENT_SOLID", "ELEMENT_SOLID_TITLE", "ELEMENT_TSHELL")
 LINES_MORE = {"ORTHO": 2, "DOF": 1}  # that an option adds to each element
 # how many whole numbers stand before the mass
-MASSES = {
-    "ELEMENT_MASS": 2,
-    "ELEMENT_MASS_NODE_SET": 2,
-    "ELEMENT_MASS_PART": 1,
-    "ELEMENT_MASS_PART_SET": 1,
-}
+MASSES = {"ELEMENT_MASS": 2, "ELEMENT_MASS_NODE_SET": 2, "ELEMENT_MASS_PART": 1, "ELEMENT_MASS_PART_SET": 1}
 SETS = ("SET_SEGMENT", "SET_NODE", "SET_NODE_LIST")
 
 

@@ -97,10 +97,5 @@ def segments(u: Floats, w: Floats, f: Floats, *, d_c: Floats, d_d: Floats, k2: F
     stops = -t_slide * np.sign(w) * NEVER * np.abs(u) > np.abs(w)
     p_s = np.where(stops, -w / np.where(stops, t_slide, 1.0), np.where(w == 0, 0.0, np.inf))
     return Segments(
-        u,
-        w,
-        n=(n_n + n_t * slide, n_n + n_t * hold),
-        t=(t_slide, t_after),
-        s=(slide, hold),
-        p_s=p_s,
+        u, w, n=(n_n + n_t * slide, n_n + n_t * hold), t=(t_slide, t_after), s=(slide, hold), p_s=p_s
     )

@@ -358,13 +358,7 @@ class _Course:
 def _resolved(before: Approach, e: float, pull: Pull) -> Strike:
     state = before.state
     path = sliding_path(
-        *(state.V_n, state.V_t),
-        e=e,
-        f=pull.f,
-        d_c=before.d_c,
-        d_d=before.d_d,
-        k2=pull.k2,
-        omega=state.Omega,
+        *(state.V_n, state.V_t), e=e, f=pull.f, d_c=before.d_c, d_d=before.d_d, k2=pull.k2, omega=state.Omega
     )
     V_n, V_t, Omega = (float(v) for v in path.motion)
     p = V_n - state.V_n

@@ -66,11 +66,7 @@ def judged_model(name: Literal["rigid", "modal"], run: Outcome, limits: Limits) 
 
 
 def judged_levels(
-    name: str,
-    kind: SettingKind,
-    levels: Sequence[MeshRuns],
-    beside: Limits,
-    default: bool = False,
+    name: str, kind: SettingKind, levels: Sequence[MeshRuns], beside: Limits, default: bool = False
 ) -> Judged:
     """Return levels with their errors; a variant stands beside the limits of the default run."""
     limits = quantity_limits(levels)

@@ -79,10 +79,7 @@ def conclude(request: Request, results: JobResults) -> StudyReport:
         sentences,
         [_picture(found)],
         [Sheet("skin", "Errors of each set with each of the inputs", Table.of(HEAD, rows))],
-        [
-            *rests_on("skin", LOAD=LOAD),
-            *_left_out(results),
-        ],
+        [*rests_on("skin", LOAD=LOAD), *_left_out(results)],
         conclusions=[("skin", sentence) for sentence in sentences],
     )
 

@@ -11,16 +11,7 @@ from fem_impact.physics.contact_law import FAINT, MERGE_GAP
 # what a checkpoint keeps of a contact
 MOVING = tuple(
     f"book.{name}"
-    for name in (
-        "last_step",
-        "friction",
-        "closing",
-        "impulse",
-        "largest",
-        "last_touch",
-        "outside",
-        "table",
-    )
+    for name in ("last_step", "friction", "closing", "impulse", "largest", "last_touch", "outside", "table")
 )
 
 
