@@ -3,9 +3,8 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from .inputs import Floats, floats
+from .inputs import ArrayLike, Floats, floats
 from .touch import on_side
 
 

@@ -3,11 +3,10 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from .arms import Arms
-from .inputs import Floats, floats, refuse
+from .inputs import ArrayLike, Floats, floats, refuse
 from .massive import approach_velocity
+from .arms import Arms
 
 
 class Coefficients(NamedTuple):

@@ -1,9 +1,8 @@
 """Velocities of a rod dropped on an inclined barrier: Eq 27-28."""
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from .inputs import Floats, floats, refuse
+from .inputs import ArrayLike, Floats, floats, refuse
 
 GRAVITY = 9.80665
 """Standard gravity, m/s2."""

@@ -4,11 +4,11 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from .arms import Arms, point_arms
 from .chord import mirrored_chord
-from .inputs import Floats, ShapeError, floats
+from .inputs import ArrayLike, Floats, ShapeError, floats
 from .rounds import Round, hull, rounds_of
 from .slenderness import slenderness
 from .touch import Touch, level_part, on_side, require_inclination

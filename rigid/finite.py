@@ -2,9 +2,7 @@
 
 from typing import NamedTuple
 
-from numpy.typing import ArrayLike
-
-from .inputs import Floats, floats, refuse
+from .inputs import ArrayLike, Floats, floats, refuse
 from .massive import JAM, approach_velocity, phi
 
 

@@ -8,9 +8,8 @@ entries of it, so A x = b holds with the b of this module and fails with the pri
 from dataclasses import KW_ONLY, dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from .inputs import Floats, floats, refuse
+from .inputs import ArrayLike, Floats, floats, refuse
 from .losses import kinetic_energy
 from .massive import Motion, approach_velocity
 

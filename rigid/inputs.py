@@ -1,9 +1,10 @@
-"""What formulas take: float64 arrays; and the errors for what they refuse."""
+"""What the formulas of this package take and return, and the errors for what they refuse."""
 
 from typing import Any, TypeAlias
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike as ArrayLike
+from numpy.typing import NDArray
 
 Floats: TypeAlias = NDArray[np.float64]
 

@@ -2,9 +2,7 @@
 
 from typing import NamedTuple
 
-from numpy.typing import ArrayLike
-
-from .inputs import Floats, floats
+from .inputs import ArrayLike, Floats, floats
 from .massive import phi
 
 

@@ -6,9 +6,7 @@ sets to zero, is kept: its terms are those of the general system (Eq 1-3).
 
 from typing import NamedTuple
 
-from numpy.typing import ArrayLike
-
-from .inputs import Floats, floats, refuse
+from .inputs import ArrayLike, Floats, floats, refuse
 
 APPROACH = "the contact point must approach the barrier, but its normal velocity is {value} m/s"
 JAM = (

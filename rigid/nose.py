@@ -9,9 +9,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from .inputs import Floats, floats
+from .inputs import ArrayLike, Floats, floats
 
 CONE = np.radians(60.0)
 

@@ -6,11 +6,10 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from .arms import Arms, corner_arms, point_arms
 from .chord import both_sides, mirrored_chord
-from .inputs import Floats, ShapeError, floats
+from .inputs import ArrayLike, Floats, ShapeError, floats
 from .nose import SHAPES, Nose
 from .rounds import Round, around
 from .shapes import of_nose

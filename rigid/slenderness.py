@@ -1,9 +1,8 @@
 """Slenderness of a rod and the published limit of rigid-body impact theory (Eq 29)."""
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from .inputs import Floats, ShapeError, floats, refuse
+from .inputs import ArrayLike, Floats, ShapeError, floats, refuse
 
 EXPONENT = 1.3815
 LIMIT = 26.45

@@ -5,11 +5,10 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from .arms import Arms, point_arms
 from .chord import both_sides, mirrored_chord
-from .inputs import Floats, ShapeError, TooLongError, floats
+from .inputs import ArrayLike, Floats, ShapeError, TooLongError, floats
 from .rounds import LONG, Round, cut, hull, rounds_of
 from .slenderness import slenderness
 from .touch import LEVEL, Touch, level_part, on_side, require_inclination

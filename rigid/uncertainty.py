@@ -5,10 +5,9 @@ from dataclasses import dataclass
 from math import isfinite, sqrt
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from .coefficients import coefficients
-from .inputs import DataError, Floats
+from .inputs import ArrayLike, DataError, Floats
 
 MOTION = ("v_n", "v_t", "V_n", "V_t", "Omega")
 

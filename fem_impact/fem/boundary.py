@@ -13,10 +13,9 @@ from math import pi, sqrt
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 from scipy.sparse.linalg import LinearOperator, cg
 
-from fem_impact.arrays import Array
+from fem_impact.arrays import Array, Bools
 from fem_impact.errors import RunError
 from fem_impact.fem.elements import lame_constants
 from fem_impact.fem.forms import dashpots, face_basis, hex_mesh, springs
@@ -32,7 +31,7 @@ def spread_boundary(
     E: float,
     nu: float,
     rho: float,
-    cells: NDArray[np.bool_] | None = None,
+    cells: Bools | None = None,
     middle: float = 0.0,
 ) -> tuple[Array, Array]:
     """Return spring stiffnesses, N/m, and damping, N s/m, of all mesh nodes, both (n, 3).
@@ -86,7 +85,7 @@ def plate_edges(mesh: HexMesh, E: float, nu: float, rho: float, speed: float) ->
 def radiating_share(
     K: sp.csr_matrix,
     damping: Array,
-    fixed: NDArray[np.bool_],
+    fixed: Bools,
     loaded: int,
     material: tuple[float, float, float],
 ) -> float:

@@ -7,12 +7,11 @@ from functools import partial
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 from scipy.linalg import lapack
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 from scipy.sparse.linalg import LinearOperator, cg, eigsh, splu
 
-from fem_impact.arrays import Array
+from fem_impact.arrays import Array, Bools
 from fem_impact.errors import RunError
 
 
@@ -101,7 +100,7 @@ so do runs that differ in their barrier only."""
 def rod_modes(
     stiffness: MassStiffness,
     mass: Array,
-    fixed: NDArray[np.bool_],
+    fixed: Bools,
     count: int = DEFAULT_COUNT,
     step: Callable[[], None] = lambda: None,
 ) -> RodModes:
@@ -133,7 +132,7 @@ def rod_modes(
 
 
 def _solve(
-    stiffness: MassStiffness, mass: Array, fixed: NDArray[np.bool_], count: int, step: Callable[[], None]
+    stiffness: MassStiffness, mass: Array, fixed: Bools, count: int, step: Callable[[], None]
 ) -> RodModes:
     """Solve the eigenvalue problem of `rod_modes`, without the cache."""
     root = np.where(fixed, 0.0, 1 / np.sqrt(mass))

@@ -3,10 +3,9 @@
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from skfem import ElementHex1, ElementVector
 
-from fem_impact.arrays import Array
+from fem_impact.arrays import Array, Ints
 from fem_impact.fem import forms
 
 Kind = Literal["full", "bbar", "incompatible"]
@@ -24,9 +23,7 @@ def lame_constants(E: float, nu: float) -> tuple[float, float]:
     return E * nu / ((1 + nu) * (1 - 2 * nu)), E / (2 * (1 + nu))
 
 
-def element_stiffness(
-    points: Array, cells: NDArray[np.int64], lame: tuple[float, float], kind: Kind
-) -> Array:
+def element_stiffness(points: Array, cells: Ints, lame: tuple[float, float], kind: Kind) -> Array:
     """Return element stiffness matrices, N/m.
 
     Parameters
@@ -46,7 +43,7 @@ def element_stiffness(
     return np.concatenate(parts)
 
 
-def lumped_mass(points: Array, cells: NDArray[np.int64], density: float) -> Array:
+def lumped_mass(points: Array, cells: Ints, density: float) -> Array:
     """Return row-sum lumped nodal masses (m, 8), kg, of each element."""
     mesh = forms.hex_mesh(points, cells)
     return np.asarray(forms.element_matrices(forms.mass, mesh, ElementHex1(), rho=density).sum(axis=2))

@@ -2,10 +2,9 @@
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 from scipy.sparse.linalg import LinearOperator, eigsh
 
-from fem_impact.arrays import Array
+from fem_impact.arrays import Array, Ints
 from fem_impact.fem.eigen import MassStiffness
 from fem_impact.fem.hexmodes import CORNERS, cofactors, reference_gradients
 from fem_impact.fem.kernels import kernel
@@ -36,7 +35,7 @@ def stable_step(K: sp.csr_matrix | MassStiffness, inverse_mass: Array, share: fl
     return float(share * 2.0 / np.sqrt(largest))
 
 
-def gradient_squares(x: Array, places: NDArray[np.int64]) -> Array:
+def gradient_squares(x: Array, places: Ints) -> Array:
     """Return the largest sum |grad N|^2 (m,), 1/m2, over an element's Gauss points; nan if it is folded.
 
     ``x`` (size,), m, are the positions, ``places`` (m, 8, 3) the unknowns of the elements' nodes.

@@ -16,9 +16,8 @@ from math import sqrt
 from typing import NamedTuple, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fem_impact.arrays import Array
+from fem_impact.arrays import Array, Ints
 from fem_impact.fem.kernels import inlined
 
 CELLS = 48
@@ -62,7 +61,7 @@ class Flats(NamedTuple):
     works : (f, 4) normal flow, shear flow, friction, waves in the barrier, J
     """
 
-    ends: NDArray[np.int64]
+    ends: Ints
     law: Array
     share: Array
     base: Array

@@ -3,9 +3,8 @@
 from typing import NamedTuple, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fem_impact.arrays import Array
+from fem_impact.arrays import Array, Ints
 from fem_impact.modal.flat import Flats
 from fem_impact.modal.groove import CELLS
 from fem_impact.physics.contact_law import ContactLaw
@@ -173,7 +172,7 @@ class Sites(NamedTuple):
     low: Array
     high: Array
     offset: Array
-    begin: NDArray[np.int64]
+    begin: Ints
     along_t: Array
     along_n: Array
     base: float

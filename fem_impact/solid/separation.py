@@ -4,9 +4,8 @@ from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fem_impact.arrays import Array
+from fem_impact.arrays import Array, Ints
 from fem_impact.fem.flight import FreeVibration, RigidMotion
 from fem_impact.physics.beam import HORIZON
 from fem_impact.solid.contact.surface import SurfaceContact
@@ -118,7 +117,7 @@ class Separation:
         return ground.levelled(along, heights, state.x, ground.spin(state.v) * t)
 
 
-def flown(x: Array, places: NDArray[np.int64], motion: RigidMotion, ahead: FreeVibration, t: float) -> Array:
+def flown(x: Array, places: Ints, motion: RigidMotion, ahead: FreeVibration, t: float) -> Array:
     """Return a copy of positions ``x`` in which nodes ``places`` (k, 3) flew on freely for a time, s."""
     moved, now = x.copy(), np.zeros(1)
     c, s, drift = np.cos(motion.Omega * t), np.sin(motion.Omega * t), (motion.V_t * t, 0.0, motion.V_n * t)
@@ -130,9 +129,7 @@ def flown(x: Array, places: NDArray[np.int64], motion: RigidMotion, ahead: FreeV
     return moved
 
 
-def flight_heights(
-    x: Array, rows: NDArray[np.int64], motion: RigidMotion, ahead: FreeVibration, t: Array
-) -> Array:
+def flight_heights(x: Array, rows: Ints, motion: RigidMotion, ahead: FreeVibration, t: Array) -> Array:
     """Return heights n (k, times), m, of nodes at x (k, 3) in free flight after times t, s."""
     shake = ahead.displacement(rows, t) - ahead.displacement(rows, np.zeros(1))
     return _rigid_heights(x - motion.centre, motion, t) + shake

@@ -6,10 +6,9 @@ Five sets of the 0.08 m rod dropped at about 2.1 m/s: 17, 25, 37, 60 degrees (Ta
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from ..coefficients import Coefficients
-from ..inputs import DataError, Floats, refuse
+from ..inputs import ArrayLike, DataError, Floats, refuse
 from ..losses import PredictedLosses, predicted_losses
 from ..massive import critical_ratio
 from .sets import MeasuredSet, measured_set

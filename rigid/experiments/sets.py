@@ -8,13 +8,12 @@ from importlib.resources import files
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from ..arms import Arms
 from ..coefficients import coefficients
-from ..inputs import DataError, Floats, floats
+from ..inputs import ArrayLike, DataError, Floats, floats
 from ..losses import losses
 from ..massive import solve
+from ..touch import Arms
 from ..uncertainty import MOTION, sensitivities
 from .statistics import Statistic, covariance_of_means, statistic
 from .tables import decimals, printed_statistics, statistic_decimals, table

@@ -5,9 +5,8 @@ from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from ..inputs import DataError, Floats
+from ..inputs import ArrayLike, DataError, Floats
 
 
 @dataclass(frozen=True, slots=True)

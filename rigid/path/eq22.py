@@ -1,9 +1,8 @@
 """The impulse ratio of a part of the contact (Eq 22), and the threshold of the Painleve paradox."""
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from ..inputs import Floats, floats
+from ..inputs import ArrayLike, Floats, floats
 
 
 def interval_ratio(

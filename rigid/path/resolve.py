@@ -12,9 +12,9 @@ from dataclasses import dataclass
 from enum import IntEnum
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from ..inputs import Floats, ImpactError, floats, refuse
+from ..inputs import ArrayLike, Floats, ImpactError, floats, refuse
 from ..massive import Motion, approach_velocity
 from .segments import Segments, segments
 

@@ -3,9 +3,8 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fem_impact.arrays import Array, Ints
+from fem_impact.arrays import Array, Bools, Ints
 from fem_impact.fem.body import MeshedBody
 from fem_impact.fem.kernels import inlined, kernel
 from meshes import SKIN
@@ -167,7 +166,7 @@ class Patch(NamedTuple):
     places: Ints
     quads: Ints
     neighbours: Ints
-    mirrored: NDArray[np.bool_]
+    mirrored: Bools
     bend: Array
     sag: float
 
