@@ -4,9 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .arms import Arms
 from .inputs import ArrayLike, Floats, floats, refuse
 from .massive import approach_velocity
-from .arms import Arms
 
 
 class Coefficients(NamedTuple):

@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
+from ..arms import Arms
 from ..coefficients import coefficients
 from ..inputs import ArrayLike, DataError, Floats, floats
 from ..losses import losses
 from ..massive import solve
-from ..touch import Arms
 from ..uncertainty import MOTION, sensitivities
 from .statistics import Statistic, covariance_of_means, statistic
 from .tables import decimals, printed_statistics, statistic_decimals, table
