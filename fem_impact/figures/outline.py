@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fem_impact.arrays import Array, Ints
 from fem_impact.figures.style import INK, PALETTE, QUIET, WIDTH, figure
+from meshes import SKIN, SYMMETRY, HexMesh, owners
+from rigid import Body, Faceted, Turned
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from matplotlib.axes import Axes
-
-    from fem_impact.arrays import Array, Ints
-    from meshes import HexMesh
-    from rigid import Body
 
 
 COLUMNS, MOST_ROWS = 68, 11  # characters
@@ -35,8 +33,6 @@ def drawn(body: Body, touch: tuple[float, float], joints: Sequence[float] = ()) 
     Thin bodies are drawn three rows high at least, not to scale. Segments, between ``joints``, m from the
     tip, have different signs.
     """
-    from rigid import Faceted
-
     middle, width = 0.0, body.diameter
     if isinstance(body, Faceted):  # which may be bent
         low, high = body.points[:, 0].min(), body.points[:, 0].max()
@@ -88,7 +84,6 @@ def draw(
     OutputPathError
         The place cannot be written.
     """
-    from rigid import Turned
 
     def wall(z: Array) -> tuple[Array, Array]:
         inside = np.clip(z, 1e-6 * body.length, (1 - 1e-6) * body.length)  # at the ends those just inside
@@ -162,8 +157,6 @@ def draw_mesh(
     OutputPathError
         The place cannot be written.
     """
-    from meshes import SKIN, SYMMETRY, owners
-
     mm, tags, cells = 1e3 * half.points, half.face_tag, owners(half)
     # faces (k, 4) and the cell (k,) that each belongs to
     side, front = ((half.faces[tags == tag], cells[tags == tag]) for tag in (SYMMETRY, SKIN))

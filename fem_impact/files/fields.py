@@ -10,13 +10,13 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
+import h5py
 import numpy as np
 
 from fem_impact.errors import ResultError
 from fem_impact.files.atomic import check_digest
 
 if TYPE_CHECKING:
-    import h5py
     import pyvista
 
 
@@ -224,8 +224,6 @@ def _slice(root: h5py.Group, kind: str, name: str, frame: int, count: int) -> np
 
 
 def _opened(path: Path, read: Callable[[h5py.Group], T]) -> T:
-    import h5py
-
     if not path.is_file():
         raise ResultError(f"{path}: there is no such field file.")
     for wait in _WAITS:

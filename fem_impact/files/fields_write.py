@@ -1,23 +1,18 @@
 """Fields over time, written frame by frame to a VTKHDF 2.2 file that others can read meanwhile."""
 
-from __future__ import annotations
-
 import shutil
 import time as clock
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import h5py
 import numpy as np
 
 from fem_impact.errors import OutputPathError
 from fem_impact.files.atomic import atomic_path
 from fem_impact.files.fields import check_mesh, check_rows, read_fields
-
-if TYPE_CHECKING:
-    import h5py
-
 
 VTK_HEXAHEDRON = 12
 STEP_ROWS = ("PartOffsets", "PointOffsets", "CellOffsets", "ConnectivityIdOffsets", "NumberOfParts")
@@ -42,8 +37,6 @@ def write_mesh(path: Path, points: np.ndarray, cells: np.ndarray, static: Mappin
     static : mapping of str to (m,) or (m, k) arrays
         Cell data without time.
     """
-    import h5py
-
     with h5py.File(path, "w") as file:
         root = file.create_group("VTKHDF")
         root.attrs["Version"] = np.array([2, 2])
@@ -203,8 +196,6 @@ class FieldWriter:
         present = self.frames
         if present < count:
             raise ValueError(f"{self.path.name} holds {present} frames of the {int(count)} written before.")
-        import h5py
-
         with h5py.File(self.path, "r+") as file:
             file["VTKHDF"]["Steps"].attrs["NSteps"] = int(count)
 
@@ -213,8 +204,6 @@ class FieldWriter:
 
         Not while frames come: a piece that is compressed again at each frame would not survive a kill.
         """
-        import h5py
-
         try:
             with atomic_path(self.path) as draft, h5py.File(self.path) as old, h5py.File(draft, "w") as new:
                 old.visititems(lambda name, item: _packed(new, name, item))
@@ -258,8 +247,6 @@ class FieldWriter:
         return False
 
     def _try(self, time: float, points: Mapping[str, np.ndarray], cells: Mapping[str, np.ndarray]) -> str:
-        import h5py
-
         size = sum(np.asarray(values).size for values in (*points.values(), *cells.values())) * 4
         try:
             # a full disk can damage an HDF5 file for good, so the free space is checked first

@@ -1,19 +1,15 @@
 """Strain along the rod's axis over time and the free flight after the last contact: the file waves.h5."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import h5py
 import numpy as np
 
 from fem_impact.errors import ResultError, UsageError
 from fem_impact.files.atomic import atomic_path, check_digest
 from fem_impact.files.fields import check_finite, check_times
-
-if TYPE_CHECKING:
-    import h5py
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,8 +133,6 @@ class Waves:
 
 def write_waves(path: Path, waves: Waves) -> None:
     """Write the file in one step; strains and shapes in single precision. Raises OutputPathError."""
-    import h5py
-
     with atomic_path(path) as draft, h5py.File(draft, "w") as file:
         _put(file, waves)
         if waves.ringing is not None:
@@ -162,8 +156,6 @@ def read_waves(path: str | Path) -> Waves:
     ResultError
         It is missing, damaged, or not the one that its run wrote.
     """
-    import h5py
-
     path = Path(path)
     if not path.is_file():
         raise ResultError(f"{path}: there is no such file; run the scene with save.strain_samples = 1.")
@@ -179,8 +171,6 @@ def read_waves(path: str | Path) -> Waves:
 
 
 def _taken(group: h5py.Group) -> dict[str, Any]:
-    import h5py
-
     arrays = {name: entry[...] for name, entry in group.items() if isinstance(entry, h5py.Dataset)}
     for name, values in arrays.items():
         check_finite(name, values)

@@ -1,21 +1,16 @@
 """The pictures of each frame, the whole rod and the contact in section, and what is drawn over the rod."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import pyvista
 from PIL import Image
 
 from fem_impact.figures.style import INK, PALETTE, QUIET
 from fem_impact.films.frame import CLOSE_WIDTH, font
 from fem_impact.films.layout import Rectangle
 from fem_impact.films.motion import FIELDS, FilmData, nice_factor, to_points
-
-if TYPE_CHECKING:
-    import pyvista
-
 
 MARGIN = 0.45
 """Free space around the rod in diameters."""
@@ -36,8 +31,6 @@ class _View:
     def __init__(
         self, motion: FilmData, size: tuple[int, int], span: tuple[float, float], **look: Any
     ) -> None:
-        import pyvista
-
         self.motion = motion
         self.surface = outer_surface(motion)
         self.nodes = np.asarray(self.surface.point_data["vtkOriginalPointIds"])
@@ -137,8 +130,6 @@ def _corners(motion: FilmData) -> tuple[np.ndarray, np.ndarray]:
 
 def outer_surface(motion: FilmData) -> pyvista.PolyData:
     """Return the outside of the half model, with the numbers of its points and cells in the mesh."""
-    import pyvista
-
     cells = {pyvista.CellType.HEXAHEDRON: motion.fields.cells}
     grid = pyvista.UnstructuredGrid(cells, motion.fields.points)
     return grid.extract_surface(pass_pointid=True, pass_cellid=True, algorithm="dataset_surface")
@@ -146,8 +137,6 @@ def outer_surface(motion: FilmData) -> pyvista.PolyData:
 
 def _add_plane(plotter: Any, motion: FilmData) -> None:
     """Draw a rigid barrier as a grey slab; a meshed one is drawn as it is."""
-    import pyvista
-
     if motion.rod_nodes.all():
         t, reach = motion.contact[0], 1.2 * motion.span
         slab = pyvista.Box((t - reach, t + reach, -reach, reach, -0.08 * motion.span, 0.0))
@@ -185,7 +174,7 @@ class Overlay:
     fastest: float
 
     @classmethod
-    def of(cls, place: Rectangle, view: RodPicture, motion: FilmData) -> Overlay:
+    def of(cls, place: Rectangle, view: RodPicture, motion: FilmData) -> "Overlay":
         """Prepare for a view."""
         start = motion.movement.velocity(float(motion.fields.times[0]), motion.weights)
         return cls(place, view, motion, max(float(np.linalg.norm(start)), 1e-12))
