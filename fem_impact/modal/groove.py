@@ -14,7 +14,7 @@ doi:10.1098/rspa.1959.0114). T is at most f q and 2 b k. What the tip ploughs up
 that the contact grows.
 """
 
-from math import atan, exp, log, pi, sqrt
+from math import atan, exp, inf, log, pi, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -58,6 +58,28 @@ class WorkIndex(NamedTuple):
 AT, WORK = StateIndex(), WorkIndex()
 
 
+class Flank(NamedTuple):
+    """A side of a tip: a straight part that it goes over into.
+
+    Its slope, how far it reaches along t, m, and the slope beyond; all are infinite where the tip is round.
+    """
+
+    slope: float
+    end: float
+    beyond: float
+
+
+ROUND = Flank(inf, inf, inf)
+
+
+class Tip(NamedTuple):
+    """What presses: its radius, m, and its sides."""
+
+    radius: float
+    behind: Flank
+    ahead: Flank
+
+
 class Groove(NamedTuple):
     """The groove that a tip leaves, cell by cell along its way.
 
@@ -66,8 +88,6 @@ class Groove(NamedTuple):
     depth, normal, shift : (CELLS,) depth, m, normal force, N/m, and shift of the tangential spring, m
     state : (9,) what stands once, see `StateIndex`
     works : (3,) J, see `WorkIndex`
-    tip : (7,) what presses: its radius, m, the slopes of the straight parts that it goes over into behind
-        and ahead, how far these reach along t, m, and the slopes beyond; infinite where it is round all over
     size : of a cell, m
     """
 
@@ -76,35 +96,37 @@ class Groove(NamedTuple):
     shift: Array
     state: Array
     works: Array
-    tip: Array
+    tip: Tip
     size: float
 
 
 @allocating_kernel
 def smooth(reach: float, radius: float) -> Groove:
     """Return a surface without a groove for contacts of a round tip of at most a half length ``reach``, m."""
-    state, tip = np.zeros(9), np.array([radius, *6 * [np.inf]])
+    state, cells = np.zeros(9), (np.zeros(CELLS), np.zeros(CELLS), np.zeros(CELLS))
     state[AT.last] = -1.0
-    return Groove(np.zeros(CELLS), np.zeros(CELLS), np.zeros(CELLS), state, np.zeros(3), tip, reach / ACROSS)
+    return Groove(*cells, state, np.zeros(3), Tip(radius, ROUND, ROUND), reach / ACROSS)
 
 
 @inlined
-def outline(tip: Array, x: float) -> tuple[float, float]:
+def outline(tip: Tip, x: float) -> tuple[float, float]:
     """Return height, m, and slope of a tip at a distance x, m, from what is lowest of it."""
-    slope, beyond = min(max(x / tip[0], -tip[1]), tip[2]), max(x - tip[4], -x - tip[3])
-    if beyond <= 0.0:
-        return slope * (x - 0.5 * tip[0] * slope), slope
-    way, end, other = (1.0, tip[4], tip[6]) if x > 0.0 else (-1.0, tip[3], tip[5])
-    return slope * (way * end - 0.5 * tip[0] * slope) + other * beyond, way * other
+    radius, behind, ahead = tip
+    slope, past = min(max(x / radius, -behind.slope), ahead.slope), max(x - ahead.end, -x - behind.end)
+    if past <= 0.0:
+        return slope * (x - 0.5 * radius * slope), slope
+    way, side = (1.0, ahead) if x > 0.0 else (-1.0, behind)
+    return slope * (way * side.end - 0.5 * radius * slope) + side.beyond * past, way * side.beyond
 
 
 @inlined
-def half_length(radius: float, slope: float, end: float, other: float, depth: float) -> float:
-    """Return how far, m, a tip touches at a depth, m, on a side with these numbers of `Groove.tip`."""
+def half_length(radius: float, side: Flank, depth: float) -> float:
+    """Return how far, m, a tip of a radius, m, touches on a side at a depth, m."""
+    slope, end, beyond = side
     if slope > 0.0 and depth <= 0.5 * radius * slope**2:
         return sqrt(2 * radius * depth)
     rise = slope * (end - 0.5 * radius * slope)
-    return depth / slope + 0.5 * radius * slope if depth <= rise else end + (depth - rise) / other
+    return depth / slope + 0.5 * radius * slope if depth <= rise else end + (depth - rise) / beyond
 
 
 @inlined
@@ -135,8 +157,8 @@ def window(groove: Groove, depth: float, place: float) -> tuple[int, int]:
     """Return first and last cell that the tip may touch; cells not visited before become smooth."""
     state, tip, size = groove.state, groove.tip, groove.size
     down, most = max(depth + state[AT.top], 0.0), size * LONGEST
-    behind = min(half_length(tip[0], tip[1], tip[3], tip[5], down), most)
-    ahead = min(half_length(tip[0], tip[2], tip[4], tip[6], down), most)
+    behind = min(half_length(tip.radius, tip.behind, down), most)
+    ahead = min(half_length(tip.radius, tip.ahead, down), most)
     # a cell more than may touch on either side: one that is left is set free there
     first, last = int(np.floor((place - behind) / size)) - 1, int(np.floor((place + ahead) / size)) + 1
     if state[AT.last] < state[AT.first]:

@@ -6,7 +6,7 @@ from math import cos, inf, pi, sin, sqrt, tan
 import numpy as np
 
 from fem_impact.case.case import Case
-from fem_impact.modal.groove import ACROSS, LONGEST
+from fem_impact.modal.groove import ACROSS, LONGEST, Flank
 from fem_impact.modal.groove import AT as IN_GROOVE
 from fem_impact.modal.hertz import springs_over
 from fem_impact.modal.landing import height_of, in_body, lay_flat
@@ -155,7 +155,7 @@ def start_of(case: Case, rod: ModalRod) -> Start:
 
 
 def shape(sites: Sites, held: Touched, s: int, turn: float, longest: float) -> None:
-    """Give a site that touches at a turn, rad, the straight parts beside it, see `Groove.tip`.
+    """Give a site that touches at a turn, rad, the straight parts beside it, see `Flank`.
 
     A part belongs to that of its ends which touches first. One not ``longest``, m, takes the corner at its
     other end along: both press into one groove.
@@ -170,12 +170,13 @@ def shape(sites: Sites, held: Touched, s: int, turn: float, longest: float) -> N
             continue
         u, w = skin(sites, other, turn)
         far = slice(int(sites.begin[other]), int(sites.begin[other + 1]))
-        held.tip[s, 1 + side] = _slope(turn - sites.low[begin] if side == 0 else sites.high[end - 1] - turn)
-        held.tip[s, 3 + side] = abs(cos(turn) * (u - t) + sin(turn) * (w - n))
+        slope = _slope(turn - sites.low[begin] if side == 0 else sites.high[end - 1] - turn)
+        flank = Flank(slope, abs(cos(turn) * (u - t) + sin(turn) * (w - n)), inf)
         if np.hypot(u - t, w - n) <= longest and not sites.radius[far].any():
             lean = turn - sites.low[far][0] if side == 0 else sites.high[far][-1] - turn
-            held.tip[s, 5 + side] = _slope(lean)
+            flank = flank._replace(beyond=_slope(lean))
             held.site[other, SITE.known] = LAID
+        held.tip[s, 1 + 3 * side : 4 + 3 * side] = flank
 
 
 def _slope(lean: float) -> float:

@@ -194,7 +194,8 @@ class Touched(NamedTuple):
     law, flow : (s, 10), (s, 17) numbers of a `ContactLaw` and a `FlowLaw`
     place, width, shift : (s, SPRINGS) tangential springs: distances from the centre, widths and shifts, m
     depth, normal, sheared : (s, CELLS) cells, and ``state`` (s, 9), ``works`` (s, 3), J, ``tip`` (s, 7),
-        ``size`` (s,), m, of a `fem_impact.modal.groove.Groove`
+        its radius, m, and the numbers of both flanks, and ``size`` (s,), m, of a
+        `fem_impact.modal.groove.Groove`
     work_t : (s,) work of the tangential force, J
     flats : straight parts that have landed; their sites have no contacts of their own
     over_speed : factors of friction, a `fem_impact.fem.sliding.speed_table`

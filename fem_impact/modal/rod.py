@@ -109,17 +109,19 @@ def modal_rod(bodies: Bodies, vibrating: bool = True) -> ModalRod:
 
 def _moved(bodies: Bodies, places: Array) -> tuple[Array, Array]:
     """Return omega (k,), and what each mode moves places (m, 2) by, (m, 2, k), kg^-1/2; all (x, z)."""
-    points, shape, omega = _modes(_elastic(bodies.rod), bodies.scene.across)
-    near = AROUND * bodies.rod.diameter
-    return omega, np.array([_moved_place(points, shape, near, *place) for place in places])
+    rod, across = _elastic(bodies.rod), bodies.scene.across
+    moved = [_moved_place(rod, across, x, z) for x, z in places.tolist()]
+    return _modes(rod, across)[2], np.array(moved)
 
 
-def _moved_place(points: Array, shape: Array, around: float, x: float, z: float) -> Array:
-    """Return what modes (n, 2, k) with nodes at points (n, 3) move a place by, (2, k).
+@lru_cache(maxsize=256)
+def _moved_place(rod: ProjectileSpec, across: int, x: float, z: float) -> Array:
+    """Return what the modes of a rod move a place by, (2, k), kg^-1/2: as affine around it, by least squares.
 
-    They are taken as affine ``around`` it, m, by least squares.
+    Places at which an edge ends are asked for again at each inclination.
     """
-    away = (points - np.array([x, 0.0, z])) / around
+    points, shape, _ = _modes(rod, across)
+    away = (points - np.array([x, 0.0, z])) / (AROUND * rod.diameter)
     near = np.flatnonzero((away**2).sum(axis=1) < 1.0)
     affine = np.column_stack([np.ones(len(near)), away[near][:, [0, 2]]])
     weights = affine @ np.linalg.solve(affine.T @ affine, np.array([1.0, 0.0, 0.0]))

@@ -7,7 +7,7 @@ from fem_impact.fem.kernels import inlined
 from fem_impact.fem.sliding import factor_at
 from fem_impact.modal.flat import LAW, flat_energy, flat_meets, press_flat
 from fem_impact.modal.groove import AT as IN_GROOVE
-from fem_impact.modal.groove import WORK, Groove, meets, move_apart, slide, stored_energy
+from fem_impact.modal.groove import WORK, Flank, Groove, Tip, meets, move_apart, slide, stored_energy
 from fem_impact.modal.hertz import grip, press, stored
 from fem_impact.modal.motion import AT, CLOCK, SITE, ModalState, Modes, Sites, Springs, Start, Touched
 from fem_impact.physics.contact_law import ContactLaw
@@ -37,7 +37,9 @@ def flow_of(held: Touched, s: int, rubs: float = 1.0) -> FlowLaw:
 def groove_of(held: Touched, s: int) -> Groove:
     """Return the groove of a site."""
     cells = held.depth[s], held.normal[s], held.sheared[s]
-    return Groove(*cells, held.state[s], held.works[s], held.tip[s], held.size[s])
+    v = held.tip[s]
+    tip = Tip(v[0], Flank(v[1], v[2], v[3]), Flank(v[4], v[5], v[6]))
+    return Groove(*cells, held.state[s], held.works[s], tip, held.size[s])
 
 
 @inlined

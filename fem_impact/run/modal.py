@@ -4,7 +4,6 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from fem_impact.case.case import Case
-from fem_impact.case.shaft import rings_through
 from fem_impact.modal.impact import Arrival, ModalResult, solve
 from fem_impact.outcome.groups import Energy, Heat, Markers, RunCost
 from fem_impact.outcome.keys import Num, Unknown, unknown
@@ -59,6 +58,7 @@ def reduce(case: Case, result: ModalResult) -> Outcome:
     """Return the Outcome of a modal impact."""
     barrier, base = case.scene.barrier, (result.V_bn, result.V_bt)
     turns = barrier.inertia is not None
+    left_out = flow_left_out(case)
     end = ImpactEnd(
         V_n=result.V_n,
         V_t=result.V_t,
@@ -89,16 +89,16 @@ def reduce(case: Case, result: ModalResult) -> Outcome:
             "model",
             *ASSUMPTIONS,
             *_dent(case),
-            flow_left_out(case),
+            left_out,
             LAID if result.laid else "",
             LEVEL if turns else "",
             tilted if turned > TILT_TOLD else "",
         ),
     )
-    said, through = outcome.validity, rings_through(case.bodies)
-    if through:
-        reason = f"how wrong these numbers are is not known: the model leaves out {through}"
-        return replace(outcome, validity=replace(said, model_band=Unknown(reason)))
+    said = outcome.validity
+    if left_out:
+        reason = Unknown(f"how wrong these numbers are is not known. {left_out}")
+        return replace(outcome, validity=replace(said, model_band=reason))
     place = place_of(case, outcome)
     said = replace(
         said,

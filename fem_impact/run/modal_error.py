@@ -10,7 +10,7 @@ only that the scene is of the kind of those that were drawn.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from math import ceil, exp, hypot, inf, log10, sqrt
 from typing import NamedTuple, Self
 
@@ -105,7 +105,7 @@ def place_at(pair: ContactPair, bending_period: float, stops: float) -> Place:
     )
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Stored:
     """Scenes by both models.
 
@@ -125,23 +125,47 @@ class Stored:
         places, errors = ([[row[name] for name in of] for row in rows] for of in (Place._fields, names))
         return cls(np.array(places), np.abs(errors))
 
+    @cached_property
+    def spread(self) -> Array:
+        """Return standard deviations (6,) of the places."""
+        return np.asarray(self.places.std(axis=0))
+
+    @cached_property
+    def _judged(self) -> list[tuple[Array, Array, Array, float]]:
+        """Return of each column which errors are known, these, each over what the others let expect of it.
+
+        Beside them stands the widest half-width that one of the stored scenes would be told.
+        """
+        near, columns = np.array([self._near(place) for place in self.places]), []
+        for every in self.errors.T:
+            known = np.isfinite(every)
+            errors, weights = every[known], near[np.ix_(known, known)] + COMMON / known.sum()
+            expected = np.diagonal(_without_each(weights, errors))
+            columns.append(
+                (known, errors, errors / expected, float((errors / expected).max() * expected.max()))
+            )
+        return columns
+
+    def _near(self, place: Array) -> Array:
+        """Return (n,) how much each stored scene counts at a place (6,)."""
+        away = (place - self.places) / (NEAR * self.spread)
+        return np.asarray(np.exp(-0.5 * (away**2).sum(axis=1)))
+
     def half_width(self, place: Array, of: int, far: float = 0.0) -> float:
         """Return the half-width, as ``errors`` are, of the number of a column at a place (6,).
 
         Of a scene that lies so ``far``, 0 to 1, beyond the stored ones it has gone this share of its way to
         the widest that one of them would be told, unless it is wider.
         """
-        known = np.isfinite(self.errors[:, of])
-        places, errors = self.places[known], self.errors[known, of]
-        expected = _expected(places, errors, self.places.std(axis=0))
-        halves = np.sort(errors / expected * _expected(places, errors, self.places.std(axis=0), place))
+        known, errors, ratios, widest = self._judged[of]
+        halves = np.sort(ratios * _without_each(self._near(place)[known] + COMMON / len(errors), errors))
         own = float(halves[min(ceil(HELD * (len(errors) + 1)), len(errors)) - 1])
-        return own + far * max(float((errors / expected).max() * expected.max()) - own, 0.0)
+        return own + far * max(widest - own, 0.0)
 
     def far(self, place: Array) -> float:
         """Return how far a place (6,) lies beyond all stored ones, from 0 to 1 at `NEAR` spreads."""
         ends = self.places.min(axis=0), self.places.max(axis=0)
-        beyond = np.abs(place - np.clip(place, *ends)) / (NEAR * self.places.std(axis=0))
+        beyond = np.abs(place - np.clip(place, *ends)) / (NEAR * self.spread)
         return float(min(beyond.max(), 1.0))
 
     def outside(self, place: Array) -> tuple[str, ...]:
@@ -150,12 +174,12 @@ class Stored:
         return tuple(name for name, far in zip(CALLED, beyond, strict=True) if far)
 
 
-def _expected(places: Array, errors: Array, spread: Array, at: Array | None = None) -> Array:
-    """Return (n,) what all stored errors but one let expect at the place of that one, or ``at`` one place."""
-    away = ((places if at is None else at)[..., None, :] - places) / (NEAR * spread)
-    weights = np.exp(-0.5 * (away**2).sum(axis=-1)) + COMMON / len(errors)
-    weights = np.broadcast_to(weights, (len(errors), len(errors))) * (1.0 - np.eye(len(errors)))
-    return np.asarray(weights @ errors / weights.sum(axis=1))
+def _without_each(weights: Array, errors: Array) -> Array:
+    """Return (..., n) the means of errors (n,) by weights (..., n) over all of them but each."""
+    parts = weights * errors
+    return np.asarray(
+        (parts.sum(axis=-1, keepdims=True) - parts) / (weights.sum(axis=-1, keepdims=True) - weights)
+    )
 
 
 def unit_of(key: str, outcome: Outcome) -> float:

@@ -7,7 +7,7 @@ import pytest
 
 import fem_impact
 from fem_impact.case.case import Case
-from fem_impact.modal.groove import hardness, indent, slide, smooth
+from fem_impact.modal.groove import Flank, Tip, hardness, indent, slide, smooth
 from fem_impact.modal.impact import drop_round
 from fem_impact.modal.laws import reach
 from fem_impact.modal.motion import CLOCK, SITE, SUM, Bounds, Start
@@ -88,7 +88,7 @@ def test_a_deep_contact_has_tabors_pressure_over_the_area_of_its_geometry():
 @pytest.mark.parametrize(("way", "slope"), [(1, 0.6), (-1, 0.3)])
 def test_a_wedge_that_ploughs_without_friction_is_pushed_back_by_the_slope_of_its_front(way, slope):
     groove, law = smooth(1e-3, 1e-5), flow()._replace(normal=1e15)  # springs back by nothing
-    groove.tip[1:3] = 0.3, 0.6
+    groove = groove._replace(tip=Tip(1e-5, Flank(0.3, inf, inf), Flank(0.6, inf, inf)))
     for step in range(300):
         force = slide(groove, 2e-4, way * step * 5e-6, law)
     assert force[1] / force[0] == pytest.approx(-way * slope, rel=0.02)
@@ -97,7 +97,7 @@ def test_a_wedge_that_ploughs_without_friction_is_pushed_back_by_the_slope_of_it
 def test_a_corner_beside_that_of_a_flank_ploughs_in_its_groove():
     """Before a flank that lies flat stands the slope of the corner at its other end."""
     groove, law = smooth(1e-3, 1e-5), flow()._replace(normal=1e15)  # springs back by nothing
-    groove.tip[1:] = 1.0, -1e-3, 1e9, 5e-4, 1e9, 0.5
+    groove = groove._replace(tip=Tip(1e-5, Flank(1.0, 1e9, 1e9), Flank(-1e-3, 5e-4, 0.5)))
     for step in range(300):
         force = slide(groove, 2e-4, step * 5e-6, law)
     assert -force[1] / force[0] == pytest.approx(0.5, rel=0.05)
