@@ -171,6 +171,10 @@ class Failure:
     reason: str
 
 
+JobResults = dict[str, Outcome | Failure]
+"""What jobs gave, by their names."""
+
+
 @dataclass(frozen=True, slots=True)
 class Answer:
     """Answer of a worker: the outcome as text or the reason of a failure.

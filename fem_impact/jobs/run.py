@@ -14,11 +14,8 @@ from fem_impact.errors import ResultError, RunError
 from fem_impact.jobs.executors import LocalProcesses
 from fem_impact.jobs.job import Answer, Failure, JobKind, Result, Work, compute
 from fem_impact.jobs.store import Store
-from fem_impact.outcome.record import Outcome
 from fem_impact.progress import CaseProgress, Notice, ProgressMeter
 from fem_impact.run.program import source_digest
-
-JobResults = dict[str, "Outcome | Failure"]
 
 
 @dataclass(frozen=True, slots=True)

@@ -36,18 +36,8 @@ from fem_impact.errors import SceneError
 from fem_impact.evidence.problems import setups
 from fem_impact.evidence.problems.discretisation import BarMesh, contact_error, lean_error, radiation_error
 from fem_impact.evidence.problems.problem import Check, Solved, Values, within
+from fem_impact.evidence.references import hertz
 from fem_impact.evidence.references.free_modes import free_bar_flexibility
-from fem_impact.evidence.references.hertz import (
-    SPAN,
-    Ellipse,
-    SpringRow,
-    contact_ellipse,
-    contact_modulus,
-    equivalent_radius,
-    hertz,
-    row_lean,
-    tangential_ratio,
-)
 from fem_impact.evidence.references.oblique import ObliqueRebound, ObliqueRod, oblique_drop, oblique_rod
 from fem_impact.evidence.references.rod_edge import edge_excess
 from fem_impact.evidence.references.waves import radiation_resistance, shear_resistance
@@ -89,17 +79,19 @@ class RodDrop:
     def E_star(self) -> float:
         """Return E* of rod and barrier, Pa."""
         p = self.p
-        return contact_modulus(p["E"], p["nu"], p["barrier_E"] if p["elastic_barrier"] else inf, p["nu"])
+        return hertz.contact_modulus(
+            p["E"], p["nu"], p["barrier_E"] if p["elastic_barrier"] else inf, p["nu"]
+        )
 
     @property
-    def ellipse(self) -> Ellipse:
+    def ellipse(self) -> hertz.Ellipse:
         """Return the contact of the edge's radius and the one around the rod."""
-        return contact_ellipse(self.p["tip_radius"], self._around())
+        return hertz.contact_ellipse(self.p["tip_radius"], self._around())
 
     @property
     def radius(self) -> float:
         """Return the radius, m, of the sphere as stiff as the tip."""
-        return equivalent_radius(self.p["tip_radius"], self._around())
+        return hertz.equivalent_radius(self.p["tip_radius"], self._around())
 
     def _around(self) -> float:
         return float(self.rod.contact_point(self.p["angle"])[0]) / sin(self.p["angle"])
@@ -108,7 +100,7 @@ class RodDrop:
         """Return the largest contact radius, m, of the equivalent sphere without friction and vibration."""
         d_c = float(self.rod.arms(self.p["angle"])[0])
         mass = self.rod.mass / (1 + d_c**2 / self.rod.k2)
-        return hertz(self.E_star, self.radius, mass, self.p["v_n"]).radius
+        return hertz.hertz(self.E_star, self.radius, mass, self.p["v_n"]).radius
 
     def modal(self, patch: int) -> ObliqueRod:
         """Return rigid motion, the modes of a flat rod of the mass, and what the edge adds to them."""
@@ -124,18 +116,22 @@ class RodDrop:
         static = free_bar_flexibility(p["nu"], length / R, p["angle"], (touch[0] / R, touch[1] / R))
         return replace(modal, edge=rod.tip_radius, give=(static + excess) / (p["E"] * R) - modal.static())
 
-    def row(self, change: ReferenceChange) -> SpringRow:
+    def row(self, change: ReferenceChange) -> hertz.SpringRow:
         """Return the springs of the contact."""
         p, stiffer = self.p, (1 + change.stiffness) * self.E_star
-        reach = REACH * hertz(stiffer, self.radius, self.rod.mass, p["v_n"]).radius
-        ratio, f = tangential_ratio(p["nu"], self.ellipse.axes), p["f"] + change.friction
-        return SpringRow(stiffer, ratio * stiffer, self.radius, f, reach, self.lean())
+        reach = REACH * hertz.hertz(stiffer, self.radius, self.rod.mass, p["v_n"]).radius
+        ratio, f = hertz.tangential_ratio(p["nu"], self.ellipse.axes), p["f"] + change.friction
+        return hertz.SpringRow(stiffer, ratio * stiffer, self.radius, f, reach, self.lean())
 
     def lean(self) -> float:
         """Return the slope of the interface over friction and contact radius, 1/m; none on a rigid plane."""
         p = self.p
         G = p["barrier_E"] / (2 + 2 * p["nu"])
-        return row_lean(self.E_star, p["nu"], G, self.radius, self.ellipse) if p["elastic_barrier"] else 0.0
+        return (
+            hertz.row_lean(self.E_star, p["nu"], G, self.radius, self.ellipse)
+            if p["elastic_barrier"]
+            else 0.0
+        )
 
     def rebound(self, change: ReferenceChange) -> ObliqueRebound:
         """Return the motion after the last contact."""
@@ -157,7 +153,7 @@ class RodDrop:
         F = 4 * self.E_star * touch**3 / (3 * self.radius)
         a, b = self.ellipse.half_axes(touch)
         drawn = (1 - 2 * p["nu"]) * (1 + p["nu"]) * 1.5 * F / (pi * a * b) * b / (2 * p["E"])
-        speed = 2 * drawn / (SPAN * touch**2 / self.radius / p["v_n"])
+        speed = 2 * drawn / (hertz.SPAN * touch**2 / self.radius / p["v_n"])
         return min(1.0, 0.1 * (speed / max(p["v_t"], speed)) ** 2)
 
     def errors(self, size: float) -> Iterator[ReferenceChange]:

@@ -8,8 +8,7 @@ import pandas
 
 from fem_impact import Outcome, Scene
 from fem_impact.answers.report import Request, StudyReport
-from fem_impact.jobs.job import Job
-from fem_impact.jobs.run import JobResults
+from fem_impact.jobs.job import Job, JobResults
 
 Runs = Mapping[str, Mapping[str, Outcome]]
 """Outcomes by scene and variant; failed runs are left out."""

@@ -32,8 +32,7 @@ from fem_impact.evidence.studies.rods import (
     points_of,
     run_table,
 )
-from fem_impact.jobs.job import Job
-from fem_impact.jobs.run import JobResults
+from fem_impact.jobs.job import Job, JobResults
 from fem_impact.tables.table import Table
 from fem_impact.tables.text import rounded_up
 from rigid import LIMIT

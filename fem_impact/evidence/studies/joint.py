@@ -26,8 +26,7 @@ from fem_impact.evidence.studies.inputs import sample_jobs
 from fem_impact.evidence.studies.report_parts import asked_sets, error_panel, rests_on
 from fem_impact.evidence.studies.validated import NAMES, SHOWN, outputs, unit_sample
 from fem_impact.figures.panels import Mark, Panel, Picture, Series
-from fem_impact.jobs.job import Job
-from fem_impact.jobs.run import JobResults
+from fem_impact.jobs.job import Job, JobResults
 from fem_impact.tables.table import Table
 from rigid.experiments import measured_set
 

@@ -15,8 +15,7 @@ from pandas import DataFrame
 from fem_impact import Outcome, Scene, load, replace_all, simulate
 from fem_impact.answers.refine.extrapolate import vibration_floor
 from fem_impact.evidence.references.free_modes import bending_period
-from fem_impact.jobs.job import Failure, Job
-from fem_impact.jobs.run import JobResults
+from fem_impact.jobs.job import Failure, Job, JobResults
 from fem_impact.outcome.groups import ContactInterval
 from fem_impact.outcome.keys import or_none
 from fem_impact.outcome.record import KEY_TABLE

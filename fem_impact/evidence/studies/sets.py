@@ -11,8 +11,7 @@ from pathlib import Path
 from fem_impact import Outcome, Unknown, known, load, replace_all, simulate
 from fem_impact.answers.compare import COMPARED, ComparisonRow, compare
 from fem_impact.answers.report import Request, Sheet, StudyReport
-from fem_impact.jobs.job import Job
-from fem_impact.jobs.run import JobResults
+from fem_impact.jobs.job import Job, JobResults
 from fem_impact.outcome.keys import or_none
 from fem_impact.outcome.shares import ADDED, EnergyShare, shares
 from fem_impact.run.tests import tests_of

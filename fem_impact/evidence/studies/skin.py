@@ -17,8 +17,7 @@ from fem_impact.evidence.studies import joint
 from fem_impact.evidence.studies.report_parts import asked_sets, error_panel, rests_on
 from fem_impact.evidence.studies.validated import SHOWN
 from fem_impact.figures.panels import Picture
-from fem_impact.jobs.job import Job
-from fem_impact.jobs.run import JobResults
+from fem_impact.jobs.job import Job, JobResults
 from fem_impact.tables.table import Table
 
 LOAD = 30  # kgf, assumed: the paper prints none

@@ -17,8 +17,7 @@ from fem_impact.answers.compare import MEASURED, compare
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.arrays import Array
 from fem_impact.evidence.studies.sets import set_job
-from fem_impact.jobs.job import Job
-from fem_impact.jobs.run import JobResults
+from fem_impact.jobs.job import Job, JobResults
 from fem_impact.run.tests import tests_of
 from fem_impact.tables.table import Cell, Table
 from rigid.experiments import MeasuredSet, measured_set

@@ -18,6 +18,8 @@ from fem_impact.answers.v_and_v import COVERAGE, Comparison
 from fem_impact.arrays import Array
 from fem_impact.errors import RunError
 from fem_impact.evidence.studies.inputs import UNCERTAIN_INPUTS, sample_values
+from fem_impact.jobs.job import Failure
+from fem_impact.outcome.keys import or_none
 from rigid import Errors
 from rigid.experiments import MeasuredSet, derived_columns, measured_set
 from rigid.uncertainty import MOTION, sensitivities
@@ -87,6 +89,7 @@ def _terms(unit: Array, order: int) -> Array:
 
 
 SEED = 20260101  # of all samples
+FEWEST = 2 * len(UNCERTAIN_INPUTS)  # finished runs of a sample
 DRAWN = 1024  # points at which a response surface is evaluated
 NAMES = tuple(q.measured for q in MEASURED if q.measured)
 VIBRATION = "E_vib_over_E_0"
@@ -191,6 +194,27 @@ def tracking_uncertainty(measured: MeasuredSet) -> dict[str, float]:
     slopes = sensitivities(lambda **v: {**v, **derived_columns(v, **measured.body, mass=measured.mass)}, at)
     sd = {name: Errors().tracking_sd * value for name, value in at.items()}
     return {q: hypot(*(float(by[name] * sd[name]) for name in by)) for q, by in slopes.items()}
+
+
+def validated_set(
+    name: str, nominal: Outcome | Failure, runs: Sequence[Outcome | Failure]
+) -> ValidatedSet | None:
+    """Return a set from its own run and those of its sample; None where it or too much of these failed."""
+    measured = measured_set(name)
+    finished = {i: run for i, run in enumerate(runs) if isinstance(run, Outcome)}
+    if not isinstance(nominal, Outcome) or len(finished) < FEWEST:
+        return None
+    limits, bands = or_none(nominal.validity.mesh_limit), or_none(nominal.validity.mesh_band)
+    if limits is None or bands is None:
+        return None
+    sampled = scaled(name, unit_sample(len(runs)))[list(finished)]
+    surface = fit(sampled, np.array([outputs(run, measured) for run in finished.values()]))
+    every, tests = (surface(scaled(name, unit_sample(DRAWN), only)) for only in (False, True))
+    S = np.array([limits[key] for key in KEYS])
+    nominal_values = surface(nominal_place(name))[0]
+    u_input = np.sqrt(np.mean((every - nominal_values) ** 2, axis=0))
+    comparisons = compared(measured, S, [bands[key] for key in KEYS], u_input)
+    return ValidatedSet(name, measured, surface, S - nominal_values, every, tests, comparisons)
 
 
 PLACES = np.linspace(0.0, 1.0, 21)  # of one input over its interval

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.stats import sobol_indices, uniform, wasserstein_distance
 
-from fem_impact import Outcome, load
+from fem_impact import load
 from fem_impact.answers.compare import MEASURED
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.answers.v_and_v import COVERAGE, Comparison
@@ -19,8 +19,6 @@ from fem_impact.evidence.studies.inputs import UNCERTAIN_INPUTS, one_mesh, sampl
 from fem_impact.evidence.studies.report_parts import asked_sets, comparison_table, rests_on
 from fem_impact.evidence.studies.sets import set_job
 from fem_impact.evidence.studies.validated import (
-    DRAWN,
-    KEYS,
     MISS,
     NAMES,
     OUTPUTS,
@@ -28,23 +26,15 @@ from fem_impact.evidence.studies.validated import (
     SHOWN,
     VIBRATION,
     ValidatedSet,
-    compared,
-    fit,
-    nominal_place,
-    outputs,
     reach_sentences,
-    scaled,
     unit_sample,
+    validated_set,
 )
 from fem_impact.figures.panels import Look, Mark, Panel, Picture, Series
-from fem_impact.jobs.job import Job
-from fem_impact.jobs.run import JobResults
-from fem_impact.outcome.keys import or_none
+from fem_impact.jobs.job import Job, JobResults
 from fem_impact.tables.table import Cell, Table
-from rigid.experiments import measured_set
 
 SIZE, QUICK_SIZE = 64, 16  # runs of a set's sample
-FEWEST = 2 * len(UNCERTAIN_INPUTS)  # finished runs of a sample
 
 
 def plan(request: Request, results: JobResults) -> list[Job]:
@@ -56,33 +46,20 @@ def plan(request: Request, results: JobResults) -> list[Job]:
 
 def conclude(request: Request, results: JobResults) -> StudyReport:
     """Return the study: comparison errors, their uncertainties, and what causes them."""
-    sets = [study_set for name in asked_sets(request) if (study_set := _validated(name, request, results))]
-    return study_report(sets)
+    sets = [
+        validated_set(
+            name,
+            results[set_job(name, request.quick).name],
+            [results[job.name] for job in _sample(name, request)],
+        )
+        for name in asked_sets(request)
+    ]
+    return study_report([one for one in sets if one])
 
 
 def _sample(name: str, request: Request) -> list[Job]:
     """Return one job per row of the sample of a set, on one mesh."""
     return sample_jobs(name, one_mesh(load(name)), unit_sample(QUICK_SIZE if request.quick else SIZE))
-
-
-def _validated(name: str, request: Request, results: JobResults) -> ValidatedSet | None:
-    """Return the set from its runs; None where its own or too much of its sample failed."""
-    measured, nominal = measured_set(name), results[set_job(name, request.quick).name]
-    runs = [results[job.name] for job in _sample(name, request)]
-    finished = {i: run for i, run in enumerate(runs) if isinstance(run, Outcome)}
-    if not isinstance(nominal, Outcome) or len(finished) < FEWEST:
-        return None
-    limits, bands = or_none(nominal.validity.mesh_limit), or_none(nominal.validity.mesh_band)
-    if limits is None or bands is None:
-        return None
-    sampled = scaled(name, unit_sample(len(runs)))[list(finished)]
-    surface = fit(sampled, np.array([outputs(run, measured) for run in finished.values()]))
-    every, tests = (surface(scaled(name, unit_sample(DRAWN), only)) for only in (False, True))
-    S = np.array([limits[key] for key in KEYS])
-    nominal_values = surface(nominal_place(name))[0]
-    u_input = np.sqrt(np.mean((every - nominal_values) ** 2, axis=0))
-    comparisons = compared(measured, S, [bands[key] for key in KEYS], u_input)
-    return ValidatedSet(name, measured, surface, S - nominal_values, every, tests, comparisons)
 
 
 AXES = {"e": "e", "mu": "mu", "Omega": "Omega, rad/s"}
