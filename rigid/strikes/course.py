@@ -16,7 +16,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from ..path import sliding_path
+from ..path.resolve import sliding_path
 from ..rounds import TURN
 from .flight import State, next_touch
 from .held import Ending, Held, Pull, hold
