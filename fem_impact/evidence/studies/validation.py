@@ -46,6 +46,11 @@ def plan(request: Request, results: JobResults) -> list[Job]:
 
 def conclude(request: Request, results: JobResults) -> StudyReport:
     """Return the study: comparison errors, their uncertainties, and what causes them."""
+    return study_report(validated_sets(request, results))
+
+
+def validated_sets(request: Request, results: JobResults) -> list[ValidatedSet]:
+    """Return the requested sets, but those whose own run or sample failed."""
     sets = [
         validated_set(
             name,
@@ -54,7 +59,7 @@ def conclude(request: Request, results: JobResults) -> StudyReport:
         )
         for name in asked_sets(request)
     ]
-    return study_report([one for one in sets if one])
+    return [one for one in sets if one]
 
 
 def _sample(name: str, request: Request) -> list[Job]:

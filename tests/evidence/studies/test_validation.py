@@ -146,7 +146,7 @@ def test_the_error_of_the_model_and_its_interval():
 
 def test_uncertainties_of_a_known_model(tmp_path):
     request = Request(tmp_path, ("t5b",))
-    (found,) = [study._validated("t5b", request, results_of(request))]
+    (found,) = study.validated_sets(request, results_of(request))
     omega = found.comparisons[NAMES.index("Omega")]
     spans = {i.name: np.ptp(i.span(SCENE, SET)) for i in UNCERTAIN_INPUTS}
     speed = hypot(SCENE.impact.v_n, SCENE.impact.v_t)
@@ -224,7 +224,7 @@ def test_an_input_whose_nominal_value_ends_its_interval_counts_from_there(tmp_pa
         run = fake(job)
         return replace(run, motion=replace(run.motion, Omega=10 * E))
 
-    found = study._validated("t5b", request, {j.name: clamped(j) for j in plan(request, {})})
+    found = study.validated_sets(request, {j.name: clamped(j) for j in plan(request, {})})[0]
     omega = found.comparisons[NAMES.index("Omega")]
     assert omega.u_input == pytest.approx(10 * 0.5 / sqrt(3), rel=0.01)
 
@@ -239,7 +239,7 @@ def test_places_of_the_nominal_inputs():
 
 def test_what_a_miss_would_take_is_read_off_the_response_surface(tmp_path):
     request = Request(tmp_path, ("t5b",))
-    found = study._validated("t5b", request, results_of(request))
+    found = study.validated_sets(request, results_of(request))[0]
     omega = found.comparisons[NAMES.index("Omega")]
     _, high = _input("friction").span(SCENE, SET)
     up = 20 * (high - SCENE.surface.friction)  # of Omega, by friction at its upper end
@@ -274,7 +274,7 @@ def test_distributions_stand_on_the_limit_wherever_the_sample_of_the_mesh_stands
     nominal = runs["t5b"]
     limits = {**nominal.validity.mesh_limit, "Omega_rad_per_s": 0.0}
     runs["t5b"] = replace(nominal, validity=replace(nominal.validity, mesh_limit=limits))
-    found = study._validated("t5b", request, runs)
+    found = study.validated_sets(request, runs)[0]
     at = NAMES.index("Omega")
     nominal = found.surface(nominal_place("t5b"))[0, at] + found.shift[at]
     assert nominal == pytest.approx(0.0, abs=1e-9) == found.comparisons[at].S
