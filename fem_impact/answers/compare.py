@@ -1,12 +1,14 @@
 """Computed against measured quantities of a measured set, with computed energies that cannot be measured."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from fem_impact.outcome.keys import Key, Num, Unknown, known, or_none
-from fem_impact.outcome.record import KEY_TABLE, Outcome
+from fem_impact.outcome.record import KEY_TABLE, Outcome, ends_of
 from fem_impact.outcome.shares import shares
 from fem_impact.run.tests import OTHERS, MeasuredTests
+from fem_impact.tables.text import plain, with_band
 from rigid.experiments import Statistic, measured_set
 
 ComparisonRow = dict[str, Any]
@@ -82,6 +84,16 @@ def verdict(model: float, band: float | None, measured: Statistic) -> str:
     if beyond <= 2:
         return "outside, within the scatter"
     return f"miss by {beyond if away > 0 else -beyond:+.1f} SD"
+
+
+def told(row: Mapping[str, Any]) -> str:
+    """Return the model's number of a row with its half-width if it has one; a share of E_0 within 0 and 1."""
+    value, band = row["model"], row["band"]
+    if band is None:
+        return plain(value)
+    keys = {quantity.name: quantity.key for quantity in (*MEASURED, *UNSEEN)}
+    key = keys.get(row["quantity"])
+    return with_band(value, band, *(ends_of(key) if key else ()))
 
 
 def measured_value(outcome: Outcome, name: str) -> tuple[Num, float | None]:

@@ -13,6 +13,7 @@ from fem_impact.physics.plate import contact_time, least_span, plate_waves, zene
 
 # of e, by a half-space under the contact: above it that is told, and finite elements mesh the plate through
 THIN = 0.02
+DEEP = 0.1  # dent over the thickness of a plate or layer, from which it is told
 ROWS = 2  # of cells through a plate at least: their lumped masses turn with 1.5 times the plate's inertia
 FLATTEST = 0.5  # least height of the rows of a plate over their width
 MOST_ZENER = 2.0  # up to it `contact_time` is no shorter than Zener's contact, see there
@@ -77,16 +78,19 @@ def thin_plate(bodies: Bodies, meshed_through: bool) -> str:
 
 
 def too_thin(bodies: Bodies, meshed: bool) -> tuple[str, ...]:
-    """Tell where a dent is deeper than plate or wall of a tube are thick, and what that leaves out.
+    """Tell where a dent is deep beside the plate, or the wall of a tube thin, and what that leaves out.
 
     Without a mesh the wall behind a contact that is wider than it counts as massive.
     """
     size, barrier, rod = bodies.estimate, bodies.barrier, bodies.rod
     first = barrier.layers[0].thickness if barrier.layers else barrier.thickness
     dent, told = f"the estimated dent is {size.depth * 1e3:.2g} mm deep", []
-    if first is not None and size.depth > first:
+    if first is not None and size.depth > DEEP * first:
         part = "first layer" if barrier.layers else "plate"
-        told.append(f"left out: {dent}, the {part} {first * 1e3:.2g} mm thick: it may be pierced")
+        told.append(
+            f"left out: {dent}, {size.depth / first:.2g} of the {part}'s {first * 1e3:.2g} mm: that it "
+            "thins, tears or is pierced"
+        )
     if rod.bore:
         (rho, z), (along, _, inner) = bodies.contact.touch_point, rod.wall()
         wall, width = float(np.hypot(along - z, inner - rho).min()), contact_width(bodies)

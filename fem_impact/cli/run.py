@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from contextlib import closing
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from fem_impact.cli.parser import CommandParser, Options, add_out, add_text, stated_budget
 from fem_impact.cli.paths import checked_out, shown_path, told_kept
@@ -27,7 +27,7 @@ from fem_impact.progress import clock_text
 from fem_impact.scene.impact import FIRST
 from fem_impact.scene.types import OWN, Scene, digest
 from fem_impact.tables.table import Table
-from fem_impact.tables.text import plain, with_band, wrapped
+from fem_impact.tables.text import plain, wrapped
 
 if TYPE_CHECKING:
     from fem_impact.answers.friction_spread import FrictionSpread
@@ -134,7 +134,7 @@ def run(options: Options) -> int:
 
 def _say_comparison(scene: Scene, outcome: Outcome, options: Options) -> None:
     """Print the outcome beside the tests that its scene names."""
-    from fem_impact.answers.compare import compare
+    from fem_impact.answers.compare import compare, told
     from fem_impact.run.tests import count, doubtful_tests, tests_of
 
     tests = tests_of(scene)
@@ -143,7 +143,7 @@ def _say_comparison(scene: Scene, outcome: Outcome, options: Options) -> None:
     head = ("", "model", "measured", "SD", "")
     numbers = "measured_mean", "measured_sd"
     rows = [
-        (row["quantity"], _told(row), *(f"{row[key]:.3g}" for key in numbers), row["verdict"])
+        (row["quantity"], told(row), *(f"{row[key]:.3g}" for key in numbers), row["verdict"])
         for row in (compare(outcome, tests) if outcome.validity.finished else [])
         if row["measured_mean"] is not None and row["model"] is not None
     ]
@@ -154,12 +154,6 @@ def _say_comparison(scene: Scene, outcome: Outcome, options: Options) -> None:
     else:
         sys.stdout.write(f"{measured}: no number that was measured is known of this run\n")
     sys.stdout.writelines(f"{line}\n" for one in doubtful_tests(scene) for line in wrapped(f"warning: {one}"))
-
-
-def _told(row: Mapping[str, Any]) -> str:
-    """Return the model's number of a comparison, with its half-width where it has one."""
-    value, band = row["model"], row["band"]
-    return plain(value) if band is None else with_band(value, band)
 
 
 def _say_screening(case: Case, options: Options) -> None:

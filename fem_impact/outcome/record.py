@@ -135,8 +135,7 @@ class Outcome:
         if isinstance(value, Unknown):
             return "not known"
         if band is not None:
-            ends = (0.0, scale) if _within_one(key) else (-inf, inf)
-            return with_band(scale * value, scale * band, *ends)
+            return with_band(scale * value, scale * band, *(scale * end for end in ends_of(key)))
         if key.banded:
             least = ROUND_OFF**3 if key.unit == "m3" else ROUND_OFF  # that of a length, cubed
             return plain(scale * value) if abs(value) >= least else "0"
@@ -223,9 +222,10 @@ def _key_named(key: Key | str) -> Key:
     return KEY_TABLE[key]
 
 
-def _within_one(key: Key) -> bool:
-    """Return whether a number is a share of the energy that lies between 0 and 1 in every model."""
-    return key.name.endswith("_over_E_0") and not key.name.startswith(SIGNED)
+def ends_of(key: Key) -> tuple[float, float]:
+    """Return between which ends a number lies in every model: 0 and 1 of a share of the energy."""
+    share = key.name.endswith("_over_E_0") and not key.name.startswith(SIGNED)
+    return (0.0, 1.0) if share else (-inf, inf)
 
 
 def utc_now() -> str:

@@ -6,7 +6,7 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-from fem_impact.answers.compare import compare
+from fem_impact.answers.compare import compare, told
 from fem_impact.errors import ResultError, SceneError
 from fem_impact.figures.panels import Picture
 from fem_impact.figures.runs import comparison_picture, force_picture, ledger_picture, waves_picture
@@ -354,7 +354,7 @@ def _cells(row: Mapping[str, Any]) -> list[Cell]:
     measured = row["measured_mean"] is not None
     style = ("inside" if is_inside(row["verdict"]) else "outside") if measured else ""
     return [
-        Marked(_with(row["model"], row["band"]), style),
+        Marked(DASH if row["model"] is None else html.signed(told(row)), style),
         _with(row["measured_mean"], row["measured_sd"]),
         None if low is None or high is None else f"{_three(low)} to {_three(high)}",
         row["n"],

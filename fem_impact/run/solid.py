@@ -20,7 +20,7 @@ from fem_impact.run.assemble import ImpactEnd, Reduction
 from fem_impact.run.common import CUT_OFF, MASSIVE, UNBENT, after, heat
 from fem_impact.run.markers import replay
 from fem_impact.run.resolution import NOT_RESOLVED, unresolved
-from fem_impact.run.unusual import LEAST_RATIO, PLOUGHING
+from fem_impact.run.unusual import LEAST_RATIO, PLOUGHING, pierced
 from fem_impact.solid.contact.surface import SurfaceContact
 from fem_impact.solid.dent import dent
 
@@ -76,6 +76,7 @@ def reduce(result: SolidResult) -> Outcome:
     )
     reduction = Reduction.of(case, end)
     energy, narrow = _energy(result, reduction.motion), unresolved(result) or _held(reduction, case)
+    readings = _readings(result)
     # measured shares of the run time take the place of expected ones
     choices = (replace(choice, share=result.shares.get(choice.name, choice.share)) for choice in case.choices)
     return reduction.outcome(
@@ -89,11 +90,12 @@ def reduce(result: SolidResult) -> Outcome:
         limited=(
             *limitations("resolution", narrow, _ringing(result)),
             *result.limitations,
+            *limitations("result", pierced(case, result.record, known(readings.dent_depth))),
             *limitations("run", _untimed(result)),
         ),
         withheld=narrow if case.scene.accuracy.unresolved == "withhold" else "",
         sites=tuple(map(_site, result.record.sites)),
-        readings=_readings(result),
+        readings=readings,
     )
 
 

@@ -1,5 +1,8 @@
 """Sentences on numbers of an outcome that an impact on a resting barrier does not give by itself."""
 
+from fem_impact.case.case import Case
+from fem_impact.case.plates import DEEP
+from fem_impact.case.record import ContactRecord
 from fem_impact.outcome.groups import Energy, Provenance, Restitution, RodMotion
 from fem_impact.outcome.keys import or_none
 from fem_impact.run.common import RESIDUAL_LIMIT
@@ -16,6 +19,22 @@ def unusual(
     """Return a sentence on each of e, mu and E_r, empty where it is in the range of a plain impact."""
     of_e, of_mu = (of(provenance, motion, restitution) for of in (_on_restitution, _on_ratio))
     return of_e, of_mu, _on_rigid(energy)
+
+
+def pierced(case: Case, record: ContactRecord, dent: float) -> str:
+    """Say how far a dent, m deep, and flow reach through a plate or first layer; nothing if hardly."""
+    barrier = case.scene.barrier
+    part = "first layer" if barrier.layers else "plate"
+    thick = barrier.layers[0].thickness if barrier.layers else barrier.thickness
+    if thick is None or record.barrier is None or dent <= DEEP * thick:
+        return ""
+    deep = min(float(-record.barrier.flowed[:, 2].min(initial=0.0)) / thick, 1.0)
+    most = float(record.barrier.strain.max(initial=0.0))
+    return (
+        f"The dent that stays is {dent * 1e3:.2g} mm deep, {dent / thick:.2g} of the {part}'s "
+        f"{thick * 1e3:.3g} mm; cells of this mesh flow down to {deep:.2g} of its thickness, by up to "
+        f"{most:.2g} of plastic strain. That it tears or is pierced is left out."
+    )
 
 
 def _on_restitution(provenance: Provenance, motion: RodMotion, restitution: Restitution) -> str:

@@ -166,6 +166,7 @@ class Material:
     hardness : Vickers' number HV, kgf/mm2 of the pyramid's faces
     law : ``tensile``, through the ultimate stress, or ``hardness``, through the flow stress of the hardness
     loss_factor : E'' / E' at the pace of the contact; None: it loses nothing by viscosity
+    strength : Pa, at which a brittle body breaks; it changes no number; None: not known
     conductivity, heat_capacity : W/(m K), J/(kg K); None: not known
     family : by which friction is looked up and what an elastic body leaves out is told; empty: by its name
     sources : key and source of values, as the user states them
@@ -189,6 +190,7 @@ class Material:
     flow: Flow | None = None
     family: str = ""
     loss_factor: float | None = None
+    strength: float | None = None
     sources: tuple[tuple[str, str], ...] = ()
     skin: SkinSpec | None = None
 

@@ -113,10 +113,10 @@ def test_the_expected_elements_are_those_of_the_mesh():
     assert Case(planned.scene).active == planned.active
 
 
-def test_it_is_told_what_a_dent_deeper_than_plate_or_wall_leaves_out():
+def test_it_is_told_what_a_dent_deep_beside_the_plate_leaves_out():
     def told(thickness):
         case = Case.of(stated(thickness, **{"impact.v_n": "-6 m/s", "barrier.support": "backed"}), "rigid")
-        return about(texts(case.limitations, "model"), "it may be pierced")
+        return about(texts(case.limitations, "model"), "tears or is pierced")
 
     assert told("0.1 mm") and not told("10 mm")
 

@@ -2,13 +2,16 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
+from fem_impact.case.case import Case
+from fem_impact.case.record import BodyRecord, ContactRecord
 from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.limitation import texts
 from fem_impact.run.common import strikes_again
 from fem_impact.run.simulate import simulate
-from fem_impact.run.unusual import unusual
+from fem_impact.run.unusual import pierced, unusual
 from fem_impact.scene.shipped import load, replace_all
 
 
@@ -96,3 +99,13 @@ def test_a_rod_that_stops_sliding_explains_its_restitution():
     assert any(
         "friction gave the contact point speed" in words for words in texts(outcome.validity.limitations)
     )
+
+
+def test_a_dent_deep_beside_its_plate_is_told_with_how_far_it_flows():
+    flowed = np.array([[0.0, 0.0, -0.002], [0.0, 0.0, -0.006]])
+    body = BodyRecord(flowed[:0], flowed, np.array([0.3, 0.1]), 1e-3, 1e-3, 1e-3)
+    case, record = Case(load("plate-10mm")), ContactRecord(body, body)
+    told = pierced(case, record, 0.0013)
+    assert told.startswith("The dent that stays is 1.3 mm deep, 0.13 of the plate's 10 mm; ")
+    assert "down to 0.6 of its thickness, by up to 0.3 of plastic strain" in told
+    assert pierced(case, record, 0.0009) == pierced(Case(load("t5b")), record, 0.0013) == ""

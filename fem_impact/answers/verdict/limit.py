@@ -40,6 +40,10 @@ UNCONFIRMED = (
     "finite elements at more places than the worst and the mildest, for as much as the reduced model is too "
     "low there it may be too low elsewhere: assess parts of the intervals, or a limit with more margin."
 )
+UNLIKE = (
+    "No scene that both models computed is like this one, so that the reduced model's error is told as wide "
+    "as it is where scenes differ most: finite elements, --fidelity solid, tell more."
+)
 Place = tuple[float, ...]
 """A place in the intervals, each from 0 to 1."""
 CELSIUS = 273.15  # K, of 0 degC
@@ -174,6 +178,8 @@ def judge(
                 low = [one.high - known[at].value for at, one in solids.items() if at in known]
                 kept = worst in known and known[worst].value + max(low) <= limit and not why
                 answer, notes = ("yes", [*notes, CONFIRMED]) if kept else ("undecided", notes)
+    if by == "the reduced model" and bound is not None and not bound.alike:
+        notes.append(UNLIKE)
     if bound is None and not steps:
         raise RunError(" ".join([*notes, why]))
     return LimitVerdict(

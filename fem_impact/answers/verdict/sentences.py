@@ -115,7 +115,7 @@ def _percent(here: VibrationEffect, name: str, part: float) -> str:
     half = here.errors.get(name, total)
     if half is None:
         return f"{100 * part:.0f} %"
-    return f"{with_band(100 * part, max(100 * half, LEAST_HALF))} %".replace("+-", "±")
+    return f"{with_band(100 * part, max(100 * half, LEAST_HALF), 0.0, 100.0)} %".replace("+-", "±")
 
 
 def _heating(here: VibrationEffect) -> str:
@@ -254,7 +254,7 @@ def not_covered(v: Verdict) -> tuple[str, ...]:
 
 def never_covered(scene: Scene) -> tuple[str, ...]:
     """Return what no run of a scene covers; of one that is followed the later strikes are."""
-    return FIRST_ONLY[scene.impact.until != FIRST :]
+    return tuple(map(scene.projectile.named, FIRST_ONLY[scene.impact.until != FIRST :]))
 
 
 def lines_of(titled: Iterable[Sequence[str]], indent: str) -> list[str]:
