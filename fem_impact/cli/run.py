@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import shlex
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from contextlib import closing
 from pathlib import Path
 from time import perf_counter
@@ -19,10 +19,10 @@ from fem_impact.errors import RunError, UsageError
 from fem_impact.files.run_directory import is_resumable
 from fem_impact.jobs.executors import cores
 from fem_impact.options import CHECKPOINT_INTERVAL, FIDELITIES, RunOptions
-from fem_impact.outcome.keys import Key, Num, Unknown, or_none
+from fem_impact.outcome.keys import Key, Num, Unknown, or_none, why_unknown
 from fem_impact.outcome.limitation import WRONG_NUMBERS, by_weight
 from fem_impact.outcome.record import KEY_TABLE, Outcome
-from fem_impact.outcome.shares import ABOVE, ADDED, EnergyShare, above_modes, shares
+from fem_impact.outcome.shares import ABOVE, ADDED, IF_ON, EnergyShare, above_modes, shares
 from fem_impact.progress import clock_text
 from fem_impact.scene.impact import FIRST
 from fem_impact.scene.types import OWN, Scene, digest
@@ -195,8 +195,6 @@ HEATING = "friction + top 0.1 mm of both"
 """Label of the work that can heat the contact."""
 SKIN, PEAK, FLASH = (KEY_TABLE[name] for name in ("W_skin_over_E_0", "peak_force_N", "flash_temperature_K"))
 RESIDUAL = KEY_TABLE["residual_over_E_0"]
-_IF_ON = ("damping", "contact", "plate", "barrier")
-"""Shares that are left out where they are not known: their effects are off."""
 
 
 def print_outcome(
@@ -230,7 +228,7 @@ def print_outcome(
     listed = {
         named(_label(share, energy)): share.key
         for share in shares("terminal")
-        if not (share.key.path[-1] in _IF_ON and isinstance(share.of(energy), Unknown))
+        if not (share.key.path[-1] in IF_ON and isinstance(share.of(energy), Unknown))
     }
     lines += [
         _line(label, _share(outcome, key), "%", _changed(spread, key, 100.0)) for label, key in listed.items()
@@ -255,7 +253,8 @@ def print_outcome(
     told = {**{label: KEY_TABLE[name] for label, name, _ in rows}, **listed, HEATING: SKIN, **contact}
     if not isinstance(outcome.heat.power, Unknown):  # the heat was followed
         told["flash temperature"] = FLASH
-    lines += _unknown_lines({label: key.of(outcome) for label, key in told.items()})
+    notes = why_unknown({label: key.of(outcome) for label, key in told.items()})
+    lines += ["", *(line for one in notes for line in wrapped(one, "  "))] if notes else []
     others = [one for one in by_weight(outcome.validity.limitations) if one not in wrong]
     lines += ["", *limitation_lines(others)]
     sys.stdout.write("\n".join([*lines, f"results: {out}"]) + "\n")
@@ -331,16 +330,6 @@ def _line(label: str, told: str, unit: str, spread: str = "") -> str:
     """Return a line of a number, its unit, and what friction changes of it."""
     unit = "" if told == "not known" else unit
     return f"  {label:<31}{told:>19} {unit:<6}{spread}".rstrip()
-
-
-def _unknown_lines(listed: Mapping[str, Num]) -> list[str]:
-    """Return why shares are not known, each reason once."""
-    named: dict[str, list[str]] = {}
-    for label, value in listed.items():
-        if isinstance(value, Unknown):
-            named.setdefault(value.reason, []).append(label)
-    notes = [wrapped(f"not known ({'; '.join(labels)}): {reason}", "  ") for reason, labels in named.items()]
-    return [line for lines in ([""], *notes) for line in lines] if notes else []
 
 
 def _value(value: Num) -> str:

@@ -64,7 +64,7 @@ class FilmBackground:
         heading(drawn, layout, title)
         origin(drawn, layout, [made])
         fade = ", fading to × 1 at the contact" if motion.peak > 1.0 else ""
-        _caption(drawn, layout, layout.rod, f"whole rod, deformation × {motion.peak:g}{fade}")
+        _caption(drawn, layout, layout.rod, f"whole projectile, deformation × {motion.peak:g}{fade}")
         _caption(
             drawn,
             layout,

@@ -197,6 +197,15 @@ def _key(
     )
 
 
+def why_unknown(listed: Mapping[str, Any]) -> list[str]:
+    """Return a sentence for each reason why some of the labelled values are not known."""
+    named: dict[str, list[str]] = {}
+    for label, value in listed.items():
+        if isinstance(value, Unknown):
+            named.setdefault(value.reason, []).append(label)
+    return [f"not known ({'; '.join(labels)}): {reason}" for reason, labels in named.items()]
+
+
 def _group_repr(self: Any) -> str:
     """Return the ``repr`` of a group: values with units, then the names of the unknown ones."""
     values = {one.name: getattr(self, one.name) for one in fields(self)}

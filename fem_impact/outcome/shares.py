@@ -61,6 +61,8 @@ SHARES = (
     _share("E_contact", "held by the contact", "grey"),
 )
 """All shares, in the order of tables and figures. They add up to one and `ADDED`."""
+IF_ON = ("damping", "contact", "plate", "barrier")
+"""Shares that are left out where they are not known: their effects are off."""
 ADDED = _share("W_gravity", "added by gravity", "grey")
 """Work of gravity: no share that E_0 goes to, but energy that comes to it."""
 

@@ -13,10 +13,10 @@ if TYPE_CHECKING:
 
 _N = " (number from 1)"
 NO_ERROR = (
-    "no error is known of the loss factor of vibration in flight and of what the balance leaves; a rigid "
-    "strike has no force"
+    "no error is known of the loss factor of vibration in flight, of what the balance leaves, of dents and "
+    "of gauges; a rigid strike has no force"
 )
-"""Why W_damping_J, E_vib_before_J, E_other_J and some forces have no half-width."""
+"""Why W_damping_J, E_vib_before_J, E_other_J, dents, gauges and some forces have no half-width."""
 
 
 @group
@@ -43,6 +43,17 @@ class StrikeRecord:
     impulse_n: float = key("impulse_n_Ns", "N s", "Normal impulse on the body.")
     impulse_t: float = key("impulse_t_Ns", "N s", "Tangential impulse on the body.")
     force: float | None = key("peak_force_N", "N", "Largest normal force; null of a strike without duration.")
+    dent: float | None = key(
+        "dent_depth_m",
+        "m",
+        "Depth of the dent that stays where it struck; null of a strike without finite elements.",
+    )
+    highest: float | None = key(
+        "gauge_strain_highest",
+        "-",
+        "Largest strain at `save.gauge`; null without a gauge or finite elements.",
+    )
+    lowest: float | None = key("gauge_strain_lowest", "-", "Smallest strain there; null likewise.")
     before: float = key("E_before_J", "J", "Kinetic energy of the rigid motion before.")
     after: float = key("E_after_J", "J", "Kinetic energy of the rigid motion after.")
     friction: float = key("W_friction_J", "J", "Friction.")

@@ -225,21 +225,20 @@ def _cards(outcome: Outcome, rigid: Outcome | None, friction: FrictionSpread | N
     tests = outcome.restitution.tests_state_arms
     restitution = ("e, the tests' arms", "e_paper", "") if tests else ("e, the tip's arms", "e_edge", "")
     shown = [restitution, ("impulse ratio µ", "mu", ""), ("Ω", "Omega_rad_per_s", " rad/s")]
-    more = [("peak force", "peak_force_N", " N"), ("flash temperature", "flash_temperature_K", " K")]
-    shown += [one for one in more if not isinstance(KEY_TABLE[one[1]].of(outcome), Unknown)]
+    shown += [("peak force", "peak_force_N", " N"), ("flash temperature", "flash_temperature_K", " K")]
     bands, numbers = outcome.half_widths, []
     missing = bands.reason if isinstance(bands, Unknown) else ""
     for label, name, unit in shown:
         key = KEY_TABLE[name]
+        if isinstance(value := key.of(outcome), Unknown):
+            numbers.append(sections.card(label, DASH, value.reason))
+            continue
         predicted = None if rigid is None else or_none(key.of(rigid))
         theory = "" if predicted is None else f"rigid theory: {number(predicted)}{unit}"
         changed = friction.told(key) if friction else ""
         by_friction = f"interval of f: {changed}" if changed else ""
         note = ". ".join(sentence for sentence in (by_friction, theory, missing) if sentence)
         numbers.append(sections.card(label, sections.estimated(outcome, key) + unit, note))
-    melted = outcome.heat.temperature
-    if isinstance(melted, Unknown) and not isinstance(outcome.heat.power, Unknown):
-        numbers.append(sections.card("flash temperature", DASH, melted.reason))
     residual = number(outcome.energy.residual, 2)
     last = sections.card("ledger residual", residual, "of E₀; a run must stay below 1e-4")
     said = friction.said.replace("At the right", "Interval of f") if friction else ""
@@ -255,10 +254,11 @@ def _vibration_card(outcome: Outcome, rigid: Outcome | None) -> html.Markup:
         *([] if floor is None else [f"less than {percent(floor)} is not resolved"]),
     )
     note = ". ".join(notes)
+    if isinstance(energy.vibration, Unknown):
+        return sections.card("vibration, of E₀", DASH, energy.vibration.reason)
     if or_none(energy.below_floor):
         return sections.card("vibration, of E₀", "below floor", note)
-    value = DASH if share == "not known" else f"{html.signed(share)} %"
-    return sections.card("vibration, of E₀", value, note)
+    return sections.card("vibration, of E₀", f"{html.signed(share)} %", note)
 
 
 def _arms(outcome: Outcome) -> html.Markup:

@@ -10,10 +10,10 @@ from fem_impact.case.case import Case
 from fem_impact.errors import MissingLibraryError, ResultError
 from fem_impact.files.atomic import checksum, make_directory, read_signed, read_text, write_text
 from fem_impact.files.run_directory import FIELDS
-from fem_impact.outcome.keys import Key, Unknown, or_none
+from fem_impact.outcome.keys import Unknown, or_none, why_unknown
 from fem_impact.outcome.limitation import HEAVIEST_FIRST, WRONG_NUMBERS, texts
 from fem_impact.outcome.record import KEY_TABLE, Outcome
-from fem_impact.outcome.shares import shares
+from fem_impact.outcome.shares import IF_ON, shares
 from fem_impact.outcome.strike_text import SHOWN, strikes_table, told
 from fem_impact.pages import html
 from fem_impact.pages.drawing import draw_projectile
@@ -35,6 +35,7 @@ NUMBERS = (
     ("V_t after", "V_t_m_per_s", "m/s"),
     ("Omega after", "Omega_rad_per_s", "rad/s"),
     ("peak force", "peak_force_N", "N"),
+    ("dent that stays in the barrier", "dent_depth_m", "mm"),
     ("flash temperature", "flash_temperature_K", "K"),
     ("ignition temperature stated", "ignition_temperature_K", "K"),
     ("temperature that no spot exceeds", "flash_bound_K", "K"),
@@ -69,6 +70,8 @@ def write_sheet(folder: Path, document: str = "", revision: str = "") -> Path:
     draw_projectile(case, drawing, NARROW)
     criterion, lines = _verdict(folder, case)
     spread = friction_spread(scene, origin.fidelity)
+    named, listed = scene.projectile.named, [(label, KEY_TABLE[name], unit) for label, name, unit in NUMBERS]
+    listed += [(named(f"{share.label}, of E_0"), share.key, "%") for share in shares("report")]
     rows = [
         (
             label,
@@ -76,8 +79,10 @@ def write_sheet(folder: Path, document: str = "", revision: str = "") -> Path:
             unit,
             html.signed(spread.told(key, _scale(unit))),
         )
-        for label, key, unit in _listed(outcome)
+        for label, key, unit in listed
+        if not isinstance(key.of(outcome), Unknown)
     ]
+    asked = {label: key.of(outcome) for label, key, _ in listed if key.path[-1] not in IF_ON}
     numbers = Table.of(("quantity", "value", "unit", "what f changes"), rows, left=(0, 2, 3))
     limits = outcome.validity.limitations
     others = (kind for kind in HEAVIEST_FIRST if kind not in WRONG_NUMBERS)
@@ -99,7 +104,7 @@ def write_sheet(folder: Path, document: str = "", revision: str = "") -> Path:
             html.table(numbers, compact=True),
             html.paragraph(spread.said.replace("At the right", "Last column"), "note"),
             _dent(outcome),
-            _melted(outcome),
+            html.bullets(why_unknown(asked)),
         ),
         html.section("Inputs and their sources", html.table(inputs(scene), compact=False)),
         html.section("Not covered", html.bullets((*never_covered(scene), *uncovered))),
@@ -149,13 +154,6 @@ def _still(folder: Path) -> html.Markup:
     return html.image(still / "frame_0000.png", "the body when the force is greatest")
 
 
-def _listed(outcome: Outcome) -> list[tuple[str, Key, str]]:
-    """Return label, key and unit of the numbers that are known."""
-    listed = [(label, KEY_TABLE[name], unit) for label, name, unit in NUMBERS]
-    listed += [(f"{share.label}, of E_0", share.key, "%") for share in shares("report")]
-    return [one for one in listed if not isinstance(one[1].of(outcome), Unknown)]
-
-
 def _followed(outcome: Outcome) -> html.Markup:
     """Return the end, the hardest and the certain strikes of a body that is followed, nothing of others."""
     strikes = outcome.strikes
@@ -169,15 +167,7 @@ def _followed(outcome: Outcome) -> html.Markup:
 
 
 def _scale(unit: str) -> float:
-    return 100.0 if unit == "%" else 1.0
-
-
-def _melted(outcome: Outcome) -> html.Markup:
-    """Return why a flash temperature that was followed is not known, nothing where it is."""
-    heat = outcome.heat
-    if isinstance(heat.power, Unknown) or not isinstance(heat.temperature, Unknown):
-        return html.Markup("")
-    return html.paragraph(f"Flash temperature not known: {heat.temperature.reason}.")
+    return {"%": 100.0, "mm": 1e3}.get(unit, 1.0)
 
 
 def _dent(outcome: Outcome) -> html.Markup:

@@ -122,7 +122,8 @@ class Reduction:
         sites : places of contact
         readings : dent and strain
         """
-        case, end = self.case, self.end
+        case, named = self.case, self.case.scene.projectile.named
+        end = replace(self.end, reason=named(self.end.reason))
         gravity, ruled = _gravity(case, end.contacts)
         failed = _open_ledger(end.missing) or ruled
         cut = failed or ("" if end.separated else end.reason)
@@ -138,7 +139,7 @@ class Reduction:
         )
         shown = () if withheld or cut else unusual(origin, self.motion, self.restitution, energy)
         alone = case.scene.impact.until == FIRST
-        again = strikes_again(end.leaving) if end.finished and not failed and alone else ""
+        again = named(strikes_again(end.leaving)) if end.finished and not failed and alone else ""
         of_result = limitations("result", *shown, gravity, again)
         outcome = Outcome(
             provenance=origin,

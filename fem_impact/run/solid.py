@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 MOST_E = 1.2  # of an impact whose energy comes back by friction and bending
 RINGING, LEAST = 0.1, 1e-4  # of E_vib and of E_0: so much above the modes is told
-STIFF = Unknown("the vibration effect is off: the rod is rigid behind its nose")
+STIFF = Unknown("the vibration effect is off: the body is rigid behind its nose")
 IN_WAVES = Unknown(
     "in a plate meshed through its thickness it is not told from the bending waves: W_plate holds both"
 )
@@ -76,7 +76,7 @@ def reduce(result: SolidResult) -> Outcome:
     )
     reduction = Reduction.of(case, end)
     energy, narrow = _energy(result, reduction.motion), unresolved(result) or _held(reduction, case)
-    readings = _readings(result)
+    read = readings(result)
     # measured shares of the run time take the place of expected ones
     choices = (replace(choice, share=result.shares.get(choice.name, choice.share)) for choice in case.choices)
     return reduction.outcome(
@@ -90,16 +90,17 @@ def reduce(result: SolidResult) -> Outcome:
         limited=(
             *limitations("resolution", narrow, _ringing(result)),
             *result.limitations,
-            *limitations("result", pierced(case, result.record, known(readings.dent_depth))),
+            *limitations("result", pierced(case, result.record, known(read.dent_depth))),
             *limitations("run", _untimed(result)),
         ),
         withheld=narrow if case.scene.accuracy.unresolved == "withhold" else "",
         sites=tuple(map(_site, result.record.sites)),
-        readings=readings,
+        readings=read,
     )
 
 
-def _readings(result: SolidResult) -> Readings:
+def readings(result: SolidResult) -> Readings:
+    """Return the dent that a run leaves and the strains at its gauge."""
     contact, depth, volume = result.model.contact, 0.0, 0.0
     if isinstance(contact, SurfaceContact) and "barrier-elastoplastic" in result.case.active:
         depth, volume = dent(contact.barrier, result.state.x)

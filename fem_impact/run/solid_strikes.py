@@ -22,9 +22,11 @@ from fem_impact.fem.flight import FreeVibration
 from fem_impact.modal.rod import ModalRod
 from fem_impact.modal.sites import skin
 from fem_impact.options import RunOptions
+from fem_impact.outcome.keys import or_none
 from fem_impact.outcome.strikes import StrikeRecord
 from fem_impact.run.modal_strikes import ModalCourse, modal_loss, one_strike, swung
 from fem_impact.run.resolution import unresolved
+from fem_impact.run.solid import readings
 from fem_impact.run.strikes import LEAST_BY_LAW, Followed
 from fem_impact.solid.build import START_GAP, build
 from fem_impact.solid.carry import carry, dented, later_view, lowered, turned
@@ -316,11 +318,14 @@ class SolidCourse:
         p, q = (float(part) for part in end.model.book.table[:, 2:].sum(axis=0))
         fell = -accounts["gravity"]
         body.gravity += fell
+        read = readings(end)
         record = body.record(
             "solid",
             *(before, after, corner.place(before.alpha), corner.arms(before.alpha), (p, q)),
             part=body.part_of(corner.place(before.alpha), 0.0, before.alpha),
             force=end.peak_force,
+            dent=or_none(read.dent_depth),
+            gauge=(or_none(read.gauge_highest), or_none(read.gauge_lowest)),
             friction=accounts["friction"],
             plastic=accounts["plastic_rod"] + accounts["plastic_barrier"],
             damping=accounts["damping"] + self.damped,

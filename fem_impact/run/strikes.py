@@ -309,6 +309,8 @@ class Followed:
         plastic: float,
         damping: float,
         force: float | None = None,
+        dent: float | None = None,
+        gauge: tuple[float | None, float | None] = (None, None),
         vibration: float = 0.0,
         taken: float = 0.0,
         other: float = 0.0,
@@ -316,7 +318,8 @@ class Followed:
         """Return the record of a strike.
 
         ``place`` (x, z), m, and ``arms``, d_c and d_d, m, are those of the contact from the mass centre,
-        ``impulse``, N s, is that along n and t; the rest is as in `StrikeRecord`, J.
+        ``impulse``, N s, is that along n and t, ``gauge`` the largest and the smallest strain; the rest is as
+        in `StrikeRecord`, J.
         """
         (d_c, d_d), body = arms, self.case.contact.body
         comes, leaves = (one.V_n + d_c * one.Omega for one in (before, after))
@@ -341,6 +344,9 @@ class Followed:
             impulse_n=impulse[0],
             impulse_t=impulse[1],
             force=force,
+            dent=dent,
+            highest=gauge[0],
+            lowest=gauge[1],
             before=self.kinetic(before),
             after=self.kinetic(after),
             friction=friction,

@@ -11,7 +11,7 @@ from fem_impact.tables.table import Table
 STATED = "the scene, or its default"
 UNSOURCED = "no source stated"
 WORDS = ("name", "law", "family", "sources")  # of a material
-MOST_POINTS = 6  # of a profile or a bore that is written out; longer ones stand in the scene
+MOST_POINTS = 6  # of a profile, a bore or a curve that is written out; longer ones stand in the scene
 
 
 def inputs(scene: Scene) -> Table:
@@ -73,7 +73,7 @@ def materials_of(scene: Scene) -> dict[str, Material]:
 def _rows(key: str, value: Any, source: str = STATED) -> list[tuple[str, str, str]]:
     """Return (input, value, source) of each value below a key; laws and a skin are one value each."""
     if isinstance(value, dict) and key.endswith((".rate", ".flow", ".skin")):
-        return [(key, ", ".join(f"{name} {part}" for name, part in value.items()), source)]
+        return [(key, ", ".join(f"{name} {_words(part)}" for name, part in value.items()), source)]
     if isinstance(value, dict):
         # a section with a density is a material, of which only the numbers have a source
         sources = {name: _source(value, name) if "rho" in value else STATED for name in value}
@@ -85,9 +85,19 @@ def _rows(key: str, value: Any, source: str = STATED) -> list[tuple[str, str, st
         ]
     if value and isinstance(value, list) and isinstance(value[0], dict):
         return [row for number, part in enumerate(value, 1) for row in _rows(f"{key}[{number}]", part)]
-    if isinstance(value, list) and len(value) > MOST_POINTS:
-        return [(key, f"{len(value)} points", source)]
-    return [(key, _short(str(value)), source)]
+    return [(key, _short(_words(value)), source)]
+
+
+def _words(value: Any) -> str:
+    """Return a value as text: few points of an outline or a curve as ordinates at places."""
+    if not isinstance(value, list):
+        return ("yes" if value else "no") if isinstance(value, bool) else str(value)
+    if len(value) > MOST_POINTS:
+        return f"{len(value)} points"
+    parts = (
+        f"{one[1]} at {one[0]}" if isinstance(one, list) and len(one) == 2 else str(one) for one in value
+    )
+    return ", ".join(parts)
 
 
 def _short(value: str) -> str:

@@ -57,6 +57,7 @@ def test_the_vibration_of_a_strike_meets_the_next(elastic):
     assert [one.part for one in elastic.strikes.each] == ["tip", "tail", third.part]
     assert second.taken == pytest.approx(first.vibration, rel=1e-12)  # nothing damps it
     assert first.vibration > 0.05 * first.before
+    assert [one.dent for one in elastic.strikes.each] == [0.0, 0.0, None]
 
 
 def test_motion_and_vibration_keep_the_energy_of_an_elastic_rod(elastic):
@@ -144,6 +145,8 @@ def test_a_ball_that_comes_down_on_its_dent_rebounds_nearly_as_from_an_elastic_b
     assert second.e > 0.9
     assert second.force == pytest.approx(first.force, rel=0.1)
     assert second.plastic < 0.1 * first.plastic
+    assert first.dent == pytest.approx(outcome.contact.readings.dent_depth)
+    assert second.dent > 0.9 * first.dent > 1e-5
     told = " ".join(texts(outcome.validity.limitations, "model"))
     assert "on the barrier strikes 2 meet the dents of earlier ones" in told
 
