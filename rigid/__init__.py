@@ -28,8 +28,7 @@ from .losses import (
 from .massive import Motion, critical_ratio, phi, solve
 from .nose import SHAPES, Nose
 from .path.eq22 import interval_ratio, painleve_threshold
-from .path.over_speed import path_over_speed
-from .path.resolve import End, SlidingPath, sliding_path
+from .path.resolve import End, SlidingPath, path_over_speed, sliding_path
 from .projectile import Projectile
 from .slenderness import LIMIT, LIMIT_MM, behaves_rigidly, in_millimetres, slenderness
 from .touch import Touch

@@ -33,7 +33,7 @@ def result(tmp_path_factory):
 @pytest.fixture
 def unrendered(monkeypatch):
     """Build figures but write no picture: how they look is the business of tests/figures."""
-    monkeypatch.setattr("fem_impact.figures.style.save", lambda drawn, path: path.write_bytes(b"<svg/>"))
+    monkeypatch.setattr("fem_impact.figures.still.save", lambda drawn, path: path.write_bytes(b"<svg/>"))
 
 
 @pytest.fixture

@@ -13,10 +13,9 @@ from fem_impact.outcome.limitation import Limitation, limitations
 from fem_impact.physics.contact import FLAT
 from fem_impact.scene import library
 from fem_impact.scene.barrier import Barrier
-from fem_impact.scene.impact import BESIDE, FIRST, Impact
+from fem_impact.scene.impact import BESIDE, FIRST, Following, Impact
 from fem_impact.scene.own_mesh import OwnMesh
 from fem_impact.scene.shipped import replace as change
-from fem_impact.scene.strikes import Following
 from fem_impact.scene.types import Scene
 from fem_impact.scene.units import format_quantity
 from rigid import Faceted, Turned

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from fem_impact.figures.panels import LOOKS, Panel, Picture, Series, ShadedMap, half_widths, numbers
-from fem_impact.figures.style import INK, QUIET, colour_of, label_sides
+from fem_impact.figures.still import INK, QUIET, colour_of, label_sides
 from fem_impact.tables.text import markup, plain, with_band
 
 DIGITS = 5

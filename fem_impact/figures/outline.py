@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fem_impact.arrays import Array, Ints
-from fem_impact.figures.style import INK, PALETTE, QUIET, WIDTH, figure
+from fem_impact.figures.still import INK, PALETTE, QUIET, WIDTH, figure
 from meshes import SKIN, SYMMETRY, HexMesh, owners
 from rigid import Body, Faceted, Turned
 

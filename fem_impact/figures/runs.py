@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 
 from fem_impact.figures.panels import Look, Mark, Panel, Picture, Series, ShadedInterval, ShadedMap
-from fem_impact.figures.still import draw
-from fem_impact.figures.style import percent
+from fem_impact.figures.still import draw, percent
 from fem_impact.files.waves import Waves, read_waves
 from fem_impact.outcome.groups import ContactInterval
 from fem_impact.outcome.keys import Unknown, known, or_none

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from PIL import Image, ImageDraw
 
 from fem_impact.errors import ResultError
-from fem_impact.figures.style import INK, QUIET
+from fem_impact.figures.still import INK, QUIET
 from fem_impact.films import frame
 from fem_impact.films.encode import best_suffix, encode, require_gl
 from fem_impact.films.layout import FrameLayout, Rectangle, SideBySideLayout

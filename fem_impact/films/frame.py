@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.font_manager import findfont
 from PIL import Image, ImageDraw, ImageFont
 
-from fem_impact.figures.style import INK, PALETTE, QUIET
+from fem_impact.figures.still import INK, PALETTE, QUIET
 from fem_impact.files.waves import Waves
 from fem_impact.films.layout import Frame, FrameLayout, Rectangle
 from fem_impact.films.motion import FIELDS, FilmData

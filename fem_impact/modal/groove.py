@@ -21,7 +21,7 @@ import numpy as np
 
 from fem_impact.arrays import Array
 from fem_impact.fem.kernels import allocating_kernel, inlined
-from fem_impact.physics.flow_law import FULLY_PLASTIC, REPRESENTATIVE, RUN_IN, STUCK, FlowLaw
+from fem_impact.physics.contact_law import FULLY_PLASTIC, REPRESENTATIVE, RUN_IN, STUCK, FlowLaw
 
 CELLS = 512  # of the ring that follows the tip
 ACROSS = 40  # cells over the largest half length of the contact

@@ -39,8 +39,7 @@ from fem_impact.modal.touch import spent
 from fem_impact.outcome.groups import ContactSite
 from fem_impact.physics.beam import horizon
 from fem_impact.physics.contact import fall
-from fem_impact.physics.contact_law import ContactLaw
-from fem_impact.physics.flow_law import FlowLaw
+from fem_impact.physics.contact_law import ContactLaw, FlowLaw
 from fem_impact.progress import Progress, compiling, setting_up
 from fem_impact.scene.sliding import SpeedTable
 

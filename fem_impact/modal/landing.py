@@ -11,7 +11,7 @@ from fem_impact.modal.rod import ModalRod
 from fem_impact.modal.sites import skin
 from fem_impact.modal.touch import LAID
 from fem_impact.physics.contact import FLAT, ContactPair, impedance
-from fem_impact.physics.flow_law import FULLY_PLASTIC, REPRESENTATIVE, FlowLaw, flow_law
+from fem_impact.physics.contact_law import FULLY_PLASTIC, REPRESENTATIVE, FlowLaw, flow_law
 
 LEANS = 0.5  # rise over length beyond which a straight part that touches with an end does not land flat
 ON_SIDE = 0.25 * pi  # stiffness of a side over E* times its length (Popov 2010)

@@ -15,8 +15,7 @@ from fem_impact.modal.rod import ModalRod
 from fem_impact.modal.sites import lowest, settle, skin
 from fem_impact.modal.touch import LAID
 from fem_impact.physics.contact import ContactPair
-from fem_impact.physics.contact_law import ContactLaw, contact_law
-from fem_impact.physics.flow_law import FlowLaw, flow_law
+from fem_impact.physics.contact_law import ContactLaw, FlowLaw, contact_law, flow_law
 from fem_impact.scene.material import Material
 from rigid import Faceted
 

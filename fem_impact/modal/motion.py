@@ -7,8 +7,7 @@ import numpy as np
 from fem_impact.arrays import Array, Ints
 from fem_impact.modal.flat import Flats
 from fem_impact.modal.groove import CELLS
-from fem_impact.physics.contact_law import ContactLaw
-from fem_impact.physics.flow_law import FlowLaw
+from fem_impact.physics.contact_law import ContactLaw, FlowLaw
 
 MOST_CONTACTS = 200
 SPRINGS = 100

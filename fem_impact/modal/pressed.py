@@ -13,7 +13,7 @@ from fem_impact.modal.rod import ModalRod
 from fem_impact.modal.sites import skin
 from fem_impact.modal.touch import OWN
 from fem_impact.outcome.groups import ContactSite
-from fem_impact.physics.flow_law import FlowLaw
+from fem_impact.physics.contact_law import FlowLaw
 
 
 def pressed_sites(case: Case, rod: ModalRod, held: Touched) -> tuple[ContactSite, ...]:

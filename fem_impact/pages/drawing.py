@@ -4,7 +4,7 @@ from pathlib import Path
 
 from fem_impact.case.case import Case
 from fem_impact.figures.outline import draw, draw_mesh
-from fem_impact.figures.style import WIDTH
+from fem_impact.figures.still import WIDTH
 from rigid import Faceted
 
 

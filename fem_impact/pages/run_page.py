@@ -15,9 +15,8 @@ from fem_impact.case.case import Case
 from fem_impact.errors import ResultError, RunError, SceneError, UsageError
 from fem_impact.figures.panels import Picture
 from fem_impact.figures.runs import partition_picture
-from fem_impact.figures.still import draw
+from fem_impact.figures.still import draw, percent
 from fem_impact.figures.strikes import accounts_picture, path_picture, tail_picture
-from fem_impact.figures.style import percent
 from fem_impact.files.atomic import make_directory, read_text, signed, write_text
 from fem_impact.outcome.keys import Key, Unknown, or_none
 from fem_impact.outcome.record import KEY_TABLE, KEYS, Outcome, utc_now

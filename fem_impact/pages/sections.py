@@ -10,7 +10,7 @@ from fem_impact.answers.compare import compare, told
 from fem_impact.errors import ResultError, SceneError
 from fem_impact.figures.panels import Picture
 from fem_impact.figures.runs import comparison_picture, force_picture, ledger_picture, waves_picture
-from fem_impact.figures.style import percent
+from fem_impact.figures.still import percent
 from fem_impact.files.atomic import make_directory
 from fem_impact.files.waves import read_waves
 from fem_impact.films.movement import FRAMES, QUICK_FRAMES, STUDY_FRAMES

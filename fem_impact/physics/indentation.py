@@ -1,8 +1,8 @@
 """Vickers' number of a metal, bare or under a hardened layer, and the layers that meet a measured one.
 
 Closed forms of indentations that were computed: a rigid cone with the pyramid's volume, pressed into
-axisymmetric elements that yield (`fem_impact.evidence.references.cone`; ``verify hardness`` presses it
-again). No constant comes from an impact or from a measured hardness.
+axisymmetric elements that yield (`fem_impact.evidence.references.axisymmetric`; ``verify hardness`` presses
+it again). No constant comes from an impact or from a measured hardness.
 
 - Without a layer the mean pressure is C times the flow stress at `TABOR_STRAIN`; C, of `CONSTRAINT`, grows
   with stiffness and friction and falls with hardening.

@@ -11,10 +11,9 @@ from typing import Any
 from fem_impact.errors import ResultError, SceneError, UsageError
 from fem_impact.scene import fields, library, own_mesh, shapes, types
 from fem_impact.scene.barrier import Barrier, Layer
-from fem_impact.scene.impact import WAYS, Impact, the_way
+from fem_impact.scene.impact import WAYS, Following, Impact, the_way
 from fem_impact.scene.material import Material, Surface
 from fem_impact.scene.projectile import Face, ProjectileSpec, Region, Segment
-from fem_impact.scene.strikes import Following
 from fem_impact.scene.surface_table import of_known, pair_surface, read_surface
 from fem_impact.scene.tables import (
     UNKNOWN_KEY,

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from fem_impact.errors import ResultError, SceneError
 from fem_impact.scene import fields
-from fem_impact.scene.parameter import Parameter
+from fem_impact.scene.fields import Parameter
 from fem_impact.scene.units import DIMENSIONS, Unit, parse_quantity
 from fem_impact.scene.user_table import UserTable, in_si, read_user_table
 

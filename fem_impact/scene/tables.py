@@ -5,7 +5,7 @@ from typing import Any, TypeVar
 
 from fem_impact.errors import SceneError, did_you_mean
 from fem_impact.scene import fields
-from fem_impact.scene.parameter import Parameter
+from fem_impact.scene.fields import Parameter
 from fem_impact.scene.units import parse_number, parse_quantity
 
 T = TypeVar("T")

@@ -18,15 +18,13 @@ import tomli_w
 from fem_impact.errors import SceneError
 from fem_impact.scene import fields
 from fem_impact.scene.barrier import Barrier
-from fem_impact.scene.fields import Fields
-from fem_impact.scene.impact import FIRST, WAYS, Impact
+from fem_impact.scene.fields import Fields, Parameter
+from fem_impact.scene.impact import FIRST, WAYS, Following, Impact
 from fem_impact.scene.material import Flow, Material, Surface, TableFlow
 from fem_impact.scene.own_mesh import OwnMesh
-from fem_impact.scene.parameter import Parameter
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.shapes import HEIGHT, RADIUS, NamedShape, Point, Profile, sizes_of
 from fem_impact.scene.sliding import written
-from fem_impact.scene.strikes import Following
 
 MEASURED_SETS = (
     *("t2", "t3-machined", "t3-contaminated", "t3-cleaned", "t4"),

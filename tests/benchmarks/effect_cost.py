@@ -20,7 +20,7 @@ os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
 from fem_impact.case.case import Case
 from fem_impact.case.effects.registry import BARRIERS
-from fem_impact.figures.style import PALETTE, QUIET, figure
+from fem_impact.figures.still import PALETTE, QUIET, figure
 from fem_impact.files.atomic import write_text
 from fem_impact.scene.shipped import load
 from fem_impact.scene.types import Scene

@@ -4,7 +4,7 @@ import pytest
 
 from fem_impact.case.case import Case
 from fem_impact.fem.eigen import rod_modes
-from fem_impact.physics.disc import disc_period, free_plate_root
+from fem_impact.physics.beam import disc_period, free_plate_root
 from fem_impact.physics.plate import bending_stiffness
 from fem_impact.scene.read import read_dict
 from fem_impact.solid.build import build

@@ -10,7 +10,7 @@ import result_maker
 from outcome_maker import altered
 
 from fem_impact.errors import OutputPathError, ResultError
-from fem_impact.figures import style
+from fem_impact.figures import still
 from fem_impact.figures.live import live
 from fem_impact.figures.runs import (
     comparison_picture,
@@ -19,8 +19,7 @@ from fem_impact.figures.runs import (
     partition_picture,
     study_partition_picture,
 )
-from fem_impact.figures.still import draw
-from fem_impact.figures.style import percent
+from fem_impact.figures.still import draw, percent
 from fem_impact.outcome.keys import known
 from fem_impact.outcome.record import Outcome
 from fem_impact.outcome.shares import ACCOUNTS, shares
@@ -89,8 +88,8 @@ def test_titles_of_a_comparison_stand_over_their_panels(tmp_path, monkeypatch):
         "residual stress in barrier/E_0 ",
     ]
     first = result_maker.comparison()[0] | {"set": "t3-contaminated"}
-    kept, save = [], style.save
-    monkeypatch.setattr(style, "save", lambda figure, path: (kept.append(figure), save(figure, path)))
+    kept, save = [], still.save
+    monkeypatch.setattr(still, "save", lambda figure, path: (kept.append(figure), save(figure, path)))
     draw(comparison_picture([first | {"quantity": name} for name in names]), tmp_path / "comparison.svg")
     kept[0].draw_without_rendering()  # the file had other dots per inch
     boxes = [axes._left_title.get_window_extent() for axes in kept[0].axes]
@@ -100,8 +99,8 @@ def test_titles_of_a_comparison_stand_over_their_panels(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("scale", [1e-3, 1.3e-3, 1e-4, 0.47, 30.0])
 def test_numbers_under_a_comparison_stand_apart(tmp_path, monkeypatch, scale):
-    kept, save = [], style.save
-    monkeypatch.setattr(style, "save", lambda figure, path: (kept.append(figure), save(figure, path)))
+    kept, save = [], still.save
+    monkeypatch.setattr(still, "save", lambda figure, path: (kept.append(figure), save(figure, path)))
     first = result_maker.comparison()[0] | {"set": "t3-contaminated", "measured_mean": 0.0}
     first |= {"measured_low": None, "measured_sd": None, "band": 0.0}
     shares = [first | {"quantity": name, "model": 0.0} for name in "abcd"]

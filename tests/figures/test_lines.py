@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from fem_impact.figures import style
+from fem_impact.figures import still
 from fem_impact.figures.live import live
 from fem_impact.figures.panels import Mark, Panel, Picture, Series, ShadedInterval, ShadedMap
 from fem_impact.figures.still import draw
@@ -16,8 +16,8 @@ MARKS = (Mark(28.7, "0.12 m"), Mark(26.45, "limit of Eq 29"), Mark(57.3, "0.24 m
 @pytest.fixture
 def drawn(monkeypatch, tmp_path):
     """Draw panels and return the figure as it was saved."""
-    kept, save = [], style.save
-    monkeypatch.setattr(style, "save", lambda figure, path: (kept.append(figure), save(figure, path)))
+    kept, save = [], still.save
+    monkeypatch.setattr(still, "save", lambda figure, path: (kept.append(figure), save(figure, path)))
 
     def drawn_of(panels):
         draw(picture(panels), tmp_path / "lines.svg")

@@ -9,7 +9,7 @@ from own_bodies import box, write
 from fem_impact.case.case import Case
 from fem_impact.figures.outline import draw
 from fem_impact.figures.outline import drawn as in_words
-from fem_impact.figures.style import new_figure
+from fem_impact.figures.still import new_figure
 from fem_impact.scene.shipped import load, replace, replace_all
 from rigid import Turned
 
@@ -18,7 +18,7 @@ def drawn(monkeypatch, tmp_path, name):
     """Return the axes of a scene's drawing."""
     kept = []
     monkeypatch.setattr(
-        "fem_impact.figures.style.new_figure", lambda *size: kept.append(new_figure(*size)) or kept[0]
+        "fem_impact.figures.still.new_figure", lambda *size: kept.append(new_figure(*size)) or kept[0]
     )
     scene = load(name)
     body, rod = scene.projectile.rigid_body, scene.projectile

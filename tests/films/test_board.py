@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from fem_impact.figures.style import QUIET
+from fem_impact.figures.still import QUIET
 from fem_impact.films.film import TITLE, _title
 from fem_impact.films.frame import (
     below,

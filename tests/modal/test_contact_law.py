@@ -11,8 +11,7 @@ from fem_impact.modal.groove import Flank, Tip, hardness, indent, slide, smooth
 from fem_impact.modal.impact import drop_round
 from fem_impact.modal.laws import reach
 from fem_impact.modal.motion import CLOCK, SITE, SUM, Bounds, Start
-from fem_impact.physics.contact_law import ContactLaw, contact_law, restitution
-from fem_impact.physics.flow_law import FlowLaw, flow_law
+from fem_impact.physics.contact_law import ContactLaw, FlowLaw, contact_law, flow_law, restitution
 from fem_impact.scene.shipped import load
 
 NU, R = 0.29, 9.5e-3

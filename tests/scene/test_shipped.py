@@ -9,12 +9,11 @@ from fem_impact.case.case import Case
 from fem_impact.errors import SceneError, UsageError
 from fem_impact.outcome.limitation import texts
 from fem_impact.scene.fields import DEFAULTS
-from fem_impact.scene.impact import Impact
+from fem_impact.scene.impact import Following, Impact
 from fem_impact.scene.inputs import STATED, inputs, materials_of
 from fem_impact.scene.library import materials, shipped, surfaces
 from fem_impact.scene.read import read_dict, read_toml
 from fem_impact.scene.shipped import load, replace, replace_all
-from fem_impact.scene.strikes import Following
 from fem_impact.scene.types import MEASURED_SETS, Accuracy, Heating, Save, to_dict
 from rigid.experiments import measured_set, set_ids
 

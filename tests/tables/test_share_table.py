@@ -3,7 +3,7 @@
 from fem_impact.answers.compare import UNSEEN
 from fem_impact.answers.report import LEDGER
 from fem_impact.evidence.studies.convergence import QUANTITIES
-from fem_impact.figures.style import PALETTE
+from fem_impact.figures.still import PALETTE
 from fem_impact.outcome.record import KEYS
 from fem_impact.outcome.shares import ACCOUNTS, SHARES, shares
 from fem_impact.tables.history import HISTORY

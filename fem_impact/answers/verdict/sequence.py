@@ -5,7 +5,7 @@ from dataclasses import replace
 from fem_impact.outcome.keys import Unknown, known
 from fem_impact.outcome.strikes import StrikeRecord, Strikes
 from fem_impact.run.simulate import simulate
-from fem_impact.scene.strikes import Following
+from fem_impact.scene.impact import Following
 from fem_impact.scene.types import Scene
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from fem_impact.figures.style import INK, figure
+from fem_impact.figures.still import INK, figure
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from fem_impact.evidence.paper.drawn import Drawn, Statement, canvas
-from fem_impact.figures.style import INK, PALETTE, QUIET, write_data
+from fem_impact.figures.still import INK, PALETTE, QUIET, write_data
 from rigid import Errors, coefficients, critical_ratio, experiments, predicted_losses
 from rigid.inputs import Floats
 

@@ -23,8 +23,7 @@ from fem_impact.errors import RunError, SceneError
 from fem_impact.evidence.problems import setups
 from fem_impact.evidence.problems.bodies import Block, FreeBody, body_model, placed
 from fem_impact.evidence.problems.problem import Check, Solved, Values
-from fem_impact.evidence.references.axisymmetric import Metal
-from fem_impact.evidence.references.cone import FROM, REACH, Indentation, cone_speed, indent
+from fem_impact.evidence.references.axisymmetric import FROM, REACH, Indentation, Metal, cone_speed, indent
 from fem_impact.physics.hardening import KGF_PER_MM2, TABOR, TABOR_STRAIN, Hardening, Skin, power_hardening
 from fem_impact.physics.indentation import FACES, FRICTION, FRICTIONS, share, vickers
 from fem_impact.scene.library import material

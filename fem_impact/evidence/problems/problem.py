@@ -13,7 +13,7 @@ from typing import Any, Literal
 
 from fem_impact.errors import SceneError, UsageError, did_you_mean
 from fem_impact.evidence.data import read_stated
-from fem_impact.scene.parameter import Parameter
+from fem_impact.scene.fields import Parameter
 from fem_impact.tables.table import Table
 
 Values = Mapping[str, float]

@@ -45,7 +45,7 @@ CALIBRATION = tuple(
         (220.0, 35.0, 1.5, 0.2, 3.0, 400.0, 520 / 400),
     )
 )
-"""Impacts from which the two constants of `fem_impact.physics.flow_law` were read, with earlier inputs."""
+"""Impacts from which the two constants of `fem_impact.physics.contact_law` were read, with earlier inputs."""
 MODELS = ("modal", "solid")
 KEYS = {
     "e": (KEY_TABLE["e_edge"],),

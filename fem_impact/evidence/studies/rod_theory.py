@@ -20,8 +20,7 @@ from fem_impact.modal.impact import drop_round
 from fem_impact.modal.laws import reach
 from fem_impact.modal.motion import Bounds, Start
 from fem_impact.modal.rod import modal_rod
-from fem_impact.physics.contact_law import ContactLaw, contact_law
-from fem_impact.physics.flow_law import FlowLaw, flow_law
+from fem_impact.physics.contact_law import ContactLaw, FlowLaw, contact_law, flow_law
 from rigid import LIMIT
 
 STEP, FREE = 2e-8, 1e-6  # s: time steps of the point mass in contact and in flight

@@ -8,7 +8,7 @@ import pytest
 from fem_impact.cli.main import main
 from fem_impact.errors import SceneError, UsageError
 from fem_impact.evidence.problems.problem import PROBLEMS, Check, Problem, Solved, problem, verify
-from fem_impact.scene.parameter import Parameter
+from fem_impact.scene.fields import Parameter
 
 LENGTH = Parameter("length", "of it", "length", 0.02, 2.0, default=0.24)
 COUNT = Parameter("across", "cells", "", 6, 24, default=8, even=True)

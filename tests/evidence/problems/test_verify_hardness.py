@@ -5,7 +5,7 @@ import pytest
 from fem_impact.errors import SceneError
 from fem_impact.evidence.problems import hardness_cone
 from fem_impact.evidence.problems.problem import defaults, verify
-from fem_impact.evidence.references.cone import indent
+from fem_impact.evidence.references.axisymmetric import indent
 
 VALUES = defaults("hardness")
 

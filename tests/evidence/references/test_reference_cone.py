@@ -4,7 +4,7 @@ from math import pi, radians, tan
 
 import pytest
 
-from fem_impact.evidence.references import cone
+from fem_impact.evidence.references import axisymmetric as cone
 from fem_impact.evidence.references.axisymmetric import Metal
 
 STEEL = Metal(206e9, 0.29, 7850.0, 320e6, 643.75, 0.1033)

@@ -6,7 +6,7 @@ from fem_impact.answers.cost.judge import Judged
 from fem_impact.answers.cost.measure import PLACES, CostStudy
 from fem_impact.answers.refine.extrapolate import QuantityLimit
 from fem_impact.evidence.studies.cost_report import FRONT, paper_report, scene_report
-from fem_impact.figures import still, style
+from fem_impact.figures import still
 from fem_impact.figures.live import live
 from fem_impact.scene.shipped import load
 
@@ -38,7 +38,7 @@ def study(settings, scene="t5b"):
 def drawn(monkeypatch, tmp_path):
     """Return the plot of a rigid run and a mesh whose errors, of 1, lie so far apart."""
     kept = []
-    monkeypatch.setattr(style, "save", lambda figure, path: kept.append(figure))
+    monkeypatch.setattr(still, "save", lambda figure, path: kept.append(figure))
 
     def draw(rigid, mesh, names=("e",)):
         settings = [setting("rigid", 1e-4, rigid), setting("levels", 30.0, mesh)]

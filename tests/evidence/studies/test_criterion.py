@@ -42,8 +42,7 @@ from fem_impact.evidence.studies.rods import PAPER_RODS, STATES, DroppedRod, len
 from fem_impact.jobs.job import Failure, Job
 from fem_impact.modal.impact import solve
 from fem_impact.modal.rod import modal_rod
-from fem_impact.physics.contact_law import contact_law
-from fem_impact.physics.flow_law import flow_law
+from fem_impact.physics.contact_law import contact_law, flow_law
 from rigid import LIMIT
 
 pytestmark = pytest.mark.usefixtures("unrendered")
