@@ -11,7 +11,7 @@ Levels that agree by chance cannot know the energy of vibration better than its 
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import pairwise, zip_longest
+from itertools import pairwise
 from math import hypot, sqrt
 from statistics import fmean, stdev
 
@@ -79,9 +79,8 @@ class MeshRuns:
     @property
     def times(self) -> list[float]:
         """Processor time, s, of each run with its repeats."""
-        return [
-            run.cost.whole_cpu + before for run, before in zip_longest(self.runs, self.earlier, fillvalue=0.0)
-        ]
+        earlier = self.earlier or [0.0] * len(self.runs)
+        return [run.cost.whole_cpu + before for run, before in zip(self.runs, earlier, strict=True)]
 
     @property
     def cpu_s(self) -> float:
