@@ -9,8 +9,10 @@ from meshes.common import BoolArray, FloatArray, IntArray
 from meshes.hexmesh import CORNERS, FACES, SKIN, HexMesh, face_keys, owners
 from meshes.quality import scaled_jacobians
 
-DEEPEST = 8  # rows from the skin, over which those below the thin ones are stretched
-FADE = 2  # cells along the skin over which rows become thin
+DEEPEST = 8  # rows from the skin, over which those below a few thin ones are stretched
+# cells along the skin over which rows become thin: two, and two more for each row beyond so many, which
+# would lean too far
+FADE, STEEP = 2, 3
 WORST, TRIES = 0.2, 8  # least scaled Jacobian of a cell that is drawn; how often its move is halved for that
 
 # (3, 8) corner of a cell at the other end of the edge along x, y and z
@@ -41,11 +43,11 @@ def with_thin_rows(mesh: HexMesh, part: BoolArray, cell: float, rows: int) -> He
     fixed = mesh.is_hanging
     fixed[mesh.cells[~part]] = True
     skin = (mesh.face_tag == SKIN) & part[owners(mesh)]
-    lines = _lines(mesh, part, skin, fixed)
+    lines = _lines(mesh, part, skin, fixed, max(DEEPEST, 2 * rows))
     count = (lines >= 0).sum(axis=1) - 1
     height = np.linalg.norm(mesh.points[lines[:, 1]] - mesh.points[lines[:, 0]], axis=1)
     thin = np.clip(rows + np.rint(np.log2(height / cell)), 0, np.minimum(rows, count // 2))
-    share = _shares(mesh.faces[skin], lines[:, 0], len(mesh.points))
+    share = _shares(mesh.faces[skin], lines[:, 0], len(mesh.points), FADE + 2 * max(rows - STEEP, 0))
     move = np.zeros_like(mesh.points)
     for there, drawn in np.unique(np.stack([count, thin.astype(np.int64)], axis=1), axis=0).tolist():
         nodes = lines[(count == there) & (thin == drawn), : there + 1]
@@ -81,13 +83,13 @@ def _along(ends: FloatArray, thin: int) -> FloatArray:
     return np.asarray((1.0 - beyond) * ends[:, low] + beyond * ends[:, low + 1] - ends)
 
 
-def _lines(mesh: HexMesh, part: BoolArray, skin: BoolArray, fixed: BoolArray) -> IntArray:
-    """(k, DEEPEST + 1) nodes of each line of edges from the skin inwards up to one that is fixed, then -1."""
+def _lines(mesh: HexMesh, part: BoolArray, skin: BoolArray, fixed: BoolArray, deepest: int) -> IntArray:
+    """(k, deepest + 1) nodes of each line of edges from the skin inwards up to one that is fixed, then -1."""
     next_to = _neighbours(mesh.cells, part)
     front, cell = mesh.faces[skin], owners(mesh)[skin]
-    path = np.full((*front.shape, DEEPEST + 1), -1, dtype=np.int64)
+    path = np.full((*front.shape, deepest + 1), -1, dtype=np.int64)
     path[:, :, 0], row = front, np.arange(len(front))
-    for step in range(1, DEEPEST + 1):
+    for step in range(1, deepest + 1):
         corner = (mesh.cells[cell][:, None, :] == front[:, :, None]).argmax(axis=2)
         side = CORNERS[corner]
         axis = (np.ptp(side, axis=1) == 0).argmax(axis=1)
@@ -95,12 +97,12 @@ def _lines(mesh: HexMesh, part: BoolArray, skin: BoolArray, fixed: BoolArray) ->
         path[row, :, step] = front
         behind = next_to[cell, 2 * axis + 1 - side[np.arange(len(axis)), 0, axis]]
         row, front, cell = row[behind >= 0], front[behind >= 0], behind[behind >= 0]
-    path = path.reshape(-1, DEEPEST + 1)
+    path = path.reshape(-1, deepest + 1)
     stop = (path < 0) | fixed[path]
     stop[:, -1] = True
     last = stop[:, 1:].argmax(axis=1) + 1
     last -= path[np.arange(len(path)), last] < 0  # the end of the mesh is one, too
-    path[np.arange(DEEPEST + 1) > last[:, None]] = -1
+    path[np.arange(deepest + 1) > last[:, None]] = -1
     path = path[(last > 1) & ~fixed[path[:, 0]]]
     return np.asarray(path[np.unique(path[:, :2], axis=0, return_index=True)[1]])
 
@@ -118,10 +120,10 @@ def _neighbours(cells: IntArray, part: BoolArray) -> IntArray:
     return across
 
 
-def _shares(quads: IntArray, starts: IntArray, count: int) -> FloatArray:
+def _shares(quads: IntArray, starts: IntArray, count: int, fade: int) -> FloatArray:
     """(count,) by how much lines that start at nodes of the skin are drawn: less beside nodes without one."""
     away = np.zeros(count)
-    away[starts] = FADE
-    for _ in range(FADE):
+    away[starts] = fade
+    for _ in range(fade):
         np.minimum.at(away, quads, away[quads].min(axis=1)[:, None] + 1.0)
-    return away / FADE
+    return away / fade

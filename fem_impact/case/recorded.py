@@ -1,16 +1,26 @@
 """Fine zones of the meshes from the record of a coarser run, or from what may touch at first."""
 
 from dataclasses import dataclass
-from math import log2, sqrt
+from math import floor, log2, sqrt
 
 import numpy as np
 
 from fem_impact.arrays import Array, Bools
 from fem_impact.case.bodies import Bodies
+from fem_impact.case.effects.skin import skin_of
 from fem_impact.case.effects.slots import ModelSpec
 from fem_impact.case.plates import is_thin
 from fem_impact.case.record import BodyRecord, ContactRecord
-from fem_impact.case.zones import SKIN_ROWS, Corners, Zones, base_cells, skin_rows
+from fem_impact.case.zones import (
+    MOST_ROWS,
+    SKIN_ROWS,
+    Corners,
+    Zones,
+    base_cells,
+    follows_skin,
+    rows_for,
+    skin_rows,
+)
 from fem_impact.physics.plate import plate_waves
 from meshes import Cloud, HexMesh, thin_skin_rise
 
@@ -31,6 +41,7 @@ class RecordedZones:
     record : where they touched and flowed
     conforming : the barrier flows under all of the contact; skin_rows : thin rows of cells at its top
     rod_rows : the same under the skin of the rod
+    layered : a hardened layer of the rod lies in them: cells are fine deep enough for all of them
     edges : how far a plate that is meshed through its thickness goes beyond its fine zone; else 0
     """
 
@@ -42,6 +53,7 @@ class RecordedZones:
     conforming: bool
     skin_rows: int
     rod_rows: int
+    layered: bool = False
     edges: float = 0.0
 
     @property
@@ -83,7 +95,23 @@ class RecordedZones:
 
     def in_rod(self, lowest: Array, turn: Array) -> list[Cloud]:
         """Return the zone of each level in the frame of the projectile's mesh, as `Zones.in_rod`."""
-        return _clouds(self.record.rod, self.levels)
+        clouds = _clouds(self.record.rod, self.levels)
+        if self.layered and clouds:
+            finest, under = clouds[-1], self._pressed(turn)
+            clouds[-1] = Cloud(
+                np.vstack([finest.points, under.points]), np.concatenate([finest.radii, under.radii])
+            )
+        return clouds
+
+    def _pressed(self, turn: Array) -> Cloud:
+        """Return where rows are drawn: about the pressed skin, and as deep under it as those of a layer need.
+
+        ``turn`` is as in `in_rod`.
+        """
+        rod = self.record.rod
+        down = self.tip_size * np.arange(2 * self.rod_rows if self.layered else 1)
+        points = (rod.touched + down[:, None, None] * turn[2]).reshape(-1, 3)
+        return Cloud(points, np.full(len(points), rod.reach + self.layered * self.rod_rows * self.tip_size))
 
     def in_barrier(self) -> list[Cloud]:
         """Return the zone of each level along t, b and n, before the rows at the skin are drawn together."""
@@ -107,13 +135,12 @@ class RecordedZones:
         """Return the mask (m,) of the rod's cells that may touch: the finest, all of an unsplit mesh."""
         return mesh.finest
 
-    def pressed(self, mesh: HexMesh) -> Bools:
+    def pressed(self, mesh: HexMesh, turn: Array) -> Bools:
         """Return the mask (m,) of the rod's finest cells at the skin that is pressed.
 
         Only they get thin rows: more of them need more mass, which the rest of a light rod cannot give.
         """
-        rod = self.record.rod
-        return np.asarray(mesh.finest & _near(Cloud(rod.touched, np.full(len(rod.touched), rod.reach)), mesh))
+        return np.asarray(mesh.finest & _near(self._pressed(turn), mesh))
 
     def rod_flow(self, mesh: HexMesh, points: Array) -> Bools:
         """Return the mask (m,) of the rod's cells that may yield."""
@@ -135,11 +162,13 @@ def recorded_zones(bodies: Bodies, record: ContactRecord) -> RecordedZones:
     rows = skin_rows(bodies, base / 2**below) if conforming and bodies.contact.f > 0 else 0
     edges = plate_waves(bodies.contact)[1] if is_thin(bodies) else 0.0
     rod_rows = ROD_ROWS if levels and bodies.contact.rod_yields else 0
-    if rod_rows and "machined-skin" in bodies.effects and bodies.contact.rod.skin:
-        rod_rows = SKIN_ROWS
+    layer = skin_of(bodies.contact.rod) if rod_rows and "machined-skin" in bodies.effects else None
+    layered = follows_skin(bodies, layer, h := rod_base / 2**levels) and not record.crushed
+    if layer:
+        rod_rows = max(SKIN_ROWS, rows_for(layer.depth, h) if layered else 0)
     if record.crushed:
         rows = rod_rows = 0
-    return RecordedZones(base, rod_base, levels, below, record, conforming, rows, rod_rows, edges)
+    return RecordedZones(base, rod_base, levels, below, record, conforming, rows, rod_rows, layered, edges)
 
 
 def rows_within(depth: float, h: float, rows: int) -> float:
@@ -156,16 +185,21 @@ def rows_within(depth: float, h: float, rows: int) -> float:
 
 def unresolved_skins(spec: ModelSpec, zones: AnyZones) -> tuple[str, ...]:
     """Say of each body that yields in how few rows of cells its hardened layer lies."""
-    told = []
+    told, of_rod = [], zones.rod_rows
+    if not (isinstance(zones, RecordedZones) and zones.layered):
+        of_rod = min(of_rod, ROD_ROWS)  # the fine cells under its pressed skin are too few for more
     for body, law, skin, h, drawn in (
-        ("rod", spec.rod_law, spec.rod_skin, zones.tip_size, zones.rod_rows),
+        ("rod", spec.rod_law, spec.rod_skin, zones.tip_size, of_rod),
         ("barrier", spec.barrier_law, spec.barrier_skin, zones.barrier_size, zones.skin_rows),
     ):
         rows = rows_within(skin.depth, h, drawn) if law and skin else SKIN_ROWS
         if rows < SKIN_ROWS and skin:
+            # halving comes as near to a stated size as it can
+            size = 1e3 * skin.depth * 2**MOST_ROWS / (2**SKIN_ROWS - 1) / sqrt(2)
             told.append(
                 f"The hardened layer of the {body}, {1e3 * skin.depth:.2g} mm, lies in {rows:.2g} rows of "
-                f"cells, where {SKIN_ROWS} resolve it: give accuracy.levels or a smaller accuracy.tip_size."
+                f'cells, where {SKIN_ROWS} resolve it: give accuracy.fine_zone = "skin" and '
+                f"accuracy.tip_size = {floor(100 * size) / 100:g} mm or less."
             )
     return tuple(told)
 

@@ -12,6 +12,7 @@ from fem_impact.case.effects.skin import skin_of
 from fem_impact.case.plates import doublings, is_thin
 from fem_impact.errors import SceneError
 from fem_impact.physics.contact import FLAT, ContactEstimate, ContactPair
+from fem_impact.physics.hardening import Skin
 from fem_impact.physics.plate import plate_waves
 from fem_impact.scene.barrier import Barrier
 from meshes import HexMesh, Zone, thin_skin_rise
@@ -45,6 +46,7 @@ SLIDE, DRAG = 5.0, 0.6
 # together, each to half the height of the next; the first no lower than a share of the indentation, or it is
 # crushed at the edge of the contact
 SKIN_ROWS, LOW = 3, 0.1
+MOST_ROWS = 5  # that a hardened layer may ask for: cells 32 times as wide as high at most
 
 
 @dataclass(frozen=True, slots=True)
@@ -179,7 +181,7 @@ def zones_of(bodies: Bodies) -> Zones:
     reach, wide = face_reach(bodies)
     conforming = pair.barrier_conforms
     rows = skin_rows(bodies, base / 2**below) if conforming and pair.f > 0 else 0
-    graded = bodies.scene.accuracy.fine_zone == "graded"
+    graded = bodies.scene.accuracy.fine_zone != "even"
 
     def extents(h: float, shares: Shares) -> Extents:
         t, b, n = half_widths(size, h, share_of(contact_radius(bodies) / h, shares if graded else ()))
@@ -233,12 +235,30 @@ def half_widths(size: ContactEstimate, h: float, share: Extents = (1.0, 1.0, 1.0
 def skin_rows(bodies: Bodies, h: float) -> int:
     """Return how many rows of cells ``h`` m high are drawn together at the skin of a plate that may stick.
 
-    A hardened layer in force may ask for more of them, until `SKIN_ROWS` lie in it.
+    A hardened layer in force may ask for more of them, until `SKIN_ROWS` lie in it; with the fine zone "skin"
+    they do.
     """
     halvings = floor(log2(h / (LOW * bodies.estimate.depth)))
     skin = skin_of(bodies.contact.barrier) if "machined-skin" in bodies.effects else None
-    most = max(SKIN_ROWS, ceil(log2(h * (2**SKIN_ROWS - 1) / skin.depth))) if skin else SKIN_ROWS
-    return min(max(halvings, 0), most)
+    most = max(SKIN_ROWS, rows_for(skin.depth, h)) if skin else SKIN_ROWS
+    return most if follows_skin(bodies, skin, h) else min(max(halvings, 0), most)
+
+
+def follows_skin(bodies: Bodies, skin: Skin | None, h: float) -> bool:
+    """Return whether cells ``h`` m wide are drawn as flat as a layer in force asks for."""
+    flat = bodies.scene.accuracy.fine_zone == "skin"
+    return skin is not None and flat and rows_for(skin.depth, h) <= MOST_ROWS
+
+
+def rows_for(depth: float, h: float) -> int:
+    """Return how many rows of cells ``h`` high are drawn together so that `SKIN_ROWS` lie in a depth, m.
+
+    Examples
+    --------
+    >>> [rows_for(0.05, h) for h in (0.15, 0.05, 0.01)]
+    [5, 3, 1]
+    """
+    return max(0, ceil(log2(h * (2**SKIN_ROWS - 1) / depth)))
 
 
 def face_reach(bodies: Bodies) -> tuple[Ways, float]:

@@ -110,7 +110,7 @@ def _mesh(bodies: Bodies, zones: AnyZones, vibrating: bool) -> RodMesh:
     turn, lowest = to_barrier_frame(bodies.mesh_inclination), bodies.lowest_point
     rod = _rod(bodies, lowest, zones.in_rod(lowest, turn))
     if isinstance(zones, RecordedZones) and zones.rod_rows:
-        part = zones.pressed(rod.mesh) & _first_segment(bodies, rod.mesh)
+        part = zones.pressed(rod.mesh, turn) & _first_segment(bodies, rod.mesh)
         rod = replace(rod, mesh=meshes.with_thin_rows(rod.mesh, part, zones.tip_size, zones.rod_rows))
     if not vibrating:
         if bodies.rod.own_mesh:

@@ -148,7 +148,8 @@ FLOWS = {law: _numbers(tables) for law, tables in _STATED["flow"].items()} | {"t
 RATES = {law: _numbers(tables) for law, tables in _STATED["rate"].items()}
 Element = Literal["incompatible", "full", "bbar"]  # linear operator of cells that cannot yield
 YieldingElement = Literal["bbar", "full"]  # element of cells that may yield
-FineZone = Literal["graded", "even"]  # finest cells right under the contact alone, or all over the fine zone
+# finest cells right under the contact alone, or all over the fine zone, or flat enough for a hardened skin
+FineZone = Literal["graded", "even", "skin"]
 Support = Literal["backed", "infinite"]  # of a plate: bonded to a base, or free underneath and wide
 Boundary = Literal["half-space", "fixed"]  # of a meshed barrier's outer faces
 Unresolved = Literal["withhold", "report"]  # what becomes of numbers that the mesh does not resolve

@@ -44,7 +44,8 @@ class Accuracy:
     ``yielding_element`` names that of cells that may yield; plain full integration locks there, it is meant
     for comparisons with codes that have it.
     ``fine_zone`` says where the finest cells lie: right under the contact, with larger ones around them, or
-    all over the zone in which cells may yield, which shows what the grading saves.
+    all over the zone in which cells may yield, which shows what the grading saves; or under the contact and
+    so flat that three rows lie in each hardened skin.
     ``unresolved`` says whether coefficients and shares of a contact that the mesh does not resolve are
     withheld (null, with the reason) or reported all the same.
     ``grid_shift`` is the place of a meshed barrier's grid along t, in cells at the contact.

@@ -8,7 +8,7 @@ from mesh_shapes import SHAPES, contact_zone
 
 import meshes
 from meshes.quality import scaled_jacobians
-from meshes.rows import DEEPEST, drawn_rows
+from meshes.rows import DEEPEST, WORST, drawn_rows
 from meshes.surface import closest_on
 
 CELL = 0.25e-3
@@ -45,6 +45,16 @@ def test_rows_halve_towards_the_skin_and_the_rest_is_stretched_evenly(block):
     rows = -np.diff(thin.points[line[: count + 1], 2]) / CELL
     assert rows[:2] == pytest.approx([0.25, 0.5])
     assert rows[2:] == pytest.approx((count - 0.75) / (count - 2))
+
+
+def test_many_rows_become_thin_over_so_many_cells_that_none_leans_too_far():
+    zone = meshes.Zone([0.0, 0.0, 0.0], np.eye(3), [-2e-3, -2e-3, -2.5e-3], [2e-3, 2e-3, 0.0])
+    block = meshes.block((-6e-3, 0.0, -4e-3), (6e-3, 6e-3, 0.0), 2e-3, [zone] * 3)
+    thin = meshes.with_thin_rows(block, block.finest, CELL, 5)
+    tops = thin.points[thin.points[:, 2] > -CELL]
+    first = -tops[(np.hypot(tops[:, 0], tops[:, 1]) < 1e-9) & (tops[:, 2] < 0.0), 2].max()
+    assert first == pytest.approx(CELL / 32)
+    assert WORST < scaled_jacobians(thin).min() < 0.9
 
 
 def test_only_nodes_inside_the_finest_cells_move(block):

@@ -61,7 +61,7 @@ MISTAKES = [
     ("accuracy.step", 1.0, ["accuracy.step", "at most 0.99"]),
     ("accuracy.element", "reduced", ["accuracy.element", '"full" or "bbar"']),
     ("accuracy.yielding_element", "incompatible", ["accuracy.yielding_element", '"bbar" or "full"']),
-    ("accuracy.fine_zone", "coarse", ["accuracy.fine_zone", '"graded" or "even"']),
+    ("accuracy.fine_zone", "coarse", ["accuracy.fine_zone", '"even" or "skin"']),
     ("barrier.boundary", "free", ["barrier.boundary", '"half-space" or "fixed"']),
     ("barrier.material.hardening", "-1 GPa", ["barrier.material.hardening", "at least 0"]),
     ("accuracy.element", ["full"], ["accuracy.element", "is not a choice"]),

@@ -6,8 +6,10 @@ import pytest
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.case import Case
 from fem_impact.case.effects.registry import EFFECTS
-from fem_impact.case.recorded import rows_within
+from fem_impact.case.record import expected_record
+from fem_impact.case.recorded import recorded_zones, rows_within, unresolved_skins
 from fem_impact.errors import SceneError
+from fem_impact.fem.geometry import to_barrier_frame
 from fem_impact.physics.hardening import Skin
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load, replace_all
@@ -115,6 +117,19 @@ def test_rows_of_the_plate_follow_the_layer():
         told = [one.text for one in case.limitations if "hardened layer of the barrier" in one.text]
         assert bool(told) == (within < 3), depth
     assert told[0].startswith("The hardened layer of the barrier, 0.02 mm, lies in 1.")
+
+
+def test_a_fine_zone_for_the_skin_has_three_rows_in_each_layer():
+    """Cells of 0.148 mm: 4 rows that halve have three in 0.11 mm, and the rod is fine for twice as many."""
+    for word, rows, told in (("graded", 3, 2), ("skin", 4, 0)):
+        sizes = {"accuracy.tip_size": "0.15 mm", "accuracy.fine_zone": word, "effects": WANTED}
+        case = Case(replace_all(skinned(), sizes))
+        bodies, turn = case.bodies, to_barrier_frame(case.bodies.mesh_inclination)
+        zones = recorded_zones(bodies, expected_record(bodies, 1.5e-4, 1.5e-4))
+        deep = zones.in_rod(bodies.lowest_point, turn)[-1].points @ turn[2]
+        assert (zones.rod_rows, zones.skin_rows) == (rows, rows)
+        assert len(unresolved_skins(case.slots, zones)) == told
+        assert np.ptp(deep) > 7 * zones.tip_size if word == "skin" else np.ptp(deep) < 4 * zones.tip_size
 
 
 CUBE = np.array([[0, 1, 2, 3, 4, 5, 6, 7]])  # VTK order: the face z = 0 below that of z = 1
