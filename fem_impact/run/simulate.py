@@ -1,21 +1,25 @@
 """Computation of a scene by any fidelity: `simulate` returns its Outcome and writes its files."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from fem_impact.case.case import Case
+from fem_impact.case.record import ContactRecord
 from fem_impact.errors import SceneError
-from fem_impact.files.run_directory import CHECKPOINT
+from fem_impact.files import run_directory
+from fem_impact.files.atomic import directory_lock, write_digests, write_text
 from fem_impact.options import RunOptions
+from fem_impact.outcome.limitation import texts
+from fem_impact.outcome.record import Outcome
+from fem_impact.run.program import stamp
+from fem_impact.run.tests import tests_of
 from fem_impact.scene.impact import FIRST
+from fem_impact.scene.types import Scene, to_toml
+from fem_impact.tables.history import CONTACTS
+from fem_impact.tables.table import Table
 
 if TYPE_CHECKING:
-    from fem_impact.case.case import Case
-    from fem_impact.case.record import ContactRecord
-    from fem_impact.outcome.record import Outcome
-    from fem_impact.scene.types import Scene
     from fem_impact.solid.run import SolidResult
 
 MOST = 12
@@ -64,9 +68,6 @@ def simulate_recorded(
     Beside the other files stands ``contact.npz``, which holds the record; see `Case.record` for what the mesh
     follows.
     """
-    from fem_impact.case.case import Case
-    from fem_impact.run.tests import tests_of
-
     if scene.accuracy.target is not None:
         remedy = "Give a mesh, or call fem_impact.answers.simulate.simulate, which chooses one."
         raise SceneError(
@@ -76,19 +77,16 @@ def simulate_recorded(
     tests_of(scene)  # own tests that cannot be read are refused before any work
     if options.out is None:
         return _compute(case, replace(options, resume=False))
-    from fem_impact.files.atomic import directory_lock
-    from fem_impact.files.run_directory import remove_drafts, remove_scene_alone
-
     out = options.out
     with directory_lock(out):
-        remove_drafts(out)
-        resume = case.fidelity == "solid" and options.resume and (out / CHECKPOINT).exists()
+        run_directory.remove_drafts(out)
+        resume = case.fidelity == "solid" and options.resume and (out / run_directory.CHECKPOINT).exists()
         if not resume:
             begin(case.scene, out)
         try:
             outcome, record = _compute(case, replace(options, resume=resume))
         except BaseException:
-            remove_scene_alone(out)
+            run_directory.remove_scene_alone(out)
             raise
         _write(outcome, record, out)
     return outcome, record
@@ -96,13 +94,9 @@ def simulate_recorded(
 
 def begin(scene: Scene, out: Path) -> None:
     """Move the files of an older run aside and write the scene; one that is of no run is not replaced."""
-    from fem_impact.files.atomic import write_text
-    from fem_impact.files.run_directory import refuse_other_scene, set_aside
-    from fem_impact.scene.types import to_toml
-
     path, text = out / "scene.toml", to_toml(scene)
-    if set_aside(out) is None:
-        refuse_other_scene(path, text)
+    if run_directory.set_aside(out) is None:
+        run_directory.refuse_other_scene(path, text)
     write_text(path, text)
 
 
@@ -123,8 +117,6 @@ def _compute(case: Case, options: RunOptions) -> tuple[Outcome, ContactRecord | 
         return _followed(case, reduce_modal(case, result)), None
     from threadpoolctl import threadpool_limits
 
-    from fem_impact.outcome.limitation import texts
-    from fem_impact.run.program import stamp
     from fem_impact.run.resolution import NOT_RESOLVED
     from fem_impact.run.solid import reduce
     from fem_impact.solid.run import solve
@@ -155,7 +147,7 @@ def _held_ready(case: Case) -> tuple[Case, float | None]:
 
 
 def _followed(
-    case: Case, outcome: Outcome, end: SolidResult | None = None, options: RunOptions = RunOptions()
+    case: Case, outcome: Outcome, end: "SolidResult | None" = None, options: RunOptions = RunOptions()
 ) -> Outcome:
     """Return an outcome with all strikes that its scene asks for, whose code is imported only then."""
     if case.scene.impact.until == FIRST:
@@ -166,18 +158,14 @@ def _followed(
 
 
 def _write(outcome: Outcome, record: ContactRecord | None, out: Path) -> None:
-    from fem_impact.files.atomic import write_digests, write_text
-    from fem_impact.files.run_directory import BESIDE, RECORD
-    from fem_impact.tables.history import CONTACTS
-    from fem_impact.tables.table import Table
-
     contacts, strikes = (outcome.to_dict()[name] for name in ("contacts", "strikes"))
     if contacts is not None:
         write_text(out / "contacts.csv", Table.of(CONTACTS, contacts).csv())
     if strikes:
         write_text(out / "strikes.csv", Table.of(tuple(strikes[0]), strikes).csv())
     if record is not None:
-        record.write(out / RECORD)
+        record.write(out / run_directory.RECORD)
     outcome.write(out / "outcome.json")
-    (out / CHECKPOINT).unlink(missing_ok=True)
-    write_digests(out, BESIDE)  # last: a run that goes on from its checkpoint still changes these files
+    (out / run_directory.CHECKPOINT).unlink(missing_ok=True)
+    # last: a run that goes on from its checkpoint still changes these files
+    write_digests(out, run_directory.BESIDE)

@@ -15,21 +15,10 @@ from fem_impact.answers.compare import MEASURED
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.answers.v_and_v import COVERAGE, Comparison
 from fem_impact.arrays import Array
+from fem_impact.evidence.studies import validated
 from fem_impact.evidence.studies.inputs import UNCERTAIN_INPUTS, one_mesh, sample_jobs
 from fem_impact.evidence.studies.report_parts import asked_sets, comparison_table, rests_on
 from fem_impact.evidence.studies.sets import set_job
-from fem_impact.evidence.studies.validated import (
-    MISS,
-    NAMES,
-    OUTPUTS,
-    SEED,
-    SHOWN,
-    VIBRATION,
-    ValidatedSet,
-    reach_sentences,
-    unit_sample,
-    validated_set,
-)
 from fem_impact.figures.panels import Look, Mark, Panel, Picture, Series
 from fem_impact.jobs.job import Job, JobResults
 from fem_impact.tables.table import Cell, Table
@@ -49,10 +38,10 @@ def conclude(request: Request, results: JobResults) -> StudyReport:
     return study_report(validated_sets(request, results))
 
 
-def validated_sets(request: Request, results: JobResults) -> list[ValidatedSet]:
+def validated_sets(request: Request, results: JobResults) -> list[validated.ValidatedSet]:
     """Return the requested sets, but those whose own run or sample failed."""
     sets = [
-        validated_set(
+        validated.validated_set(
             name,
             results[set_job(name, request.quick).name],
             [results[job.name] for job in _sample(name, request)],
@@ -64,26 +53,31 @@ def validated_sets(request: Request, results: JobResults) -> list[ValidatedSet]:
 
 def _sample(name: str, request: Request) -> list[Job]:
     """Return one job per row of the sample of a set, on one mesh."""
-    return sample_jobs(name, one_mesh(load(name)), unit_sample(QUICK_SIZE if request.quick else SIZE))
+    return sample_jobs(
+        name, one_mesh(load(name)), validated.unit_sample(QUICK_SIZE if request.quick else SIZE)
+    )
 
 
 AXES = {"e": "e", "mu": "mu", "Omega": "Omega, rad/s"}
-TITLES = {**dict(zip(NAMES, (q.name for q in MEASURED), strict=True)), "E_vib_over_E_0": "E_vib/E_0"}
+TITLES = {
+    **dict(zip(validated.NAMES, (q.name for q in MEASURED), strict=True)),
+    "E_vib_over_E_0": "E_vib/E_0",
+}
 SOBOL_POINTS = 1024
 TERMS = (len(UNCERTAIN_INPUTS) + 1) * (len(UNCERTAIN_INPUTS) + 2) // 2  # of a surface of second order
 
 
-def study_report(sets: Sequence[ValidatedSet]) -> StudyReport:
+def study_report(sets: Sequence[validated.ValidatedSet]) -> StudyReport:
     """Return the study of the validated sets."""
     compared = [c for study_set in sets for c in study_set.comparisons]
     sentences = _verdict_sentences(compared)
     takes = [_surface_sentence(sets)] if sets else []
-    takes += [sentence for study_set in sets for sentence in reach_sentences(study_set)]
+    takes += [sentence for study_set in sets for sentence in validated.reach_sentences(study_set)]
     return StudyReport(
         "validation",
         "Validation: error of the model, and how well it is known (ASME V&V 20)",
         [*sentences, *takes],
-        [_errors(compared), *(_distributions(sets, name) for name in SHOWN)] if sets else (),
+        [_errors(compared), *(_distributions(sets, name) for name in validated.SHOWN)] if sets else (),
         [
             Sheet(
                 "validation",
@@ -113,7 +107,7 @@ def _verdict_sentences(compared: Sequence[Comparison]) -> list[str]:
     shown = [c for c in compared if c.in_error]
     by_set = {c.set: sum(d.set == c.set for d in shown) for c in shown}
     where = ", ".join(f"{name} {count}" for name, count in by_set.items())
-    missed = sum(c.scatter.startswith(MISS) for c in compared)
+    missed = sum(c.scatter.startswith(validated.MISS) for c in compared)
     parts = {name: sum(getattr(c, name) == max(c.u_num, c.u_input, c.u_D) for c in compared) for name in U}
     limits = ", ".join(f"{U[name]} in {count}" for name, count in parts.items())
     wrong = f"; {len(shown)} do: {where}" if shown else ""
@@ -126,9 +120,9 @@ def _verdict_sentences(compared: Sequence[Comparison]) -> list[str]:
     ]
 
 
-def _surface_sentence(sets: Sequence[ValidatedSet]) -> str:
+def _surface_sentence(sets: Sequence[validated.ValidatedSet]) -> str:
     """Return how well the response surfaces give runs that they were not fitted to."""
-    at = [NAMES.index(name) for name in SHOWN]
+    at = [validated.NAMES.index(name) for name in validated.SHOWN]
     off = [
         100 * study_set.surface.error[i] / study_set.comparisons[i].u_input for study_set in sets for i in at
     ]
@@ -145,7 +139,7 @@ def _errors(compared: Sequence[Comparison]) -> Picture:
     """Return the error and its interval of every set, one panel a quantity."""
     sets = tuple(dict.fromkeys(c.set for c in compared))
     panels = []
-    for name in SHOWN:
+    for name in validated.SHOWN:
         rows = [c for c in compared if c.quantity == name]
         at = np.array([sets.index(c.set) for c in rows], dtype=float)
         widths = [COVERAGE * c.u_val for c in rows]
@@ -157,9 +151,9 @@ def _errors(compared: Sequence[Comparison]) -> Picture:
     return Picture("errors", caption, tuple(panels), 1)
 
 
-def _distributions(sets: Sequence[ValidatedSet], name: str) -> Picture:
+def _distributions(sets: Sequence[validated.ValidatedSet], name: str) -> Picture:
     """Return the distribution of a quantity in each set: model over all inputs, test to test, measured."""
-    at, panels = NAMES.index(name), []
+    at, panels = validated.NAMES.index(name), []
     for study_set in sets:
         model, tests = study_set.drawn(at)
         series = (
@@ -180,7 +174,7 @@ def _steps(label: str, values: Array, look: Look, colour: int) -> Series:
     return Series(label, ordered[every], rank[every], look, colour)
 
 
-def _cause_sheet(sets: Sequence[ValidatedSet]) -> Sheet:
+def _cause_sheet(sets: Sequence[validated.ValidatedSet]) -> Sheet:
     """Return the share of each input in the variance of each quantity: total Sobol indices."""
     rows: list[tuple[Cell, ...]] = []
     names = [i.name for i in UNCERTAIN_INPUTS]
@@ -189,13 +183,13 @@ def _cause_sheet(sets: Sequence[ValidatedSet]) -> Sheet:
             func=lambda unit, surface=study_set.surface: surface(unit.T).T,
             n=SOBOL_POINTS,
             dists=[uniform()] * len(names),
-            rng=np.random.default_rng(SEED),
+            rng=np.random.default_rng(validated.SEED),
         )
         indices = np.maximum(sample.total_order, 0.0)  # (outputs, inputs)
         rows += [
             (study_set.name, TITLES[output], *map(float, (error, *shares)))
-            for output, shares, error in zip(OUTPUTS, indices, study_set.surface.error, strict=True)
-            if output in (*SHOWN, VIBRATION)
+            for output, shares, error in zip(validated.OUTPUTS, indices, study_set.surface.error, strict=True)
+            if output in (*validated.SHOWN, validated.VIBRATION)
         ]
     caption = (
         "Share of each input in the variance of the results (total Sobol index of the response surface), and "
@@ -204,12 +198,12 @@ def _cause_sheet(sets: Sequence[ValidatedSet]) -> Sheet:
     return Sheet("causes", caption, Table.of(("set", "quantity", "surface_error", *names), rows))
 
 
-def _spread_sheet(sets: Sequence[ValidatedSet]) -> Sheet:
+def _spread_sheet(sets: Sequence[validated.ValidatedSet]) -> Sheet:
     """Return spreads by test-to-test inputs and by all, the measured one, and the area metric."""
     rows: list[tuple[Cell, ...]] = []
     for study_set in sets:
         measured = study_set.measured.recomputed()
-        for at, name in enumerate(OUTPUTS):
+        for at, name in enumerate(validated.OUTPUTS):
             (model, tests), seen = study_set.drawn(at), measured.get(name)
             moments = [float(f) for v in (tests, model) for f in (v.mean(), v.std(ddof=1))]
             tested: list[float | None] = [None, None, None]
@@ -224,11 +218,11 @@ def _spread_sheet(sets: Sequence[ValidatedSet]) -> Sheet:
     return Sheet("spread", caption, Table.of(head, rows))
 
 
-def _surface_sheet(sets: Sequence[ValidatedSet]) -> Sheet:
+def _surface_sheet(sets: Sequence[validated.ValidatedSet]) -> Sheet:
     """Return the response surfaces of e, mu and Omega, from which other constants can be judged."""
     rows: list[tuple[Cell, ...]] = []
     for study_set in sets:
-        for at in (NAMES.index(name) for name in SHOWN):
+        for at in (validated.NAMES.index(name) for name in validated.SHOWN):
             c, coefficients = study_set.comparisons[at], study_set.surface.coefficients[:, at]
             known = (c.D, c.u_num, c.u_D, study_set.surface.error[at], study_set.shift[at])
             second = np.zeros(TERMS - len(coefficients))  # of a surface of first order
