@@ -43,7 +43,18 @@ def numbers_of(
     """
     keys = [f.key for f in wanted]
     check_keys(table, [*others, *keys, *(f.si_key for f in wanted if f.si_key)], shown=[*others, *keys])
-    return {f.key: _number(table, f, (instead or {}).get(f.key, f.default)) for f in wanted}
+    defaults = {f.key: (instead or {}).get(f.key, f.default) for f in wanted}
+    lacking = [
+        f for f in wanted if not {f.key, f.si_key} & {*table} and defaults[f.key] is None and not f.derived
+    ]
+    if lacking:
+        first, *more = lacking
+        so_are = f", and so {'is' if len(more) == 1 else 'are'} " if more else ""
+        told = f"the {first.meaning}{so_are}{', '.join(f'{f.key} ({f.meaning})' for f in more)}"
+        how = "with its unit" if first.dimension else "as a bare number"
+        remedy = f"Give it {how}; `fem-impact scenes` lists complete scenes."
+        raise SceneError(f"is missing: {told}.", key=first.key, remedy=remedy)
+    return {f.key: _number(table, f, defaults[f.key]) for f in wanted}
 
 
 def values_of(
@@ -61,10 +72,6 @@ def _number(table: Table, field: Parameter, default: Any) -> Any:
                 f"is given twice, here and as {field.si_key}.", key=field.key, remedy="Keep one."
             )
         return parse_number(table[field.si_key], field.si_key)
-    if field.key not in table and default is None and not field.derived:
-        how = "with its unit" if field.dimension else "as a bare number"
-        remedy = f"Give it {how}; `fem-impact scenes` lists complete scenes."
-        raise SceneError(f"is missing: the {field.meaning}.", key=field.key, remedy=remedy)
     if field.key not in table:
         return default
     value = table[field.key]
