@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from study_fakes import outcome
 
-from fem_impact.answers.compare import MEASURED, UNSEEN, compare, verdict
+from fem_impact.answers.compare import MEASURED, UNSEEN, compare, told, verdict
 from fem_impact.scene.types import MEASURED_SETS
 from rigid.experiments import Statistic, measured_set
 
@@ -60,3 +60,9 @@ def test_limits_and_bands_reach_the_rows():
     found = {r["quantity"]: (r["model"], r["band"]) for r in compare(record)}
     assert found["e"] == (0.32, 0.07)
     assert found["mu"] == (0.5, None)
+
+
+def test_a_share_of_the_energy_is_told_within_0_and_1():
+    row = {"model": 0.05, "band": 0.2}
+    assert told(row | {"quantity": "E_r/E_0"}) == "0.05 (0.00 to 0.25)"
+    assert told(row | {"quantity": "E_ln/E_0"}) == "0.05 +- 0.20"

@@ -11,6 +11,7 @@ from fem_impact.scene.material import Material
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load, replace, replace_all
 
+OWN_STEEL = {"name": "own steel", "E": "210 GPa", "nu": 0.3, "rho": "7800 kg/m3"}
 CONCRETE = {"name": "C30/37 concrete", "E": "33 GPa", "nu": 0.2, "rho": "2400 kg/m3"}
 
 
@@ -119,3 +120,21 @@ def test_each_law_has_its_words(changes, words):
 def test_only_the_first_segment_flows():
     told = laws(Case(load("heavy-tail")).bodies)
     assert told["projectile.segments[2].material"].endswith("only the first segment may yield")
+
+
+def test_the_pressure_on_a_brittle_barrier_is_told_beside_its_strength():
+    def told(**material):
+        bodies = Case(read_dict(drop(CONCRETE | material, effects=["auto", "barrier-elastic"]))).bodies
+        return bodies.estimate.pressure / 1e6, " ".join(unknowns(bodies))
+
+    pressure, text = told()
+    assert f"presses it with {pressure:.4g} MPa in the mean: state its strength in compression" in text
+    pressure, text = told(strength="50 MPa")
+    assert f", {pressure / 50:.2g} times its strength in compression, 50 MPa: it breaks there" in text
+    pressure, text = told(strength="10 GPa", family="glass")
+    assert f"at the edge with some {0.3 * pressure:.4g} MPa" in text and "it holds by this estimate" in text
+
+
+def test_a_note_calls_the_body_what_it_is():
+    texts = [one.text for one in Case(read_dict(drop("s235", rod=OWN_STEEL))).limitations]
+    assert any(text.startswith("The ball (own steel) has no yield stress") for text in texts)

@@ -314,8 +314,12 @@ def test_a_material_of_ones_own_without_a_constant_is_told_which(key, words):
     }
     del metal[key]
     data = to_dict(load("quick")) | {"projectile": {**ROD, "material": metal}}
-    with pytest.raises(SceneError, match=rf"projectile\.material\.{key}: is missing: the {words}.*Give it"):
-        read_dict({k: v for k, v in data.items() if k != "measured"})
+    data.pop("measured", None)
+    with pytest.raises(SceneError, match=rf"projectile\.material\.{key}: is missing: the {words}\..*Give it"):
+        read_dict(data)
+    data["projectile"]["material"] = {"name": "mine"}
+    with pytest.raises(SceneError, match=r"\.E: .*, and so are nu \(Poisson's ratio\), rho \(density\)\."):
+        read_dict(data)
 
 
 @pytest.mark.parametrize(
