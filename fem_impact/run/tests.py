@@ -15,15 +15,7 @@ from fem_impact.outcome.keys import Num, Unknown
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.scene.own_tests import Camera, Mean, holds_means, read_camera, read_means
 from fem_impact.scene.types import OWN, Scene
-from rigid import Arms, kinetic_energy
-from rigid.experiments import (
-    Statistic,
-    covariance_of_means,
-    derived_columns,
-    measured_set,
-    of_mean,
-    statistic,
-)
+from rigid import Arms, experiments, kinetic_energy
 
 COVERAGE = 2.0  # standard uncertainties from the mean of one test to the ends of its interval
 
@@ -35,7 +27,7 @@ class MeasuredTests(Protocol):
     def arms(self) -> Arms:
         """Arms with which e was worked out, m."""
 
-    def statistics(self) -> dict[str, Statistic]:
+    def statistics(self) -> dict[str, experiments.Statistic]:
         """Return the statistics by quantity, SI."""
 
     def covariance(self, names: Sequence[str]) -> Array:
@@ -86,7 +78,7 @@ class MeanTests:
     arms: Arms
     means: Mapping[str, Mean]
 
-    def statistics(self) -> dict[str, Statistic]:
+    def statistics(self) -> dict[str, experiments.Statistic]:
         """Return mean, standard deviation and 95 % interval of the mean for each stated quantity."""
         return {name: _statistic(mean) for name, mean in self.means.items()}
 
@@ -100,11 +92,11 @@ class MeanTests:
         return np.asarray(r * np.outer(u, u))
 
 
-def _statistic(mean: Mean) -> Statistic:
+def _statistic(mean: Mean) -> experiments.Statistic:
     if mean.n == 1:
         half = COVERAGE * mean.systematic
-        return Statistic(mean.mean, 0.0, mean.mean - half, mean.mean + half, 1, mean.systematic)
-    return replace(of_mean(mean.mean, mean.sd, mean.n), systematic=mean.systematic)
+        return experiments.Statistic(mean.mean, 0.0, mean.mean - half, mean.mean + half, 1, mean.systematic)
+    return replace(experiments.of_mean(mean.mean, mean.sd, mean.n), systematic=mean.systematic)
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,17 +108,17 @@ class SingleTests:
     k2: float
     mass: float
 
-    def statistics(self) -> dict[str, Statistic]:
+    def statistics(self) -> dict[str, experiments.Statistic]:
         """Return mean, standard deviation and 95 % interval of the mean, of what follows from them too."""
-        return {name: statistic(values) for name, values in self._columns().items()}
+        return {name: experiments.statistic(values) for name, values in self._columns().items()}
 
     def covariance(self, names: Sequence[str]) -> Array:
         """Return the covariance (k, k) of means, from how they vary together between tests."""
-        return covariance_of_means(self._columns(), names)
+        return experiments.covariance_of_means(self._columns(), names)
 
     def _columns(self) -> dict[str, Array]:
         """Return each quantity of all tests, those that follow from the velocities too."""
-        derived = derived_columns(self.motion, **self.arms._asdict(), k2=self.k2, mass=self.mass)
+        derived = experiments.derived_columns(self.motion, **self.arms._asdict(), k2=self.k2, mass=self.mass)
         return {**self.motion, **derived}
 
 
@@ -144,13 +136,13 @@ def tests_of(scene: Scene) -> MeasuredTests | None:
     if scene.measured is None:
         return None
     if not scene.measured.endswith(OWN):
-        return measured_set(scene.measured)
+        return experiments.measured_set(scene.measured)
     return _own(scene, Path(scene.measured).stat().st_mtime_ns)
 
 
 def count(tests: MeasuredTests) -> int:
     """Return the number of tests, the largest of all quantities."""
-    return max(statistic.n for statistic in tests.statistics().values())
+    return max(one.n for one in tests.statistics().values())
 
 
 FAR = 0.2

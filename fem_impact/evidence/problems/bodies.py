@@ -13,8 +13,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from fem_impact.arrays import Array, Bools
-from fem_impact.fem.body import MeshedBody as Meshed
-from fem_impact.fem.body import assemble_masses, invert, make_body, nose_and_whole, slices_of
+from fem_impact.fem.body import MeshedBody, assemble_masses, invert, make_body, nose_and_whole, slices_of
 from fem_impact.fem.eigen import MassStiffness
 from fem_impact.fem.geometry import Geometry
 from fem_impact.fem.hexmodes import dummy_element
@@ -160,7 +159,7 @@ def body_model(body: FreeBody) -> Model:
 
 
 def _linear(
-    body: FreeBody, part: Meshed, layout: DofLayout, mass: Array, x: Array, drawn: MassPoints
+    body: FreeBody, part: MeshedBody, layout: DofLayout, mass: Array, x: Array, drawn: MassPoints
 ) -> tuple[ElasticRod, MassStiffness]:
     """Return the linear part, slices by stencil where there are any, the rest by rows; and the stiffness."""
     n, free = layout.rod_size, layout.rod[~part.mesh.is_hanging]
@@ -172,7 +171,7 @@ def _linear(
 
 
 def _contact(
-    body: FreeBody, parts: list[Meshed], inverse: Array, x: Array
+    body: FreeBody, parts: list[MeshedBody], inverse: Array, x: Array
 ) -> PlaneContact | SurfaceContact | None:
     if body.friction is None:
         return None
