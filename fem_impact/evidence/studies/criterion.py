@@ -13,22 +13,10 @@ from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.answers.verdict.effect import solid_effect
 from fem_impact.arrays import Array
 from fem_impact.evidence.studies import criterion_findings as findings
+from fem_impact.evidence.studies import rods as dropped
 from fem_impact.evidence.studies.report_parts import rests_on
 from fem_impact.evidence.studies.rod_theory import blind_ratio, spring_bounce, static_restitution, whole_ratio
-from fem_impact.evidence.studies.rods import (
-    BODY,
-    PAPER_RODS,
-    STATES,
-    TIP,
-    DroppedRod,
-    RodRun,
-    among,
-    as_table,
-    contacts,
-    length_of,
-    longest_first,
-    run_table,
-)
+from fem_impact.evidence.studies.rods import DroppedRod, RodRun
 from fem_impact.figures.panels import Mark, Panel, Picture, Series
 from fem_impact.jobs.job import Failure, Job
 from fem_impact.tables.table import Table
@@ -47,7 +35,7 @@ SURFACES, QUICK_SURFACES = ("contaminated", "machined"), ("machined",)
 END_GAMMAS, QUICK_END_GAMMAS = (10.0, 45.0), (14.0,)  # of elastic rods that confirm the modal fidelity
 
 MODAL = {
-    findings.HERTZ[0]: DroppedRod(0.1, tip_radius=TIP),
+    findings.HERTZ[0]: DroppedRod(0.1, tip_radius=dropped.TIP),
     findings.HERTZ[1]: DroppedRod(0.1),
     findings.YIELDING: DroppedRod(0.1, yields=True),
 }
@@ -74,7 +62,10 @@ def rods_over_angles(rod: DroppedRod, quick: bool) -> list[DroppedRod]:
         replace(rod, length=length, diameter=d, angle=angle)
         for d in (QUICK_DIAMETERS if quick else DIAMETERS)
         for length in sorted(
-            [*(length_of(g, d) for g in gammas), *(PAPER_RODS.values() if d == BODY else ())]
+            [
+                *(dropped.length_of(g, d) for g in gammas),
+                *(dropped.PAPER_RODS.values() if d == dropped.BODY else ()),
+            ]
         )
         for angle in angles
     ]
@@ -85,7 +76,9 @@ def families(quick: bool) -> dict[str, list[RodRun]]:
     frictions = FRICTIONS[::5] if quick else FRICTIONS
     return {
         **{name: [RodRun(r) for r in rods_over_angles(rod, quick)] for name, rod in MODAL.items()},
-        BLIND: [RodRun(DroppedRod(l, friction=float(f))) for l in PAPER_RODS.values() for f in frictions],
+        BLIND: [
+            RodRun(DroppedRod(l, friction=float(f))) for l in dropped.PAPER_RODS.values() for f in frictions
+        ],
     }
 
 
@@ -94,11 +87,13 @@ def solid_rods(quick: bool) -> dict[str, list[DroppedRod]]:
     gammas, angles = (QUICK_SOLID_GAMMAS, QUICK_SOLID_ANGLES) if quick else (SOLID_GAMMAS, SOLID_ANGLES)
     yielding = {
         f"yielding, {state}": [
-            DroppedRod(length_of(gamma), angle, STATES[state], True) for gamma in gammas for angle in angles
+            DroppedRod(dropped.length_of(gamma), angle, dropped.STATES[state], True)
+            for gamma in gammas
+            for angle in angles
         ]
         for state in (QUICK_SURFACES if quick else SURFACES)
     }
-    ends = [DroppedRod(length_of(gamma)) for gamma in (QUICK_END_GAMMAS if quick else END_GAMMAS)]
+    ends = [DroppedRod(dropped.length_of(gamma)) for gamma in (QUICK_END_GAMMAS if quick else END_GAMMAS)]
     return {**yielding, ENDS: ends}
 
 
@@ -112,7 +107,7 @@ def plan(request: Request, results: Results) -> list[Job | LevelsJob]:
     runs_of = families(request.quick)
     twins = [run.twin for name, runs in runs_of.items() if name != BLIND for run in runs]
     solid = [levels_job(rod) for rods in solid_rods(request.quick).values() for rod in rods]
-    modal = longest_first([*(run for runs in runs_of.values() for run in runs), *twins])
+    modal = dropped.longest_first([*(run for runs in runs_of.values() for run in runs), *twins])
     return [*sorted(solid, key=lambda job: job.planned_s, reverse=True), *modal]
 
 
@@ -139,7 +134,7 @@ def solid_rows(rods: Mapping[str, Sequence[DroppedRod]], results: Results) -> li
     for contact, rod in ((contact, rod) for contact, of in rods.items() for rod in of):
         levels = results.get(levels_job(rod).name)
         effect = solid_effect(levels.meshes) if isinstance(levels, Levels) else None
-        if effect is not None and (touches := contacts(effect.stiff)):
+        if effect is not None and (touches := dropped.contacts(effect.stiff)):
             e = known(effect.free.restitution.edge.e)
             rows.append(_angle(contact, rod, e, e - effect.value, touches[0].duration, effect.band))
     return rows
@@ -184,7 +179,7 @@ def rods_of(angles: DataFrame) -> DataFrame:
 def conclude(request: Request, results: Results) -> StudyReport:
     """Return the study: error of rigid theory per rod, where it passes `LEVELS`, and its governing group."""
     outcomes = {name: run for name, run in results.items() if not isinstance(run, Levels)}
-    table, solid = run_table(families(request.quick), outcomes), solid_rods(request.quick)
+    table, solid = dropped.run_table(families(request.quick), outcomes), solid_rods(request.quick)
     blind = table[table.family == BLIND]
     on_spring = [
         {**rod.inputs, "contact": SPRING, "rod": rod, **spring_bounce(rod)}
@@ -193,13 +188,13 @@ def conclude(request: Request, results: Results) -> StudyReport:
     by_modes = angle_rows(table[table.family != BLIND])
     every = DataFrame([*by_modes, *on_spring, *solid_rows(solid, results)])
     angles, ends = every[every.contact != ENDS], every[every.contact == ENDS]
-    upright = among(angles, contact=findings.YIELDING, diameter_m=BODY)
+    upright = dropped.among(angles, contact=findings.YIELDING, diameter_m=dropped.BODY)
     upright = upright[upright.angle_deg <= findings.STEEPEST]
     upright = upright.assign(
         e_static_give=[static_restitution(rod) for rod in upright.rod], e_vibrating=upright.e
     )
     rods = rods_of(angles)
-    body = rods[rods.diameter_m == BODY]
+    body = rods[rods.diameter_m == dropped.BODY]
     yielding = [name for name in solid if name != ENDS]
     sentences = findings.by_picture(angles, ends, rods, yielding, upright, blind)
     return StudyReport(
@@ -215,9 +210,9 @@ def conclude(request: Request, results: Results) -> StudyReport:
         ],
         [
             Sheet("levels", LEVEL_CAPTION, level_table(rods)),
-            Sheet("rods", "Rods of 19 mm", as_table(body[RODS_CSV])),
-            Sheet("static_give", GIVE_CAPTION, as_table(upright[GIVE_CSV]), shown=False),
-            Sheet("curves", "Every rod and angle", as_table(angles[ANGLES_CSV]), shown=False),
+            Sheet("rods", "Rods of 19 mm", dropped.as_table(body[RODS_CSV])),
+            Sheet("static_give", GIVE_CAPTION, dropped.as_table(upright[GIVE_CSV]), shown=False),
+            Sheet("curves", "Every rod and angle", dropped.as_table(angles[ANGLES_CSV]), shown=False),
         ],
         [*rests_on("dropped rods"), *rests_on("criterion")],
         ["modal", "thornton", "slenderness"],
@@ -235,7 +230,7 @@ def level_table(rods: DataFrame) -> Table:
             for level in findings.LEVELS:
                 onsets = [
                     findings.crossing(diameters[d], level, measure) if d else None
-                    for d in (thinnest, BODY, thickest)
+                    for d in (thinnest, dropped.BODY, thickest)
                 ]
                 rows.append([contact, title, level, *onsets, findings.exponent(of_contact, level, measure)])
     head = ("contact", "measure", "level", "gamma_thinnest", "gamma_19_mm", "gamma_thickest", "exponent")
@@ -268,7 +263,7 @@ def angles_picture(angles: DataFrame) -> Picture:
     """Return e against inclination, one panel per family with up to six of its 19 mm rods."""
     panels = []
     colours: dict[str, int] = {}
-    for name, of_contact in angles[angles.diameter_m == BODY].groupby("contact", sort=False):
+    for name, of_contact in angles[angles.diameter_m == dropped.BODY].groupby("contact", sort=False):
         rods = [rod for _, rod in of_contact.groupby("gamma")]
         series = []
         for at in np.unique(np.linspace(0, len(rods) - 1, 6).astype(int)):
@@ -318,7 +313,7 @@ def master_picture(rods: DataFrame) -> Picture:
 def blind_direction_picture(blind: DataFrame) -> Picture:
     """Return vibration against friction of the paper's rods, with mu* of each."""
     series, marks = [], []
-    for at, (rod, length) in enumerate(PAPER_RODS.items()):
+    for at, (rod, length) in enumerate(dropped.PAPER_RODS.items()):
         f, share = findings.over_friction(blind, length)
         series.append(Series(rod, f, 100 * share, "joined", at))
         marks.append(Mark(blind_ratio(DroppedRod(length)), f"mu* of {rod}"))
