@@ -69,7 +69,7 @@ def _breaking(metal: materials.Material, pressure: float) -> str:
     told = f" The contact, estimated, presses it with {_MPa(pressure)} in the mean{edge}"
     mode = "tension" if of_edge else "compression"
     if metal.strength is None:
-        return f"{told}: state its strength in {mode}, which is told beside that."
+        return f"{told}. State its strength in {mode} to see how far that is beyond it."
     ratio = stress / metal.strength
     means = "it breaks there, and the forces told are too high" if ratio > 1 else "it holds by this estimate"
     return f"{told}, {ratio:.2g} times its strength in {mode}, {_MPa(metal.strength)}: {means}."

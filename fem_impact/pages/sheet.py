@@ -71,6 +71,8 @@ def write_sheet(folder: Path, document: str = "", revision: str = "") -> Path:
     criterion, lines = _verdict(folder, case)
     spread = friction_spread(scene, origin.fidelity)
     named, listed = scene.projectile.named, [(label, KEY_TABLE[name], unit) for label, name, unit in NUMBERS]
+    if "barrier-elastoplastic" not in origin.effects:  # a barrier that cannot yield has no dent to tell
+        listed = [one for one in listed if one[1].name != "dent_depth_m"]
     listed += [(named(f"{share.label}, of E_0"), share.key, "%") for share in shares("report")]
     rows = [
         (
@@ -83,7 +85,8 @@ def write_sheet(folder: Path, document: str = "", revision: str = "") -> Path:
         if not isinstance(key.of(outcome), Unknown)
     ]
     asked = {label: key.of(outcome) for label, key, _ in listed if key.path[-1] not in IF_ON}
-    numbers = Table.of(("quantity", "value", "unit", "what f changes"), rows, left=(0, 2, 3))
+    head = ("quantity", "value", "unit", "what f changes")[: 4 if spread.said else 3]
+    numbers = Table.of(head, [row[: len(head)] for row in rows], left=(0, 2, 3))
     limits = outcome.validity.limitations
     others = (kind for kind in HEAVIEST_FIRST if kind not in WRONG_NUMBERS)
     uncovered = [sentence for kind in others for sentence in texts(limits, kind)]

@@ -22,7 +22,8 @@ def inputs(scene: Scene) -> Table:
     """
     tables, surface = to_dict(scene), scene.surface
     rows = [row for name in ("projectile", "barrier", "impact") for row in _rows(name, tables[name])]
-    friction = f"{surface.friction:g} ({surface.friction_low:g} to {surface.friction_high:g})"
+    low, high = surface.friction_low, surface.friction_high
+    friction = f"{surface.friction:g} ({low:g} to {high:g})" if low < high else f"{surface.friction:g}"
     rows.append(("surface.friction", friction, surface.source))
     if law := surface.sliding_law:
         ends = f"times {law.factor[0]:g} at rest, times {law.factor[-1]:g} at {law.speed[-1]:g} m/s and more"

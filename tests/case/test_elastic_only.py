@@ -128,7 +128,7 @@ def test_the_pressure_on_a_brittle_barrier_is_told_beside_its_strength():
         return bodies.estimate.pressure / 1e6, " ".join(unknowns(bodies))
 
     pressure, text = told()
-    assert f"presses it with {pressure:.4g} MPa in the mean: state its strength in compression" in text
+    assert f"presses it with {pressure:.4g} MPa in the mean. State its strength in compression" in text
     pressure, text = told(strength="50 MPa")
     assert f", {pressure / 50:.2g} times its strength in compression, 50 MPa: it breaks there" in text
     pressure, text = told(strength="10 GPa", family="glass")

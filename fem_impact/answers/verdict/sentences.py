@@ -19,7 +19,7 @@ from fem_impact.scene.impact import FIRST
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.shapes import NamedShape
 from fem_impact.scene.types import Scene, digest, to_dict
-from fem_impact.tables.text import with_band, wrapped
+from fem_impact.tables.text import plain, with_band, wrapped
 
 SCHEMA = "fem-impact/verdict/2"
 LEAST_SHARE = 0.005
@@ -90,18 +90,18 @@ def _vibration(v: Verdict) -> str:
     if or_none(here.free.energy.below_floor):
         return f"{share}, which is below the numerical floor of the model"
     least, most = here.E_vib - here.E_vib_band, here.E_vib + here.E_vib_band
-    range_ = f"0 to {100 * most:.2g} %" if least < 0 else f"± {half} %"
+    range_ = f"0 to {plain(min(100 * most, 100.0), 2)} %" if least < 0 else f"± {half} %"
     return f"{share} ({range_}: error of {here.model})"
 
 
 def _rest(v: Verdict) -> str:
-    here, plate = v.here, v.scene.barrier.bends
+    here, plate, named = v.here, v.scene.barrier.bends, v.scene.projectile.named
     energy = here.free.energy
-    named = [(share, or_none(share.of(energy)) or 0.0) for share in SHARES if share.label != "vibration"]
+    parts = [(share, or_none(share.of(energy)) or 0.0) for share in SHARES if share.label != "vibration"]
     listed = [
-        f"{share.label.replace('barrier', 'plate') if plate else share.label} "
+        f"{named(share.label.replace('barrier', 'plate') if plate else share.label)} "
         f"{_percent(here, share.key.path[-1], part)}"
-        for share, part in named
+        for share, part in parts
         if part > LEAST_SHARE
     ]
     kind = f"± error of {here.model}" if here.errors else f"by {here.model}"
@@ -141,7 +141,7 @@ def basis(v: Verdict) -> tuple[Line, ...]:
         ("case", case_sentence(v.scene)),
         ("T1/tau and gamma", f"{v.screening.sentence}."),
         ("with vibration", _motion(free)),
-        ("the same scene with a rod that cannot vibrate", _motion(stiff)),
+        (v.scene.projectile.named("the same scene with a rod that cannot vibrate"), _motion(stiff)),
         *((f"step {number}", f"{step}.") for number, step in enumerate(v.steps, 1)),
         ("fidelity", f"{v.fidelity}. {v.here.source}"),
         ("heat of the contact", _heat(free)),
