@@ -50,7 +50,7 @@ def test_a_layer_that_follows_from_a_hardness_has_it(of, HV, shape):
     ],
 )
 def test_a_layer_makes_the_number_higher_as_in_the_elements(stiffness, exponent, skin, harder):
-    """Pressed by `evidence.references.cone`, friction 0.1, at cells of no size; depths over the radius."""
+    """Pressed by `references.axisymmetric`, friction 0.1, at cells of no size; depths over the radius."""
     law = Hardening(1e6, stiffness, exponent)
     assert 1 + (skin.factor - 1) * share(law, skin, 1.0) == pytest.approx(harder, rel=0.025)
 
