@@ -209,9 +209,7 @@ class Energy:
         "W_skin_over_E_0",
         "Friction work, and plastic work of projectile and barrier down to 0.1 mm below their surfaces",
     )
-    skin_rod: Num = share(
-        "W_skin_rod_over_E_0", "Plastic work of the projectile down to 0.1 mm below its surface"
-    )
+    skin_rod: Num = share("W_skin_rod_over_E_0", "Plastic work of the projectile down to 0.1 mm deep")
     skin_barrier: Num = share(
         "W_skin_barrier_over_E_0", "Plastic work of the barrier down to 0.1 mm below its surface"
     )
@@ -324,12 +322,9 @@ class Contact:
     strikes_again: bool | Unknown = key(
         "strikes_again",
         "",
-        "True when the mass centre still comes down after the last separation: the projectile strikes once "
-        "more.",
+        "True when the mass centre still comes down after the last separation: it strikes once more.",
     )
-    peak_force: Num = key(
-        "peak_force_N", "N", "Largest normal force on the projectile, mean over 2 us.", True
-    )
+    peak_force: Num = key("peak_force_N", "N", "Largest normal force, mean over 2 us.", True)
     readings: Readings
     markers: Markers
 

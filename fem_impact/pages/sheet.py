@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from fem_impact.answers.friction_spread import friction_spread
+from fem_impact.answers.friction_spread import FrictionSpread, friction_spread
 from fem_impact.answers.verdict.screening import screening
 from fem_impact.answers.verdict.sentences import Line, never_covered, screening_lines
 from fem_impact.case.case import Case
@@ -20,7 +20,7 @@ from fem_impact.pages.drawing import draw_projectile
 from fem_impact.pages.run_page import verdict_box
 from fem_impact.scene.inputs import inputs
 from fem_impact.scene.read import read_toml
-from fem_impact.scene.types import digest
+from fem_impact.scene.types import Scene, digest
 from fem_impact.tables.table import Table
 from fem_impact.tables.text import plain
 
@@ -70,23 +70,7 @@ def write_sheet(folder: Path, document: str = "", revision: str = "") -> Path:
     draw_projectile(case, drawing, NARROW)
     criterion, lines = _verdict(folder, case)
     spread = friction_spread(scene, origin.fidelity)
-    named, listed = scene.projectile.named, [(label, KEY_TABLE[name], unit) for label, name, unit in NUMBERS]
-    if "barrier-elastoplastic" not in origin.effects:  # a barrier that cannot yield has no dent to tell
-        listed = [one for one in listed if one[1].name != "dent_depth_m"]
-    listed += [(named(f"{share.label}, of E_0"), share.key, "%") for share in shares("report")]
-    rows = [
-        (
-            label,
-            html.signed(outcome.told(key, _scale(unit))),
-            unit,
-            html.signed(spread.told(key, _scale(unit))),
-        )
-        for label, key, unit in listed
-        if not isinstance(key.of(outcome), Unknown)
-    ]
-    asked = {label: key.of(outcome) for label, key, _ in listed if key.path[-1] not in IF_ON}
-    head = ("quantity", "value", "unit", "what f changes")[: 4 if spread.said else 3]
-    numbers = Table.of(head, [row[: len(head)] for row in rows], left=(0, 2, 3))
+    numbers, unknown = _numbers(outcome, scene, spread)
     limits = outcome.validity.limitations
     others = (kind for kind in HEAVIEST_FIRST if kind not in WRONG_NUMBERS)
     uncovered = [sentence for kind in others for sentence in texts(limits, kind)]
@@ -107,7 +91,7 @@ def write_sheet(folder: Path, document: str = "", revision: str = "") -> Path:
             html.table(numbers, compact=True),
             html.paragraph(spread.said.replace("At the right", "Last column"), "note"),
             _dent(outcome),
-            html.bullets(why_unknown(asked)),
+            html.bullets(unknown),
         ),
         html.section("Inputs and their sources", html.table(inputs(scene), compact=False)),
         html.section("Not covered", html.bullets((*never_covered(scene), *uncovered))),
@@ -123,6 +107,29 @@ def write_sheet(folder: Path, document: str = "", revision: str = "") -> Path:
     inner = html.Markup(f'<div class="sheet">\n{html.join(body).text}\n</div>')
     kind = f"Impact · {origin.scene_id}"
     return write_text(folder / SHEET, html.page(origin.scene_title, kind, lead, footer, [inner]))
+
+
+def _numbers(outcome: Outcome, scene: Scene, spread: FrictionSpread) -> tuple[Table, list[str]]:
+    """Return the numbers with their errors, and why others are not known."""
+    named, listed = scene.projectile.named, [(label, KEY_TABLE[name], unit) for label, name, unit in NUMBERS]
+    if (
+        "barrier-elastoplastic" not in outcome.provenance.effects
+    ):  # a barrier that cannot yield has no dent to tell
+        listed = [one for one in listed if one[1].name != "dent_depth_m"]
+    listed += [(named(f"{share.label}, of E_0"), share.key, "%") for share in shares("report")]
+    rows = [
+        (
+            label,
+            html.signed(outcome.told(key, _scale(unit))),
+            unit,
+            html.signed(spread.told(key, _scale(unit))),
+        )
+        for label, key, unit in listed
+        if not isinstance(key.of(outcome), Unknown)
+    ]
+    asked = {label: key.of(outcome) for label, key, _ in listed if key.path[-1] not in IF_ON}
+    head = ("quantity", "value", "unit", "what f changes")[: 4 if spread.said else 3]
+    return Table.of(head, [row[: len(head)] for row in rows], left=(0, 2, 3)), why_unknown(asked)
 
 
 def _verdict(folder: Path, case: Case) -> tuple[str, Sequence[Line]]:

@@ -178,8 +178,6 @@ def judge(
                 low = [one.high - known[at].value for at, one in solids.items() if at in known]
                 kept = worst in known and known[worst].value + max(low) <= limit and not why
                 answer, notes = ("yes", [*notes, CONFIRMED]) if kept else ("undecided", notes)
-    if by == "the reduced model" and bound is not None and not bound.alike:
-        notes.append(UNLIKE)
     if bound is None and not steps:
         raise RunError(" ".join([*notes, why]))
     return LimitVerdict(
@@ -313,6 +311,7 @@ def document(v: LimitVerdict, command: str) -> dict[str, Any]:
     if v.least is not None and over:
         box.append([f"Of {v.places} places of the reduced model", f"the least has {_in_unit(of, v.least)}."])
     lacking = [f"The reduced model does not answer everywhere: {v.not_known}"] if v.not_known else []
+    lacking += [UNLIKE] if v.by == "the reduced model" and bound is not None and not bound.alike else []
     return {
         "scene_digest": digest(v.scene),
         "versions": installed_versions(),
