@@ -112,9 +112,7 @@ def write_sheet(folder: Path, document: str = "", revision: str = "") -> Path:
 def _numbers(outcome: Outcome, scene: Scene, spread: FrictionSpread) -> tuple[Table, list[str]]:
     """Return the numbers with their errors, and why others are not known."""
     named, listed = scene.projectile.named, [(label, KEY_TABLE[name], unit) for label, name, unit in NUMBERS]
-    if (
-        "barrier-elastoplastic" not in outcome.provenance.effects
-    ):  # a barrier that cannot yield has no dent to tell
+    if "barrier-elastoplastic" not in outcome.provenance.effects:  # then no dent stays
         listed = [one for one in listed if one[1].name != "dent_depth_m"]
     listed += [(named(f"{share.label}, of E_0"), share.key, "%") for share in shares("report")]
     rows = [
