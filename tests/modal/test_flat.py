@@ -103,6 +103,12 @@ def test_what_lands_nearly_flat_closes_its_books_and_is_its_mirror_image(angle, 
     )
 
 
+def test_the_cells_under_a_round_edge_of_a_leaning_face_begin_free_of_force():
+    """On a line through both ends of the face those beyond would begin pressed in: 1.1e-5 of E_0."""
+    _, found = land(0.1, v_n=-3.0)
+    assert found.laid and abs(found.residual) < 1e-6 * found.E_0
+
+
 def test_a_fast_face_yields_as_a_column():
     """At 40 m/s on a plate that bears three times its flow stress, Tabor's: the rod yields all over first."""
     case, found = land(0, PLAIN, v_n=-40.0)

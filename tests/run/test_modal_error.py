@@ -145,23 +145,9 @@ def test_a_ball_that_touches_with_its_pole_has_no_thin_wall():
 
 
 def test_no_share_of_the_energy_is_told_to_lie_beyond_zero_and_one():
-    """A disc that lands nearly flat: both its energies are told with the widest errors."""
-    disc = {
-        "length": "4 mm",
-        "diameter": "30 mm",
-        "tip": "B",
-        "tip_radius": "0.5 mm",
-        "material": "rod-steel",
-    }
-    table = {
-        "id": "disc",
-        "projectile": disc,
-        "barrier": {"material": "plate-steel"},
-        "surface": {"state": "machined"},
-        "impact": {"angle": "20 deg", "v_n": "-2 m/s", "v_t": "0 m/s"},
-    }
-    run = simulate(load(table), "modal")
+    """A rod that lands flat: its energies are told with the widest errors."""
+    run = simulate(replace(load("t5b"), "impact.angle", "0 deg"), "modal")
     for key in ("E_vib_over_E_0", "E_r_over_E_0", "W_friction_over_E_0"):
         share, half = run.estimate(key)
         assert half <= max(share, 1 - share)
-    assert run.estimate("E_vib_over_E_0")[1] > 0.2
+    assert run.estimate("E_vib_over_E_0")[1] > 0.05

@@ -99,9 +99,12 @@ class VibrationEffect:
 
 
 def unfinished(pair: Pair, of: str = "e") -> str:
-    """Return why a pair of twins says nothing of a number, empty where it does."""
+    """Return why a pair of twins says nothing of a number, empty where it does.
+
+    A run that ended before another place strikes tells those of the impact before.
+    """
     for run, which in zip(pair, ("with", "without"), strict=True):
-        if not run.validity.finished or or_none(CHANGED[of].of(run)) is None:
+        if or_none(CHANGED[of].of(run)) is None:
             return f"the run {which} vibration gives no {of}: {run.validity.stopped_because}"
     return ""
 

@@ -109,12 +109,11 @@ def _row(
 def of_reduced(scene: DrawnScene, results: Results) -> tuple[Outcome | None, Outcome | None]:
     """Return a scene by the reduced model and by the finest finite elements, None where one lacks its like.
 
-    Alike are those that followed one place of contact to its end: finite elements end before another end of
-    the projectile strikes, which the reduced model follows.
+    Alike are those that followed one place of contact to its end: both end before another place strikes.
     """
     known = (_known(results.get((scene.name, model))) for model in (FINEST, FINER, DEFAULT))
     both = _known(results.get((scene.name, MODAL))), next((run for run in known if run is not None), None)
-    alike = (run and run.validity.finished and len(or_none(run.contact.sites) or ()) == 1 for run in both)
+    alike = (run and len(or_none(run.contact.sites) or ()) == 1 for run in both)
     return both if all(alike) else (None, None)
 
 
