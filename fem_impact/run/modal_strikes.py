@@ -10,7 +10,7 @@ from fem_impact.arrays import Array
 from fem_impact.case.case import Case
 from fem_impact.case.effects.damping import loss_factor
 from fem_impact.case.effects.registry import AUTO
-from fem_impact.modal.impact import Arrival, ModalResult, one_strike
+from fem_impact.modal.impact import Arrival, ModalResult
 from fem_impact.modal.motion import AT
 from fem_impact.modal.rod import ModalRod, modal_rod
 from fem_impact.modal.sites import lowest_place
@@ -67,7 +67,7 @@ class ModalCourse:
     def at_first(cls, case: Case, followed: Followed) -> "ModalCourse":
         """Return the course after the first strike.
 
-        It ends sooner than a first impact that stands by itself, to which the same place belongs much later.
+        It ends sooner than a first impact that stands by itself, which counts what touches much later to it.
         """
         first, begin = closed(case, ahead=one_strike(case)), followed.coming
         course = cls(case, followed, first.rod, begin, first.last.q, first.last.rate, modal_loss(case))
@@ -210,6 +210,11 @@ def swung(omega: Array, loss: float, dt: float, q: Array, rate: Array) -> tuple[
     drive = (rate + slow * q) / free
     swinging = decay * (c * q + s * drive)
     return swinging, decay * (free * (c * drive - s * q)) - slow * swinging
+
+
+def one_strike(case: Case) -> float:
+    """Return the time, s, within which what touches again belongs to the same strike."""
+    return max(case.bodies.bending_period, 2.0 * case.estimate.duration)
 
 
 def _energy(rod: ModalRod, q: Array, rate: Array) -> float:

@@ -140,7 +140,7 @@ def _held_ready(case: Case) -> tuple[Case, float | None]:
     count = case.scene.strikes.stages("solid")[0][1] or MOST
     if case.scene.impact.until == FIRST or count == 1:
         return case, None
-    from fem_impact.modal.impact import one_strike
+    from fem_impact.run.modal_strikes import one_strike
     from fem_impact.run.solid_strikes import with_sites
 
     return with_sites(case, min(count, case.scene.impact.most_strikes or MOST)), one_strike(case)

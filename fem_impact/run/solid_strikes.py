@@ -19,13 +19,12 @@ from fem_impact.case.case import Case
 from fem_impact.case.record import ContactRecord, expected_record, joined
 from fem_impact.errors import SceneError
 from fem_impact.fem.flight import FreeVibration
-from fem_impact.modal.impact import one_strike
 from fem_impact.modal.rod import ModalRod
 from fem_impact.modal.sites import skin
 from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import or_none
 from fem_impact.outcome.strikes import StrikeRecord
-from fem_impact.run.modal_strikes import ModalCourse, modal_loss, swung
+from fem_impact.run.modal_strikes import ModalCourse, modal_loss, one_strike, swung
 from fem_impact.run.resolution import unresolved
 from fem_impact.run.solid import readings
 from fem_impact.run.strikes import LEAST_BY_LAW, Followed
