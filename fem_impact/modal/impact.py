@@ -37,7 +37,6 @@ from fem_impact.modal.rod import ModalRod, modal_rod
 from fem_impact.modal.sites import lowest_place
 from fem_impact.modal.touch import spent
 from fem_impact.outcome.groups import ContactSite
-from fem_impact.physics.beam import horizon
 from fem_impact.physics.contact import fall
 from fem_impact.physics.contact_law import ContactLaw, FlowLaw
 from fem_impact.progress import Progress, compiling, setting_up
@@ -200,13 +199,12 @@ def solve(
     recorded: bool = False,
     step: float = 1.0,
     arrival: Arrival | None = None,
-    ahead: float | None = None,
 ) -> ModalResult:
     """Compute an impact; the modes of a new rod are computed first, and a first run says that it compiles.
 
     Where it is ``recorded``, the result holds what moved over time. ``step`` is the time step over the usual.
     The rod comes as its scene says, or as its ``arrival`` does, on a surface that nothing has touched. The
-    impact is over where nothing would touch in a free flight of ``ahead``, s; None: see `horizon`.
+    impact is over where nothing would touch in a free flight as long as `Case.one_impact`.
     """
     if progress is not None:
         progress(setting_up(case.max_time, case.scene.id))
@@ -224,7 +222,7 @@ def solve(
     fastest = max([*rod.omega, rate])  # 0 of a rigid rod before it touches
     dt = step * min(case.estimate.duration / STEPS, FASTEST / fastest if fastest else inf)
     latest = case.max_time if case.scene.accuracy.max_time else LATER * case.max_time
-    bounds = Bounds(dt, horizon(case.scene.projectile) if ahead is None else ahead, latest)
+    bounds = Bounds(dt, case.one_impact, latest)
     # compiles, or fetches what was compiled before, so that times are times of the impact
     course.follow(start, modes, rod.sites, bounds._replace(horizon=0.0))
     wall, cpu = time.perf_counter(), time.process_time()

@@ -322,7 +322,8 @@ class Contact:
     strikes_again: bool | Unknown = key(
         "strikes_again",
         "",
-        "True when the mass centre still comes down after the last separation: it strikes once more.",
+        "True when, after the last separation, the mass centre still comes down or another part is turned "
+        "down: it strikes once more, gravity left out.",
     )
     peak_force: Num = key("peak_force_N", "N", "Largest normal force, mean over 2 us.", True)
     readings: Readings

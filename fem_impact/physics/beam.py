@@ -19,8 +19,6 @@ from fem_impact.scene.projectile import ProjectileSpec
 
 ROOTS = np.array([4.730041, 7.853205, *((2 * np.arange(3, 31) + 1) * pi / 2)])  # cos cosh = 1
 SHEAR = 0.9  # shear coefficient of a round section, about 6 (1 + nu) / (7 + 6 nu) (Cowper 1966)
-HORIZON = 4e-3  # s, least time that a free flight is looked ahead: the camera's window, 40 frames at 10 kHz
-PERIODS = 1.5  # of the rod's bending, that a free flight is looked ahead if they are longer
 LATEST, SPAN = 2.5e-3, 2.8  # s, and over the bending period and the contact time, if longer
 
 
@@ -69,11 +67,6 @@ def stretching_period(rod: ProjectileSpec) -> float:
 def bar_speed(metal: Material) -> float:
     """Return the speed c0 = sqrt(E/rho) of stretching waves in a thin rod, m/s."""
     return float((metal.E / metal.rho) ** 0.5)
-
-
-def horizon(rod: ProjectileSpec) -> float:
-    """Return the time, s, that a free flight is looked ahead for a further contact by the rod's bending."""
-    return max(HORIZON, PERIODS * bending_period(rod))
 
 
 def latest_time(rod: ProjectileSpec, duration: float) -> float:

@@ -19,7 +19,6 @@ from fem_impact.run.common import (
     RESIDUAL_LIMIT,
     angular_momentum_error,
     barrier_motion,
-    comes_down,
     momentum_error,
     motion,
     restitution,
@@ -138,13 +137,13 @@ class Reduction:
             effect_choices=choices,
         )
         shown = () if withheld or cut else unusual(origin, self.motion, self.restitution, energy)
-        alone = case.scene.impact.until == FIRST
-        again = named(strikes_again(end.leaving)) if end.finished and not failed and alone else ""
-        of_result = limitations("result", *shown, gravity, again)
+        again = strikes_again(case, end.leaving, end.Omega) if end.finished and not failed else ""
+        told = named(again) if case.scene.impact.until == FIRST else ""
+        of_result = limitations("result", *shown, gravity, told)
         outcome = Outcome(
             provenance=origin,
             validity=_validity(
-                end, failed, again, unmeshed, case.said((*limited, *case.limitations, *of_result))
+                end, failed, told, unmeshed, case.said((*limited, *case.limitations, *of_result))
             ),
             motion=self.motion,
             barrier=self.barrier,
@@ -153,7 +152,7 @@ class Reduction:
             contact=groups.Contact(
                 intervals=_intervals(end.contacts, unmeshed),
                 sites=sites,
-                strikes_again=comes_down(end.leaving) if end.finished else CUT_OFF,
+                strikes_again=bool(again) if end.finished else CUT_OFF,
                 peak_force=peak_force,
                 readings=readings,
                 markers=markers,

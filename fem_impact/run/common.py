@@ -12,6 +12,7 @@ from fem_impact.outcome.keys import Num, Unknown, known, unknown
 from fem_impact.physics.flash import Flash, flash_bound
 from fem_impact.run.tests import tests_of
 from fem_impact.scene.inputs import first_melting, melting
+from fem_impact.tables.text import plain
 
 NO_TABLE = "the scene repeats no measured set, so no table gives its arms"
 MASSIVE = Unknown("the barrier is massive")
@@ -31,16 +32,26 @@ RESIDUAL_LIMIT = 1e-4  # of E_0: above it a run failed
 ROUND_OFF = 1e-6  # a moment impulse over that of the normal impulse at arm d_d: below it there is none
 
 
-def comes_down(V_n: float) -> bool:
-    """Return whether a mass centre with a normal velocity, m/s, does not leave the barrier."""
-    return not V_n > 0
+def strikes_again(case: Case, V_n: float, Omega: float) -> str:
+    """Return that a body strikes again as it leaves the barrier, nothing if it does not.
 
-
-def strikes_again(V_n: float) -> str:
-    """Return that a mass centre with a normal velocity, m/s, still comes down, nothing if it does not."""
-    if not comes_down(V_n):
+    Its mass centre still comes down, with V_n < 0, m/s, or it turns, with Omega, rad/s, another part down
+    faster than it rises. Gravity is left out.
+    """
+    if not V_n > 0:
+        return f"The mass centre still comes down at {-V_n:.3g} m/s, so that the rod strikes again later."
+    body = case.contact.body
+    if abs(Omega) * body.length < V_n:  # no part of it comes down
         return ""
-    return f"The mass centre still comes down at {-V_n:.3g} m/s, so that the rod strikes again later."
+    from rigid.strikes import State, next_touch, outline
+
+    shape, alpha = outline(body), case.scene.relative.angle
+    height = shape.corners[shape.lowest(alpha, Omega)].arms(alpha)[1]
+    touch = next_touch(shape, State(0.0, height, 0.0, alpha, V_n, 0.0, Omega), 0.0)
+    if touch is None:
+        return ""
+    when = f"about {plain(1e3 * touch[0])} ms later" if touch[0] > 0.0 else "at once"
+    return f"The rod turns another part down faster than it rises, so that it strikes again {when}."
 
 
 def flow_left_out(case: Case) -> str:

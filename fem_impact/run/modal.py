@@ -41,14 +41,13 @@ def closed(
     progress: Callable[[Progress], None] | None = None,
     recorded: bool = False,
     arrival: Arrival | None = None,
-    ahead: float | None = None,
 ) -> ModalResult:
     """Compute an impact as `solve` does, with half the time step, and half of that, while the ledger is open.
 
     Of 57 random scenes one missed 1.1e-4 of E_0, and half of it with half the step.
     """
     for halved in range(HALVINGS + 1):
-        result = solve(case, progress, recorded, 0.5**halved, arrival, ahead)
+        result = solve(case, progress, recorded, 0.5**halved, arrival)
         if abs(result.residual / result.E_0) <= RESIDUAL_LIMIT:
             break
     return result

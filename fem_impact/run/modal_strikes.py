@@ -65,11 +65,8 @@ class ModalCourse:
 
     @classmethod
     def at_first(cls, case: Case, followed: Followed) -> "ModalCourse":
-        """Return the course after the first strike.
-
-        It ends sooner than a first impact that stands by itself, which counts what touches much later to it.
-        """
-        first, begin = closed(case, ahead=one_strike(case)), followed.coming
+        """Return the course after the first strike."""
+        first, begin = closed(case), followed.coming
         course = cls(case, followed, first.rod, begin, first.last.q, first.last.rate, modal_loss(case))
         course._enter(begin, first, 0.0)
         return course
@@ -121,7 +118,7 @@ class ModalCourse:
         self.swing_on(before)
         turn = before.alpha - self.case.scene.impact.angle
         arrival = Arrival(before.V_n, before.V_t, before.Omega, turn, self.q, self.rate)
-        self._enter(before, closed(self.case, arrival=arrival, ahead=one_strike(self.case)), self.vibration)
+        self._enter(before, closed(self.case, arrival=arrival), self.vibration)
 
     def _touch(self) -> State | None:
         """Return the rigid motion in which the vibrating rod touches next.
@@ -210,11 +207,6 @@ def swung(omega: Array, loss: float, dt: float, q: Array, rate: Array) -> tuple[
     drive = (rate + slow * q) / free
     swinging = decay * (c * q + s * drive)
     return swinging, decay * (free * (c * drive - s * q)) - slow * swinging
-
-
-def one_strike(case: Case) -> float:
-    """Return the time, s, within which what touches again belongs to the same strike."""
-    return max(case.bodies.bending_period, 2.0 * case.estimate.duration)
 
 
 def _energy(rod: ModalRod, q: Array, rate: Array) -> float:

@@ -124,26 +124,22 @@ def _compute(case: Case, options: RunOptions) -> tuple[Outcome, ContactRecord | 
     # as the command does: on a busy machine further threads of the linear algebra wait for each other, and a
     # run takes four times the processor time
     with threadpool_limits(1, "blas"):
-        case, ahead = _held_ready(case)
-        end = solve(case, replace(options, stamp=stamp(case.scene)), ahead=ahead)
+        case = _held_ready(case)
+        end = solve(case, replace(options, stamp=stamp(case.scene)))
         outcome = _followed(case, reduce(end), end, options)
     told = texts(outcome.validity.limitations, "resolution")
     resolved = not any(sentence.startswith(NOT_RESOLVED) for sentence in told)
     return outcome, replace(end.record, resolved=resolved)
 
 
-def _held_ready(case: Case) -> tuple[Case, float | None]:
-    """Return a case whose rod has fine cells for all strikes by finite elements, and what ends the first.
-
-    That is a free flight, s, without a touch; where there is one strike, see `fem_impact.solid.run.solve`.
-    """
+def _held_ready(case: Case) -> Case:
+    """Return a case whose rod has fine cells for all strikes by finite elements."""
     count = case.scene.strikes.stages("solid")[0][1] or MOST
     if case.scene.impact.until == FIRST or count == 1:
-        return case, None
-    from fem_impact.run.modal_strikes import one_strike
+        return case
     from fem_impact.run.solid_strikes import with_sites
 
-    return with_sites(case, min(count, case.scene.impact.most_strikes or MOST)), one_strike(case)
+    return with_sites(case, min(count, case.scene.impact.most_strikes or MOST))
 
 
 def _followed(

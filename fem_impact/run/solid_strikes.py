@@ -24,7 +24,7 @@ from fem_impact.modal.sites import skin
 from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import or_none
 from fem_impact.outcome.strikes import StrikeRecord
-from fem_impact.run.modal_strikes import ModalCourse, modal_loss, one_strike, swung
+from fem_impact.run.modal_strikes import ModalCourse, modal_loss, swung
 from fem_impact.run.resolution import unresolved
 from fem_impact.run.solid import readings
 from fem_impact.run.strikes import LEAST_BY_LAW, Followed
@@ -252,7 +252,7 @@ class SolidCourse:
         vibration = replace(self.flight, modes=view.modes)
         model = lowered(carry(model, view, self.last, turn, moved, vibration), START_GAP)
         taken = vibration.energy
-        end = solve(case, replace(options, out=None, resume=False), model, view, one_strike(self.case))
+        end = solve(case, replace(options, out=None, resume=False), model, view)
         if not end.separated:
             self.told.append(STOPPED.format(len(self.body.each) + 1, end.reason))
             return False

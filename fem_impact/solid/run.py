@@ -127,7 +127,6 @@ def solve(
     options: RunOptions = RunOptions(),
     model: Model | None = None,
     view: RodState | None = None,
-    ahead: float | None = None,
 ) -> SolidResult:
     """Run a case; histories, fields and checkpoints go to ``options.out`` while it runs.
 
@@ -136,7 +135,6 @@ def solve(
     case : of the scene
     options : output directory, progress, checkpoints
     model, view : a prepared model of the case, and what reads its rod (default: built here)
-    ahead : free flight, s, without a touch that ends the impact; None: see `horizon`
 
     Raises
     ------
@@ -159,7 +157,7 @@ def solve(
         going_on = partial(show, setting_up(end, case.scene.id))
         view = view or RodState.of(model, modes_of(model, step=going_on))
     state = model.initial_state()
-    watchers = Watchers.of(case, model, view, out, options.resume, ahead)
+    watchers = Watchers.of(case, model, view, out, options.resume)
     observers: list[Observer] = [*watchers.all]
     if show is not None:
         if not compiled_before():  # told at once

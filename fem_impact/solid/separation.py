@@ -7,14 +7,13 @@ import numpy as np
 
 from fem_impact.arrays import Array, Ints
 from fem_impact.fem.flight import FreeVibration, RigidMotion
-from fem_impact.physics.beam import HORIZON
 from fem_impact.solid.contact.surface import SurfaceContact
 from fem_impact.solid.model import Model
 from fem_impact.solid.observers import QUIET
 from fem_impact.solid.rodview import RodState
 from fem_impact.solid.state import State
 
-SAMPLE = 2e-6  # s, interval at which the free flight is evaluated
+SAMPLES = 500  # of the flight that is looked ahead: more than 300 a bending period
 
 
 @dataclass(slots=True)
@@ -31,12 +30,17 @@ class Separation:
     model: Model
     view: RodState
     limit: float
-    horizon: float = HORIZON
+    horizon: float
     tail: Array = field(default_factory=lambda: np.zeros((0, 3)))
     every: int = 100
     reason: str = ""
     separated: bool = False
     finished: bool = False
+
+    @property
+    def _sample(self) -> float:
+        """Interval, s, at which the free flight is evaluated."""
+        return self.horizon / SAMPLES
 
     def observe(self, state: State) -> bool:
         """Return True when the impact is over or the time is up."""
@@ -52,7 +56,7 @@ class Separation:
         motion, (u_n, u_t) = self.view.rigid(state), self.model.ground.speed(state.v)
         motion = replace(motion, V_n=motion.V_n - u_n, V_t=motion.V_t - u_t)  # as seen from the barrier
         ahead = min(self.horizon, self._tail_strikes(state, motion))
-        if not self._stays_away(state, motion, max(ahead, SAMPLE)):
+        if not self._stays_away(state, motion, max(ahead, self._sample)):
             return False
         self.separated = True
         if ahead < self.horizon:
@@ -71,7 +75,7 @@ class Separation:
         """Return the time, s from now, until the tail reaches the barrier; infinite if it does not."""
         if not len(self.tail):
             return np.inf
-        start, t = self.model.start[0][self.view.places], np.arange(0.0, self.horizon, SAMPLE)
+        start, t = self.model.start[0][self.view.places], np.arange(0.0, self.horizon, self._sample)
         arm = self.tail - self.view.mass @ start / self.view.mass.sum()
         angle, ground = -self.view.angle(state, self.model), self.model.ground  # from n towards t
         heights = _rigid_heights(arm, motion, t, angle)
@@ -84,7 +88,7 @@ class Separation:
     def _stays_away(self, state: State, motion: RigidMotion, until: float) -> bool:
         """Return whether the flight of the next ``until``, s, has no contact."""
         ahead, contact = self.view.flight(state, self.model), self.model.contact
-        t = np.arange(0.0, until, SAMPLE)
+        t = np.arange(0.0, until, self._sample)
         ground, x = self.model.ground, state.x
         lowest, risen = self._rim_heights(state, motion, ahead, t).min(axis=0), ground.risen(x)
         if not isinstance(contact, SurfaceContact):

@@ -14,7 +14,6 @@ from fem_impact.case.cells import body_cell
 from fem_impact.fem.geometry import tail_corners
 from fem_impact.fem.kernels import COMPILING
 from fem_impact.files.fields_write import FieldWriter
-from fem_impact.physics.beam import horizon
 from fem_impact.scene.impact import FIRST
 from fem_impact.solid.checkpoint import Moving
 from fem_impact.solid.contact.surface import SurfaceContact
@@ -106,12 +105,8 @@ class Watchers:
         view: RodState,
         out: Path | None,
         go_on: bool,
-        ahead: float | None = None,
     ) -> Watchers:
-        """Make the observers; with ``go_on`` they append to the files of the run that is resumed.
-
-        The impact is over where nothing touches in a free flight of ``ahead``, s; None: see `horizon`.
-        """
+        """Make the observers; with ``go_on`` they append to the files of the run that is resumed."""
         scene = case.scene
         watch = Watch(model.ledger(), scene.save.history_every)
         history, frames, strain = [], [], []
@@ -125,8 +120,7 @@ class Watchers:
         kept = out is not None and scene.save.strain_samples > 0
         if sliced and (kept or scene.save.gauge is not None):
             strain = [StrainWatch.of(case, model, out / "waves.h5" if out and kept else None)]
-        ahead = horizon(case.scene.projectile) if ahead is None else ahead
-        stop = Separation(model, view, case.max_time, ahead, _far_tail(case, model))
+        stop = Separation(model, view, case.max_time, case.one_impact, _far_tail(case, model))
         skin, peak = SkinWatch(model, case.slots.bending is not None), PeakForce(model.book)
         added = AddedMass(model.added_mass)
         heat = None

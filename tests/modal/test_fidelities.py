@@ -14,7 +14,6 @@ from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.limitation import texts
 from fem_impact.outcome.record import Outcome
-from fem_impact.physics.beam import HORIZON, horizon
 from fem_impact.run.common import NO_PUSH, barrier_motion, motion, restitution
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.read import read_dict, read_toml
@@ -130,11 +129,10 @@ def test_arms_that_do_not_approach_have_no_restitution():
 @pytest.mark.slow
 def test_a_long_rod_is_followed_until_its_bending_cannot_bring_it_back():
     long = {"projectile.length": "1.5 m", "accuracy.max_time": "60 ms"}
-    result = modal_solve(Case.of(replace_all(load("t3-machined"), long), "modal"))
-    later = np.diff(result.contacts[:, 0])
+    case = Case.of(replace_all(load("t3-machined"), long), "modal")
+    result = modal_solve(case)
     assert result.finished
-    assert later.max() > HORIZON
-    assert horizon(load("t3-machined").projectile) == HORIZON
+    assert 0.1 * case.one_impact < np.diff(result.contacts[:, 0]).max() < case.one_impact
 
 
 def test_compare_and_tables_take_what_is_not_known():

@@ -21,8 +21,8 @@ SPUN = {
     "impact.v_n": "-6 m/s",
     "impact.omega": "-600 rad/s",
 }
-NEARLY_FLAT = {"impact.angle": "86 deg", "impact.v_n": "-1 m/s", "impact.v_t": "-1 m/s"}
-SIDE_DOWN = {"impact.angle": "89 deg", "impact.v_n": "-2 m/s", "impact.v_t": "0 m/s"}
+NEARLY_FLAT = {"impact.angle": "89.7 deg", "impact.v_n": "-2 m/s", "impact.v_t": "-1 m/s"}
+SIDE_DOWN = {"impact.angle": "89.8 deg", "impact.v_n": "-2 m/s", "impact.v_t": "0 m/s"}
 
 
 def scene_of(changes, effects=None):

@@ -81,7 +81,11 @@ def test_energy_that_the_rod_did_not_bring_is_doubted_or_gravitys(outcome):
 
 
 def test_every_fidelity_says_that_a_rod_strikes_again():
-    assert strikes_again(0.1) == ""
+    case = Case.of(load("t5b"), "rigid")
+    assert strikes_again(case, 0.1, 0.0) == "" == strikes_again(case, 1.0, 20.0)
+    # the mass centre is 31 mm above the barrier, the tail 42 mm from it: about 1.6 rad to turn
+    assert "strikes again about 27.7 ms later" in strikes_again(case, 0.1, 60.0)
+    assert "at once" in strikes_again(case, 0.4, -60.0)
     turned = replace_all(load("t2"), {"impact.angle": "59 deg"})
     outcome = simulate(turned, "rigid")
     assert outcome.motion.V_n < 0
