@@ -191,7 +191,7 @@ class Case:
         """Time, s, within which what touches again belongs to the same impact: vibration has brought it back.
 
         Of 190 runs of drawn scenes by finite elements and the reduced model 16 touched again: 4 within 0.9
-        bending periods, 12 after 14 to 600, where another part of the body came down: those strikes are later.
+        bending periods, 12 after 14 to 600, where another part of the body came down, a later strike.
         """
         return max(PERIODS * self.bodies.bending_period, DURATIONS * self.estimate.duration)
 

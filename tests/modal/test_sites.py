@@ -21,8 +21,14 @@ SPUN = {
     "impact.v_n": "-6 m/s",
     "impact.omega": "-600 rad/s",
 }
-NEARLY_FLAT = {"impact.angle": "89.7 deg", "impact.v_n": "-2 m/s", "impact.v_t": "-1 m/s"}
-SIDE_DOWN = {"impact.angle": "89.8 deg", "impact.v_n": "-2 m/s", "impact.v_t": "0 m/s"}
+NEARLY_FLAT = {"impact.angle": "86 deg", "impact.v_n": "-1 m/s", "impact.v_t": "-1 m/s"}
+SIDE_DOWN = {"impact.angle": "89 deg", "impact.v_n": "-2 m/s", "impact.v_t": "0 m/s"}
+
+
+@pytest.fixture(autouse=True)
+def long_impact(monkeypatch):
+    """An impact is not over while anything touches within 4 ms, so that both places belong to it."""
+    monkeypatch.setattr(Case, "one_impact", 4e-3)
 
 
 def scene_of(changes, effects=None):
@@ -31,7 +37,7 @@ def scene_of(changes, effects=None):
 
 
 def follow(changes, effects=None):
-    return solve(Case.of(scene_of(changes, effects), "modal"), ahead=4e-3)
+    return solve(Case.of(scene_of(changes, effects), "modal"))
 
 
 @pytest.mark.parametrize("effects", [None, ELASTIC, STIFF])
@@ -61,15 +67,16 @@ def test_the_other_edge_strikes_while_the_first_one_still_touches():
     assert 0.5 * apart == pytest.approx(-13e-3, abs=0.2e-3)
 
 
-def test_the_tail_strikes_after_the_nose_has_left():
+def test_the_tail_strikes_after_the_nose_has_left(monkeypatch):
     first, second = follow(NEARLY_FLAT, STIFF).sites
     assert first.end < 0.1 * second.start
     assert second.low_t == pytest.approx(77e-3, abs=1e-3)
+    monkeypatch.undo()
     alone = simulate(scene_of(NEARLY_FLAT, STIFF), "modal")  # its e is that of the nose
     assert [site.impulse_n for site in alone.contact.sites] == [first.impulse_n]
     assert alone.validity.finished and alone.restitution.edge.e > 0.5
-    later = f"strikes {1e3 * (second.start - first.end):.2g} ms later"
-    assert later in alone.validity.stopped_because
+    assert alone.contact.strikes_again
+    assert "comes down at 0.329 m/s, so that the rod strikes again" in alone.validity.stopped_because
 
 
 def test_two_elastic_strikes_of_a_stiff_rod_are_those_of_rigid_theory():
@@ -93,7 +100,7 @@ def test_a_mirrored_scene_has_the_mirrored_outcome(changes, effects):
     one = follow(changes, effects)
     impact = scene_of(changes).impact
     across = replace(impact, angle=-impact.angle, v_t=-impact.v_t)
-    other = solve(Case.of(replace(scene_of(changes, effects), impact=across), "modal"), ahead=4e-3)
+    other = solve(Case.of(replace(scene_of(changes, effects), impact=across), "modal"))
     assert (other.V_n, other.V_t, other.Omega) == pytest.approx((one.V_n, -one.V_t, -one.Omega), rel=1e-6)
     for here, there in zip(one.sites, other.sites, strict=True):
         assert (there.low_t, there.high_t) == pytest.approx((-here.high_t, -here.low_t), abs=1e-9)

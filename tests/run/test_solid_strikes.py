@@ -76,7 +76,7 @@ def test_tail_and_time_are_those_of_the_modes(elastic):
 
 def test_what_is_carried_on_is_told(elastic):
     told = " ".join(texts(elastic.validity.limitations, "model"))
-    assert "2 strikes are computed with finite elements of one rod" in told
+    assert "2 strikes are computed with finite elements of one body" in told
     assert "Strikes after the first 2 are those of the modal model" in told
 
 
