@@ -13,14 +13,16 @@ from fem_impact.case.case import Case
 from fem_impact.fem.kernels import compiled_before, kernel
 from fem_impact.fem.sliding import speed_table
 from fem_impact.modal.groove import WORK
-from fem_impact.modal.landing import height_of
+from fem_impact.modal.landing import height_of, in_body
 from fem_impact.modal.laws import give_law, set_law, start_of
 from fem_impact.modal.march import march
 from fem_impact.modal.motion import (
     AT,
     CLOCK,
+    CUT,
     MOST_CONTACTS,
     MOST_ROWS,
+    NEXT,
     OVER,
     ROW,
     SITE,
@@ -34,7 +36,7 @@ from fem_impact.modal.motion import (
 )
 from fem_impact.modal.pressed import pressed_sites
 from fem_impact.modal.rod import ModalRod, modal_rod
-from fem_impact.modal.sites import lowest_place
+from fem_impact.modal.sites import lowest_place, skin
 from fem_impact.modal.touch import spent
 from fem_impact.outcome.groups import ContactSite
 from fem_impact.physics.contact import fall
@@ -123,7 +125,7 @@ class Course:
     Attributes
     ----------
     now : motion and modes; held : the contact of each site
-    clock, tally : (9,), (5,) see `fem_impact.modal.motion`
+    clock, tally : (10,), (5,) see `fem_impact.modal.motion`
     contacts : (MOST_CONTACTS, 4) start, end, s, impulses along n and t, N s, of each interval of contact
     record : (m, 17) what moved over time
     """
@@ -199,12 +201,14 @@ def solve(
     recorded: bool = False,
     step: float = 1.0,
     arrival: Arrival | None = None,
+    alone: bool = True,
 ) -> ModalResult:
     """Compute an impact; the modes of a new rod are computed first, and a first run says that it compiles.
 
     Where it is ``recorded``, the result holds what moved over time. ``step`` is the time step over the usual.
     The rod comes as its scene says, or as its ``arrival`` does, on a surface that nothing has touched. The
-    impact is over where nothing would touch in a free flight as long as `Case.one_impact`.
+    impact is over where nothing would touch in a free flight as long as `Case.one_impact`; ``alone``, of a
+    body that is not followed on, also where the other end would strike next.
     """
     if progress is not None:
         progress(setting_up(case.max_time, case.scene.id))
@@ -215,8 +219,10 @@ def solve(
     rows, over = MOST_ROWS if recorded else 0, case.slots.friction_over_speed
     course = Course.of(len(rod.sites.along_t), _arriving(case, rod, arrival), rows, over)
     E_0 = _kinetic(rod, *course.now.rigid[:3]) + float(_energies(rod, course.now).sum())
-    slowest, rate = _approach(rod, course.now), 0.0
-    for s in _touching(rod, course.now):
+    slowest, rate, touching = _approach(rod, course.now), 0.0, _touching(rod, course.now)
+    ends = np.array([_of_tail(case, rod, s) for s in range(len(rod.sites.along_t))])
+    sites = rod.sites._replace(apart=ends != ends[touching[0]]) if alone else rod.sites
+    for s in touching:
         if not course.held.site[s, SITE.known]:
             rate = hypot(rate, give_law(case, rod, course.now, course.held, s, E_0, slowest, arrival is None))
     fastest = max([*rod.omega, rate])  # 0 of a rigid rod before it touches
@@ -224,13 +230,13 @@ def solve(
     latest = case.max_time if case.scene.accuracy.max_time else LATER * case.max_time
     bounds = Bounds(dt, case.one_impact, latest)
     # compiles, or fetches what was compiled before, so that times are times of the impact
-    course.follow(start, modes, rod.sites, bounds._replace(horizon=0.0))
+    course.follow(start, modes, sites, bounds._replace(horizon=0.0))
     wall, cpu = time.perf_counter(), time.process_time()
-    while (touched := course.follow(start, modes, rod.sites, bounds)) >= 0:
+    while (touched := course.follow(start, modes, sites, bounds)) >= 0:
         rate = hypot(rate, give_law(case, rod, course.now, course.held, touched, E_0, slowest))
         bounds = bounds._replace(step=min(bounds.step, step * FASTEST / rate))
     wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
-    return _result(case, rod, course, touched == OVER, E_0, bounds, (wall, cpu))
+    return _result(case, rod, course, touched, E_0, bounds, (wall, cpu))
 
 
 def _arriving(case: Case, rod: ModalRod, arrival: Arrival | None) -> ModalState:
@@ -251,6 +257,11 @@ def _touching(rod: ModalRod, now: ModalState) -> list[int]:
     """Return the sites that touch as a strike begins: those that are lowest."""
     height = float(now.rigid[AT.height])
     return [s for s in range(len(rod.sites.along_t)) if height + height_of(rod, now, s) < LEVEL]
+
+
+def _of_tail(case: Case, rod: ModalRod, s: int) -> bool:
+    """Return whether a site is of the half that lies behind."""
+    return in_body(case, *skin(rod.sites, s, 0.0))[1] > 0.5 * case.bodies.body.length
 
 
 def _approach(rod: ModalRod, now: ModalState) -> float:
@@ -274,12 +285,13 @@ def _result(
     case: Case,
     rod: ModalRod,
     course: Course,
-    over: bool,
+    ended: int,
     E_0: float,
     bounds: Bounds,
     took: tuple[float, float],
 ) -> ModalResult:
-    """Return the result of a march, ``over`` or cut off, that ``took`` wall and processor time, s."""
+    """Return the result of a march that ``ended`` as it returned, and ``took`` wall and processor time, s."""
+    over = ended != CUT
     scene, now, tally, clock = case.scene, course.now, course.tally, course.clock
     motion, energies = now.rigid[:3], _energies(rod, now)
     plastic, friction, held_n, held_t = _spent(course.held, course.held.work_t)
@@ -323,7 +335,7 @@ def _result(
         laid=laid,
         force=tally[SUM.force],
         finished=over,
-        reason=_reason(over, bounds),
+        reason=_reason(ended, bounds, float(clock[CLOCK.free])),
         last=now,
         time=float(clock[CLOCK.time]),
         record=course.record[: int(clock[CLOCK.rows])],
@@ -334,9 +346,14 @@ def _result(
     )
 
 
-def _reason(over: bool, bounds: Bounds) -> str:
-    """Return why the march ended, as a sentence."""
-    if over:
+def _reason(ended: int, bounds: Bounds, free: float) -> str:
+    """Return why the march ended, as a sentence; ``free``, s, is the flight before another impact."""
+    if ended == NEXT:
+        return (
+            f"The rod's other end strikes {free * 1e3:.2g} ms later: this is the motion before, and "
+            '`impact.until = "rest"` follows the body on.'
+        )
+    if ended == OVER:
         return f"The rod does not touch again within the next {bounds.horizon * 1e3:.3g} ms of free flight."
     return f"Reached max_time = {bounds.latest * 1e3:g} ms before the last separation."
 

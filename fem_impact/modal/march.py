@@ -15,6 +15,7 @@ from fem_impact.modal.motion import (
     CLOCK,
     CUT,
     MOST_CONTACTS,
+    NEXT,
     OVER,
     ROW,
     SITE,
@@ -139,8 +140,8 @@ def exert(now: ModalState, start: Start, sites: Sites, site: Array, span: float,
 @allocating_kernel
 def ahead(
     now: ModalState, modes: Modes, sites: Sites, held: Touched, clock: Array, start: Start, bounds: Bounds
-) -> float:
-    """Return the steps of free flight until a site strikes, or -1 if none does within the horizon.
+) -> tuple[float, int]:
+    """Return the steps of free flight until a site strikes, and which, or -1 if none does within the horizon.
 
     Gravity has no part in that: a rod that falls back strikes anew.
     """
@@ -158,9 +159,10 @@ def ahead(
             fly(flight, modes, (np.cos(modes.omega * far), np.sin(modes.omega * far)), far, 0.0, 0.0)
         turn_surface(start, flight, site, still, far)
         steps += rests
-        if strikes(flight, modes, sites, held, site, steps, dt):
-            return float(steps)
-    return -1.0
+        struck = strikes(flight, modes, sites, held, site, steps, dt)
+        if struck >= 0:
+            return steps, struck
+    return steps, -1
 
 
 @allocating_kernel
@@ -225,8 +227,8 @@ def march(
 ) -> int:
     """Follow a rod until nothing strikes in the free flight ahead, or a site without a law touches.
 
-    Returns `OVER` or `CUT`, or the site: given its law, the march goes on where it stopped. ``now``,
-    ``held``, ``clock`` (9,) and ``tally`` (5,) move. ``contacts`` (MOST_CONTACTS, 4) are filled with start,
+    Returns `OVER`, `NEXT` or `CUT`, or the site: given its law, the march goes on where it stopped. ``now``,
+    ``held``, ``clock`` (10,) and ``tally`` (5,) move. ``contacts`` (MOST_CONTACTS, 4) are filled with start,
     end, s, and impulses along n and t, N s; ``record`` (m, 17) with what moved over time; it may have none.
     """
     dt, rigid = bounds.step, now.rigid
@@ -266,9 +268,12 @@ def march(
             held.site[:, SITE.wake] = 0.0  # what rested in flight is pushed about from now on
         clock[CLOCK.pressed] = 1.0 if touches else 0.0
         if pressed and not touches:
-            flown = ahead(now, modes, sites, held, clock, start, bounds)
-            if flown < 0.0:
+            flown, struck = ahead(now, modes, sites, held, clock, start, bounds)
+            if struck < 0:
                 return OVER
+            if held.site[struck, SITE.known] == 0.0 and sites.apart[struck]:
+                clock[CLOCK.free] = flown * dt
+                return NEXT
         tally[SUM.gravity] += start.mass * fly(now, modes, turns, dt, start.g_t, start.g_n)
         turn_surface(start, now, held.site, clock, dt)
         clock[CLOCK.time] += dt

@@ -4,7 +4,7 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
-from fem_impact.arrays import Array, Ints
+from fem_impact.arrays import Array, Bools, Ints
 from fem_impact.modal.flat import Flats
 from fem_impact.modal.groove import CELLS
 from fem_impact.physics.contact_law import ContactLaw, FlowLaw
@@ -14,8 +14,9 @@ SPRINGS = 100
 MOST_ROWS = 2048
 """Rows of a record; where a run has more, every second one is dropped."""
 
-OVER, CUT = -1, -2
-"""Why a march ends, where not a site touches first: nothing strikes any more; it took too long."""
+OVER, CUT, NEXT = -1, -2, -3
+"""Why a march ends, where not a site touches first: nothing strikes any more; it took too long; what
+strikes next is another impact."""
 
 
 class MotionIndex(NamedTuple):
@@ -53,11 +54,11 @@ class TallyIndex(NamedTuple):
 
 
 class ClockIndex(NamedTuple):
-    """Where each number of a march's course stands in its array (9,).
+    """Where each number of a march's course stands in its array (10,).
 
     Time and that of the last touch, s; steps; intervals of contact; whether the rod touched in the last step;
     rows of the record that are filled, and steps from one to the next; the place (t, n) of the last touch
-    from the barrier's mass centre, m.
+    from the barrier's mass centre, m; the free flight before another impact, s.
     """
 
     time: int = 0
@@ -69,6 +70,7 @@ class ClockIndex(NamedTuple):
     every: int = 6
     lever_t: int = 7
     lever_n: int = 8
+    free: int = 9
 
 
 class SiteIndex(NamedTuple):
@@ -163,6 +165,7 @@ class Sites(NamedTuple):
     begin : (s + 1,) first arc of each site, and behind the last one
     along_t, along_n : (s, k) displacement of each site by each mode, kg^-1/2
     base : the turn, rad, from which a whole one is counted
+    apart : (s,) whether a site that has not touched in this impact begins another one
     """
 
     t: Array
@@ -175,13 +178,16 @@ class Sites(NamedTuple):
     along_t: Array
     along_n: Array
     base: float
+    apart: Bools
 
     @classmethod
     def point(cls, t: float, n: float, radius: float) -> Self:
         """Return the one site of a round body that does not vibrate: its centre and radius, m."""
         t_, n_, r, low, high = (np.array([value]) for value in (t, n, radius, -np.pi, np.pi))
         none = np.zeros((1, 0))
-        return cls(t_, n_, r, low, high, t_.copy(), np.array([0, 1]), none, none, -np.pi)
+        return cls(
+            t_, n_, r, low, high, t_.copy(), np.array([0, 1]), none, none, -np.pi, np.zeros(1, np.bool_)
+        )
 
 
 class Touched(NamedTuple):

@@ -48,7 +48,8 @@ def sites_of(
         t, n, radius, low, high = (part[::-1].copy() for part in (t, n, radius, low, high))
         curve, along_t, along_n = curve[-1] - curve[::-1], along_t[::-1].copy(), along_n[::-1].copy()
     begin = np.append(np.flatnonzero(np.diff(curve, prepend=-1.0)), len(curve))
-    sites = Sites(t, n, radius, low, high, np.zeros(len(t)), begin, along_t, along_n, -pi - angle)
+    apart = np.zeros(len(along_t), np.bool_)
+    sites = Sites(t, n, radius, low, high, np.zeros(len(t)), begin, along_t, along_n, -pi - angle, apart)
     for s in range(len(begin) - 1):
         _join(sites, s)
     return sites

@@ -199,8 +199,8 @@ def meet(held: Touched, turn: float, dt: float) -> tuple[float, float, float]:
 @inlined
 def strikes(
     now: ModalState, modes: Modes, sites: Sites, held: Touched, site: Array, steps: float, dt: float
-) -> bool:
-    """Return whether any site touches in free flight; ``site`` is a copy of `Touched.site` that rests.
+) -> int:
+    """Return a site that touches in free flight, or -1; ``site`` is a copy of `Touched.site` that rests.
 
     A viscous contact that has parted is no strike as its dent swells behind it.
     """
@@ -214,19 +214,19 @@ def strikes(
         of[SITE.depth] = depth
         if of[SITE.known] == 0.0:
             if depth > 0.0:
-                return True
+                return s
         elif of[SITE.known] == LAID:
             if depth > 0.0 and flat_strikes(now, sites, held, s, c, sn):
-                return True
+                return s
         elif held.flow[s, 13] > 0.0:
             if meets(groove_of(held, s), depth, place, flow_of(held, s)):
-                return True
+                return s
         elif press(depth, (depth - was) / dt, law_of(held, s))[0] > 0.0:
-            return True
+            return s
         gap = -depth - held.state[s, IN_GROOVE.top]
         if gap > 0.0:
             of[SITE.wake] = steps + rest(now, modes, sites, s, arm, gap, dt, False)
-    return False
+    return -1
 
 
 @inlined

@@ -51,7 +51,7 @@ class ImpactEnd:
     leaving : normal velocity of the rod as seen from the barrier after the impact, m/s
     contacts : (m, 4) start and end, s, and impulses along n and t, N s, of each; None where it takes no time
     missing : what the energy ledger misses, of E_0
-    finished : whether no later contact is possible; separated : whether the contact has ended
+    finished : whether the impact is over
     reason : why the computation ended, a sentence
     turn : of a barrier that turns: its spin, rad/s, and the rod's mass centre from its own (n, t), m, before
         and after
@@ -67,7 +67,6 @@ class ImpactEnd:
     contacts: Array | None
     missing: float
     finished: bool
-    separated: bool
     reason: str
     turn: tuple[float, tuple[float, float], tuple[float, float]] | None = None
 
@@ -125,7 +124,7 @@ class Reduction:
         end = replace(self.end, reason=named(self.end.reason))
         gravity, ruled = _gravity(case, end.contacts)
         failed = _open_ledger(end.missing) or ruled
-        cut = failed or ("" if end.separated else end.reason)
+        cut = failed or ("" if end.finished else end.reason)
         origin = groups.Provenance(
             fidelity=case.fidelity,
             scene_id=case.scene.id,

@@ -66,7 +66,7 @@ class ModalCourse:
     @classmethod
     def at_first(cls, case: Case, followed: Followed) -> "ModalCourse":
         """Return the course after the first strike."""
-        first, begin = closed(case), followed.coming
+        first, begin = closed(case, alone=False), followed.coming
         course = cls(case, followed, first.rod, begin, first.last.q, first.last.rate, modal_loss(case))
         course._enter(begin, first, 0.0)
         return course
@@ -118,7 +118,7 @@ class ModalCourse:
         self.swing_on(before)
         turn = before.alpha - self.case.scene.impact.angle
         arrival = Arrival(before.V_n, before.V_t, before.Omega, turn, self.q, self.rate)
-        self._enter(before, closed(self.case, arrival=arrival), self.vibration)
+        self._enter(before, closed(self.case, arrival=arrival, alone=False), self.vibration)
 
     def _touch(self) -> State | None:
         """Return the rigid motion in which the vibrating rod touches next.

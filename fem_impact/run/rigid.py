@@ -57,7 +57,6 @@ def rigid_outcome(case: Case) -> Outcome:
             contacts=None,
             missing=0.0,
             finished=True,
-            separated=True,
             reason="A rigid impact is over at once.",
         ),
     )

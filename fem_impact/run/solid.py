@@ -70,7 +70,6 @@ def reduce(result: SolidResult) -> Outcome:
         contacts=contacts,
         missing=result.worst / result.E_0,
         finished=result.finished,
-        separated=result.separated,
         reason=result.reason,
         turn=result.turned,
     )

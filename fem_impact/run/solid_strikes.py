@@ -253,7 +253,7 @@ class SolidCourse:
         model = lowered(carry(model, view, self.last, turn, moved, vibration), START_GAP)
         taken = vibration.energy
         end = solve(case, replace(options, out=None, resume=False), model, view)
-        if not end.separated:
+        if not end.finished:
             self.told.append(STOPPED.format(len(self.body.each) + 1, end.reason))
             return False
         self.begun = before.alpha

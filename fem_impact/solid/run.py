@@ -112,7 +112,6 @@ class SolidResult:
     added_energy: float
     vibration_check: tuple[float, float] | None
     finished: bool
-    separated: bool
     reason: str
     cost: LoopCost
     limitations: tuple[Limitation, ...]
@@ -250,7 +249,6 @@ def _result(
         added_energy=watchers.added.largest,
         vibration_check=check,
         finished=stop.finished,
-        separated=stop.separated,
         reason=watchers.reason,
         cost=cost,
         limitations=(

@@ -23,7 +23,7 @@ class Separation:
     The free flight, rigid drift plus all modes, must keep the rod above the barrier for the ``horizon``, s.
     As long as its surface may be lower than the barrier's highest node, the tip in flight is compared with
     the barrier's surface, with its crater, node by node. Where only the tip can touch in the model, ``tail``
-    (k, 3), m, holds the corners of the other end at the start: if they strike first, the run ends there.
+    (k, 3), m, holds the corners of the other end at the start: their strike is another impact.
     """
 
     moving: ClassVar[tuple[str, ...]] = ()
@@ -34,7 +34,6 @@ class Separation:
     tail: Array = field(default_factory=lambda: np.zeros((0, 3)))
     every: int = 100
     reason: str = ""
-    separated: bool = False
     finished: bool = False
 
     @property
@@ -58,17 +57,15 @@ class Separation:
         ahead = min(self.horizon, self._tail_strikes(state, motion))
         if not self._stays_away(state, motion, max(ahead, self._sample)):
             return False
-        self.separated = True
-        if ahead < self.horizon:
-            self.reason = (
-                f"The rod's tail strikes {ahead * 1e3:.2f} ms later, and only its tip can touch in this "
-                "model: this is the motion before."
-            )
-            return True
         self.finished = True
         self.reason = (
             f"The rod does not touch again within the next {self.horizon * 1e3:.3g} ms of free flight."
         )
+        if ahead < self.horizon:
+            self.reason = (
+                f"The rod's other end strikes {ahead * 1e3:.2g} ms later: this is the motion before, and "
+                '`impact.until = "rest"` follows the body on.'
+            )
         return True
 
     def _tail_strikes(self, state: State, motion: RigidMotion) -> float:

@@ -37,7 +37,7 @@ def scene_of(changes, effects=None):
 
 
 def follow(changes, effects=None):
-    return solve(Case.of(scene_of(changes, effects), "modal"))
+    return solve(Case.of(scene_of(changes, effects), "modal"), alone=False)
 
 
 @pytest.mark.parametrize("effects", [None, ELASTIC, STIFF])
@@ -100,7 +100,7 @@ def test_a_mirrored_scene_has_the_mirrored_outcome(changes, effects):
     one = follow(changes, effects)
     impact = scene_of(changes).impact
     across = replace(impact, angle=-impact.angle, v_t=-impact.v_t)
-    other = solve(Case.of(replace(scene_of(changes, effects), impact=across), "modal"))
+    other = solve(Case.of(replace(scene_of(changes, effects), impact=across), "modal"), alone=False)
     assert (other.V_n, other.V_t, other.Omega) == pytest.approx((one.V_n, -one.V_t, -one.Omega), rel=1e-6)
     for here, there in zip(one.sites, other.sites, strict=True):
         assert (there.low_t, there.high_t) == pytest.approx((-here.high_t, -here.low_t), abs=1e-9)
