@@ -184,10 +184,8 @@ class Sites(NamedTuple):
     def point(cls, t: float, n: float, radius: float) -> Self:
         """Return the one site of a round body that does not vibrate: its centre and radius, m."""
         t_, n_, r, low, high = (np.array([value]) for value in (t, n, radius, -np.pi, np.pi))
-        none = np.zeros((1, 0))
-        return cls(
-            t_, n_, r, low, high, t_.copy(), np.array([0, 1]), none, none, -np.pi, np.zeros(1, np.bool_)
-        )
+        none, apart = np.zeros((1, 0)), np.zeros(1, np.bool_)
+        return cls(t_, n_, r, low, high, t_.copy(), np.array([0, 1]), none, none, -np.pi, apart)
 
 
 class Touched(NamedTuple):
