@@ -131,8 +131,8 @@ MUTANTS = (
     Mutant(
         "stopping at the first separation",
         "fem_impact/solid/separation.py",
-        "        if not self._stays_away(state, motion, max(ahead, SAMPLE)):\n            return False\n",
-        "",
+        "not self._stays_away(state, motion, max(ahead, self._sample))",
+        "False",
         f"{RUNS}::test_elastic_frictionless_long_rod_touches_twice_and_grazes_between",
     ),
     Mutant(
@@ -341,8 +341,8 @@ MUTANTS = (
     Mutant(
         "depth in the nose along the barrier's normal",
         "fem_impact/solid/fine_zone.py",
-        "(points - points[nearest]) * normals[nearest]).sum(axis=1)",
-        "(points - points[nearest])[:, 2:] * normals[nearest][:, 2:]).sum(axis=1)",
+        "(points - points[skin[at]]) * normal).sum(axis=1)",
+        "(points - points[skin[at]])[:, 2:] * normal[:, 2:]).sum(axis=1)",
         "tests/solid/test_skinwork.py::test_the_depth_in_a_round_nose_is_that_under_its_outline",
     ),
     Mutant(

@@ -30,15 +30,17 @@ def interfaces(bodies: Bodies) -> Array:
 def block_of(bodies: Bodies, zones: AnyZones) -> Corners:
     """Return the corners of the barrier's block, before its rows are moved.
 
-    It holds all layers, is `AROUND` times as much wider than its fine zone, and has rows as high as wide. Of
-    a light free barrier it is no more than a half, as far as it can be. A plate that is meshed through its
-    thickness goes on to its edges instead, before its cells widen.
+    It is wider than its fine zone by the margin of the scene, of a thin body by its diameter at most, and of
+    layers by `AROUND` times their depth, which it holds; its rows are as high as wide. Of a light free
+    barrier it is no more than a half, as far as it can be. A plate that is meshed through its thickness goes
+    on to its edges instead, before its cells widen.
     """
     if zones.edges:
         low, high = zones.block(2 * zones.edges / (1 + widening(bodies, zones.base)))
         return np.array([*low[:2], -rows_through(bodies, zones.base) * zones.base]), high
     ends, whole = interfaces(bodies), bodies.barrier.mass
-    margin = max(bodies.scene.accuracy.block_margin, AROUND * ends.max(initial=0.0))
+    margin = min(bodies.scene.accuracy.block_margin, bodies.scene.projectile.diameter)
+    margin = max(margin, AROUND * ends.max(initial=0.0))
     low, high = zones.block(margin)
     if whole is not None:
         most = MOST_OF_BARRIER * whole / (2 * bodies.barrier.material.rho)

@@ -22,7 +22,13 @@ from fem_impact.scene.shipped import load, replace_all
 
 def bodies(**changes):
     """Return the bodies of t5b, whose contact yields, with other values."""
-    keys = {"tip": "accuracy.tip_size", "v_n": "impact.v_n", "diameter": "projectile.diameter"}
+    keys = {
+        "tip": "accuracy.tip_size",
+        "v_n": "impact.v_n",
+        "diameter": "projectile.diameter",
+        "length": "projectile.length",
+        "radius": "projectile.tip_radius",
+    }
     return Case.of(replace_all(load("t5b"), {keys[k]: value for k, value in changes.items()}), "modal").bodies
 
 
@@ -62,7 +68,9 @@ def test_elastic_bodies_need_fewer_cells():
 def test_advice_keeps_a_fine_zone_and_within_what_a_scene_may_state():
     wide = bodies(v_n="-20 m/s")
     assert size_for(wide, LEAST["yielding"]) == pytest.approx(0.7 * 19e-3 / 8)
-    assert "modal fidelity" in advice(bodies(v_n="-2e-6 m/s"))
+    assert "modal fidelity" in advice(
+        bodies(v_n="-1e-6 m/s", length="1 mm", diameter="0.2 mm", radius="0.03 mm")
+    )
 
 
 ONE = ("--set", "accuracy.levels=1")

@@ -2,6 +2,7 @@
 
 import re
 
+import numpy as np
 import pytest
 
 from fem_impact.case.case import Case
@@ -47,6 +48,18 @@ def test_the_reduced_model_keeps_the_impedance_and_tells_its_error():
 def test_a_plate_on_a_base_and_one_that_is_told_not_to_bend_are_not_meshed_through(changes):
     planned = Case.of(stated("5 mm", **changes))
     assert planned.slots.bending is None and planned.zones.edges == 0
+
+
+def test_the_block_goes_no_further_beyond_a_thin_body_than_its_diameter():
+    """The block of one of 19 mm goes 6 mm beyond its fine zone."""
+    pin = {"projectile.length": "8 mm", "projectile.diameter": "1.9 mm", "projectile.tip_radius": "0.3 mm"}
+    wide, told, close = (
+        block_of(case.bodies, case.zones)
+        for margin in ("6 mm", "1.9 mm", "0.6 mm")
+        for case in [Case.of(replace_all(load("t5b"), pin | {"accuracy.block_margin": margin}))]
+    )
+    assert np.array_equal(wide, told)
+    assert 1.0e-3 < wide[1][0] - close[1][0] < 1.6e-3
 
 
 def test_its_edges_are_so_far_that_the_fastest_waves_do_not_come_back():

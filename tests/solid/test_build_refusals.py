@@ -29,10 +29,11 @@ def test_steel_that_no_power_law_fits_is_refused():
         Case.of(scene)
 
 
-def test_a_block_of_a_million_cells_is_refused():
-    thin = {"projectile.diameter": "1 mm", "projectile.length": "10 mm", "projectile.tip_radius": "0.2 mm"}
-    scene = replace_all(load("t5b"), {**thin, "accuracy.tip_size": "0.05 mm", "accuracy.across": 12})
-    with pytest.raises(SceneError, match=r'accuracy\.block_margin = "6 mm": makes a block of .* cells'):
+def test_a_block_of_a_million_cells_is_refused(monkeypatch):
+    monkeypatch.setattr("fem_impact.case.size.machine_memory", lambda: 1e13)
+    fine = {"accuracy.tip_size": "0.2 mm", "accuracy.across": 64, "accuracy.block_margin": "100 mm"}
+    scene = replace_all(load("t5b"), fine)
+    with pytest.raises(SceneError, match=r'accuracy\.block_margin = "100 mm": makes a block of .* cells'):
         build(Case.of(scene))
 
 

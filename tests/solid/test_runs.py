@@ -384,7 +384,7 @@ def test_a_run_takes_one_thread_of_linear_algebra(monkeypatch):
     """Whatever the program that calls it has set: further ones wait for each other on a busy machine."""
     found = []
 
-    def solved(plan, options, ahead):
+    def solved(plan, options):
         found.extend(one["num_threads"] for one in threadpool_info() if one["user_api"] == "blas")
         raise RunError("stopped here")
 
