@@ -56,7 +56,7 @@ MISTAKES = [
     ("accuracy.across", 7, ["accuracy.across = 7", "an even number"]),
     ("accuracy.across", True, ["accuracy.across", "true/false"]),
     ("accuracy.tip_size", "6 mm", ["accuracy.tip_size", "too coarse"]),
-    ("accuracy.tip_size", "-0.3 mm", ["at least 0.01 mm"]),
+    ("accuracy.tip_size", "-0.3 mm", ["at least 0.0001 mm"]),
     ("accuracy.max_time", "2.5 mm", ["not a unit of time"]),
     ("accuracy.step", 1.0, ["accuracy.step", "at most 0.99"]),
     ("accuracy.element", "reduced", ["accuracy.element", '"full" or "bbar"']),
