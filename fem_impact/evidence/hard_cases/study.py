@@ -287,8 +287,8 @@ def conclude(request: Request, results: Mapping[str, HardCaseResult | Failure]) 
         [
             f"{len(done)} of {len(results)} scenes that are hard on the solver end as they must: "
             f"{verdicts.count('closed')} close their balances, the energy within {worst:.1g} of E_0, "
-            f"{verdicts.count('refused')} are refused and {verdicts.count('detected')} stopped or cut short, with "
-            f"a reason ({minutes:.1f} minutes of processor time).",
+            f"{verdicts.count('refused')} are refused and {verdicts.count('detected')} stopped or cut "
+            f"short, with a reason ({minutes:.1f} minutes of processor time).",
             *(f"`{name}`: {result.reason}" for name, result in done.items() if result.reason),
         ],
         sheets=[
