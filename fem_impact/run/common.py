@@ -41,7 +41,7 @@ def strikes_again(case: Case, V_n: float, Omega: float) -> str:
     if not V_n > 0:
         return f"The mass centre still comes down at {-V_n:.3g} m/s, so that the rod strikes again later."
     body = case.contact.body
-    if abs(Omega) * body.length < V_n:  # no part of it comes down
+    if abs(Omega) * hypot(body.length, body.diameter) < V_n:  # no part of it comes down
         return ""
     from rigid.strikes import State, next_touch, outline
 

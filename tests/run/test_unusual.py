@@ -86,6 +86,12 @@ def test_every_fidelity_says_that_a_rod_strikes_again():
     # the mass centre is 31 mm above the barrier, the tail 42 mm from it: about 1.6 rad to turn
     assert "strikes again about 27.7 ms later" in strikes_again(case, 0.1, 60.0)
     assert "at once" in strikes_again(case, 0.4, -60.0)
+    # the rim of a disc reaches further than it is long
+    disc = {"projectile.length": "2 mm", "projectile.diameter": "24 mm", "projectile.tip_radius": "0.2 mm"}
+    flat = Case.of(
+        replace_all(load("t5b"), disc | {"impact.angle": "10 deg", "impact.v_t": "0 m/s"}), "rigid"
+    )
+    assert "strikes again about" in strikes_again(flat, 1.0, -300.0)
     turned = replace_all(load("t2"), {"impact.angle": "59 deg"})
     outcome = simulate(turned, "rigid")
     assert outcome.motion.V_n < 0
