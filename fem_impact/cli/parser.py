@@ -141,6 +141,7 @@ COMMANDS = {
     "coefficients": "work out e, mu and e_m of your own camera data, with intervals",
     "figure": "draw a figure of the paper, with intervals and its data",
     "schema": "print the JSON Schema of outcome.json",
+    "compile": "compile the loops of the models, so that the first run need not",
     "cite": "print as BibTeX what a paper that uses a run should cite",
     "completion": "print a script that lets the shell complete commands and options",
 }

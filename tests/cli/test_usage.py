@@ -135,6 +135,12 @@ def test_an_error_under_json_is_json_as_well(cli, line, complaint):
     assert complaint in told["message"] and told["message"] in err
 
 
+def test_both_compiled_models_run_in_the_set_up(cli):
+    code, out, err = cli("compile", "--json")
+    assert code == 0 and 0 <= json.loads(out)["compiling_s"] < 600
+    assert "quick  t 0/256 us" in err and "t 0/2500 us" in err
+
+
 def test_the_schema_of_an_outcome_is_printed(cli):
     code, out, err = cli("schema")
     assert (code, err) == (0, "")
