@@ -9,7 +9,7 @@ ABOUT = (
     "sources, and some seconds where all is compiled."
 )
 SCENE = "quick"
-"""Yields, rubs, vibrates and is damped by nothing that adds a loop of its own: what it lacks takes a second."""
+"""It yields, rubs and vibrates; a loop that it does not need takes a second of another first run."""
 
 
 def add_options(parser: CommandParser) -> None:
@@ -26,5 +26,6 @@ def compile_kernels(options: Options) -> int:
     for fidelity in ("solid", "modal"):
         simulate(scene, fidelity, RunOptions(progress=chosen_meter(options)))
     took = COMPILING.wall
-    print_answer(options, {"compiling_s": took}, f"compiled in {took:.0f} s; what is compiled is kept on disk\n")
+    text = f"compiled in {took:.0f} s; what is compiled is kept on disk\n"
+    print_answer(options, {"compiling_s": took}, text)
     return 0
