@@ -2,16 +2,17 @@
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import hypot, inf
 from typing import Self
 
 import numpy as np
 
 from fem_impact.arrays import Array
-from fem_impact.case.case import Case
+from fem_impact.case.case import Case, before_other_end
 from fem_impact.fem.kernels import compiled_before, kernel
 from fem_impact.fem.sliding import speed_table
+from fem_impact.modal.dents import Dent, meet
 from fem_impact.modal.groove import WORK
 from fem_impact.modal.landing import height_of, in_body
 from fem_impact.modal.laws import give_law, set_law, start_of
@@ -73,6 +74,7 @@ class ModalResult:
     laid : whether a straight part landed flat
     finished, reason : whether the impact is over, and why the march ended
     last, time : motion and modes at the end, gravity in them, and its time, s
+    dents, met : that it leaves, and those of the arrival that it met, in whose place they stand
     record : (m, 17) what moved over time, see `fem_impact.modal.motion`; no rows where none was wanted
     step, steps, wall, cpu : s, -, s, s
     """
@@ -106,6 +108,8 @@ class ModalResult:
     reason: str
     last: ModalState
     time: float
+    dents: tuple[Dent, ...]
+    met: tuple[Dent, ...]
     record: Array
     step: float
     steps: int
@@ -185,6 +189,8 @@ class Arrival:
     v_n, v_t, omega : m/s, rad/s, as seen from the barrier
     turn : since the scene's attitude, rad
     q, rate : (k,) amplitudes and rates of the modes, sqrt(kg) m and sqrt(kg) m/s
+    along : where the mass centre stands on the barrier, m
+    dents : that earlier strikes have left
     """
 
     v_n: float
@@ -193,6 +199,8 @@ class Arrival:
     turn: float
     q: Array
     rate: Array
+    along: float = 0.0
+    dents: tuple[Dent, ...] = ()
 
 
 def solve(
@@ -206,7 +214,7 @@ def solve(
     """Compute an impact; the modes of a new rod are computed first, and a first run says that it compiles.
 
     Where it is ``recorded``, the result holds what moved over time. ``step`` is the time step over the usual.
-    The rod comes as its scene says, or as its ``arrival`` does, on a surface that nothing has touched. The
+    The rod comes as its scene says, or as its ``arrival`` does, on a surface with the dents of that. The
     impact is over where nothing would touch in a free flight as long as `Case.one_impact`; ``alone``, of a
     body that is not followed on, also where the other end would strike next.
     """
@@ -222,9 +230,18 @@ def solve(
     slowest, rate, touching = _approach(rod, course.now), 0.0, _touching(rod, course.now)
     ends = np.array([_of_tail(case, rod, s) for s in range(len(rod.sites.along_t))])
     sites = rod.sites._replace(apart=ends != ends[touching[0]]) if alone else rod.sites
+    along, dents = (arrival.along, arrival.dents) if arrival else (0.0, ())
+    met: list[Dent] = []
+
+    def lawful(s: int, begins: bool = False) -> float:
+        swing = give_law(case, rod, course.now, course.held, s, E_0, slowest, begins)
+        dent, again = meet(dents, start, sites, course.now, course.held, s, along)
+        met.extend([dent] if dent else [])
+        return max(swing, again)
+
     for s in touching:
         if not course.held.site[s, SITE.known]:
-            rate = hypot(rate, give_law(case, rod, course.now, course.held, s, E_0, slowest, arrival is None))
+            rate = hypot(rate, lawful(s, arrival is None))
     fastest = max([*rod.omega, rate])  # 0 of a rigid rod before it touches
     dt = step * min(case.estimate.duration / STEPS, FASTEST / fastest if fastest else inf)
     latest = case.max_time if case.scene.accuracy.max_time else LATER * case.max_time
@@ -233,10 +250,12 @@ def solve(
     course.follow(start, modes, sites, bounds._replace(horizon=0.0))
     wall, cpu = time.perf_counter(), time.process_time()
     while (touched := course.follow(start, modes, sites, bounds)) >= 0:
-        rate = hypot(rate, give_law(case, rod, course.now, course.held, touched, E_0, slowest))
+        rate = hypot(rate, lawful(touched))
         bounds = bounds._replace(step=min(bounds.step, step * FASTEST / rate))
     wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
-    return _result(case, rod, course, touched, E_0, bounds, (wall, cpu))
+    result = _result(case, rod, course, touched, E_0, bounds, (wall, cpu))
+    left = (Dent.of(course.held, s, sites, course.now, along) for s in range(len(ends)))
+    return replace(result, dents=tuple(dent for dent in left if dent), met=tuple(met))
 
 
 def _arriving(case: Case, rod: ModalRod, arrival: Arrival | None) -> ModalState:
@@ -338,6 +357,8 @@ def _result(
         reason=_reason(ended, bounds, float(clock[CLOCK.free])),
         last=now,
         time=float(clock[CLOCK.time]),
+        dents=(),
+        met=(),
         record=course.record[: int(clock[CLOCK.rows])],
         step=bounds.step,
         steps=int(clock[CLOCK.steps]),
@@ -349,10 +370,7 @@ def _result(
 def _reason(ended: int, bounds: Bounds, free: float) -> str:
     """Return why the march ended, as a sentence; ``free``, s, is the flight before another impact."""
     if ended == NEXT:
-        return (
-            f"The rod's other end strikes {free * 1e3:.2g} ms later: this is the motion before, and "
-            '`impact.until = "rest"` follows the body on.'
-        )
+        return before_other_end(free)
     if ended == OVER:
         return f"The rod does not touch again within the next {bounds.horizon * 1e3:.3g} ms of free flight."
     return f"Reached max_time = {bounds.latest * 1e3:g} ms before the last separation."

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from fem_impact.errors import UsageError, did_you_mean
@@ -12,6 +12,9 @@ if TYPE_CHECKING:
     import pandas
 
 _N = " (number from 1)"
+_PHASE = ", at most, where vibration comes in with another phase; 0 without modes or vibration"
+PHASED = "e", "mu", "friction", "vibration", "force"
+"""Numbers of a strike that the phase of what vibrates before it changes, as told under NAME_phase."""
 NO_ERROR = (
     "no error is known of the loss factor of vibration in flight, of what the balance leaves, of dents and "
     "of gauges; a rigid strike has no force"
@@ -66,6 +69,11 @@ class StrikeRecord:
     other: float = key(
         "E_other_J", "J", "Waves, residual stress, bending of a plate, and what the balance misses."
     )
+    e_phase: float = key("e_by_phase", "-", f"Change of e{_PHASE}.")
+    mu_phase: float = key("mu_by_phase", "-", f"Change of mu{_PHASE}.")
+    friction_phase: float = key("W_friction_by_phase_J", "J", f"Change of friction{_PHASE}.")
+    vibration_phase: float = key("E_vib_by_phase_J", "J", f"Change of the vibration after it{_PHASE}.")
+    force_phase: float = key("peak_force_by_phase_N", "N", f"Change of the largest force{_PHASE}.")
 
     @property
     def lost(self) -> float:
@@ -200,3 +208,14 @@ class Strikes:
         columns = tuple(keys_of(StrikeRecord))
         rows = [[one.of(strike) for one in columns] for strike in known(self.each)]
         return pandas.DataFrame(rows, columns=[one.name for one in columns])
+
+
+def other_end(each: Sequence[StrikeRecord], length: float) -> Num:
+    """Return the largest speed at which the other end strikes over that of the first strike."""
+    if each[0].part == "surface":
+        return Unknown("a ball has no other end")
+    first = each[0].z < 0.5 * length
+    others = [one.approach for one in each if (one.z < 0.5 * length) != first and one.part in ("tip", "tail")]
+    if not others:
+        return Unknown("the other end does not strike by itself")
+    return max(others) / each[0].approach

@@ -6,7 +6,7 @@ from math import cos
 from typing import Self
 
 from fem_impact.arrays import Array
-from fem_impact.case.case import Case
+from fem_impact.case.case import OTHER_END, Case
 from fem_impact.case.effects.registry import EFFECTS
 from fem_impact.outcome import groups
 from fem_impact.outcome.keys import Num, Unknown, unknown
@@ -137,8 +137,10 @@ class Reduction:
         )
         shown = () if withheld or cut else unusual(origin, self.motion, self.restitution, energy)
         again = strikes_again(case, end.leaving, end.Omega) if end.finished and not failed else ""
-        told = named(again) if case.scene.impact.until == FIRST else ""
-        of_result = limitations("result", *shown, gravity, told)
+        alone = case.scene.impact.until == FIRST
+        told = named(again) if alone and not self.end.reason.startswith(OTHER_END) else ""
+        next_one = told or (end.reason if alone and again else "")
+        of_result = limitations("result", *shown, gravity, next_one)
         outcome = Outcome(
             provenance=origin,
             validity=_validity(

@@ -8,7 +8,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import takewhile
-from math import copysign, exp, log, pi, radians
+from math import copysign, exp, hypot, log, pi, radians
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,9 +16,9 @@ import numpy as np
 from fem_impact.case.case import Case
 from fem_impact.errors import SceneError
 from fem_impact.outcome.keys import Num, Unknown, keys_of, known, or_none
-from fem_impact.outcome.strikes import StrikeRecord, Strikes, StrikeSpread
+from fem_impact.outcome.strikes import PHASED, StrikeRecord, Strikes, StrikeSpread, other_end
 from fem_impact.run.modal_error import FACTORS, HELD, LEAST_VIBRATION, TOLD, VIBRATION, place_at, stored
-from fem_impact.run.strikes import Followed, other_end
+from fem_impact.run.strikes import Followed
 from fem_impact.scene.types import Scene
 from rigid import critical_ratio
 from rigid.strikes import State, Strike
@@ -37,13 +37,14 @@ EXACT = Unknown(
 )
 FORCELESS = Unknown("one of the first strikes has no force: it is rigid, without duration")
 UNTOLD = "fidelity", "part", "damping", "taken", "other", "dent", "highest", "lowest"
+PHASES = tuple(f"{name}_phase" for name in PHASED)
 """What of a strike has no half-width: see `NO_ERROR`."""
-NAMES = {key.path[-1]: key.name for key in keys_of(StrikeRecord) if key.path[-1] not in UNTOLD}
+NAMES = {key.path[-1]: key.name for key in keys_of(StrikeRecord) if key.path[-1] not in UNTOLD + PHASES}
 """Keys of the numbers that have half-widths."""
 INTERVALS = "the stated intervals of friction, angle and speed"
 BY = {
-    "modal": "the half-widths of the reduced model's e, mu and friction in each of its strikes, which know "
-    "nothing of vibration that comes in",
+    "modal": "the half-widths of the reduced model's e, mu and friction in each of its strikes, and what "
+    "vibration that comes in with another phase would change",
     "solid": "the half-widths that levels of meshes tell of e, mu and friction in strikes by finite elements",
     "rigid": "in strikes of a rigid body, how far it lies from the finer model in the last strike of that",
 }
@@ -68,6 +69,9 @@ class Doubt(NamedTuple):
 
 
 KNOWN = Doubt()
+SHUFFLE, CYCLE = 15, 67
+"""A number and a prime above `RUNS` that put the runs in another order for each strike: of all such numbers
+the one with the least correlation, 0.26, of what the strikes of 64 runs are given."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -179,7 +183,14 @@ def _by_stored(case: Case, body: Followed, begin: State, one: StrikeRecord) -> D
         for name in ("e_edge", "mu", "W_friction_over_E_0", VIBRATION, "peak_force_N")
     )
     vibrates = max(one.vibration, LEAST_VIBRATION * one.before)
-    return Doubt(e, mu, friction * one.before, vibration * vibrates, force)
+    louder = one.force_phase / one.force if one.force else 0.0
+    return Doubt(
+        hypot(e, one.e_phase),
+        hypot(mu, one.mu_phase),
+        hypot(friction * one.before, one.friction_phase),
+        hypot(vibration * vibrates, one.vibration_phase),
+        hypot(force, louder),
+    )
 
 
 def _varies(case: Case) -> bool:
@@ -197,16 +208,16 @@ def _holds(case: Case, each: Sequence[Known]) -> str:
     return f"They hold {held}" + (f"; not {' nor '.join(outside.values())}." if outside else ".")
 
 
-def _drawn(case: Case) -> Iterator[tuple[Scene, Doubt]]:
+def _drawn(case: Case) -> Iterator[tuple[Scene, list[Doubt]]]:
     """Yield scenes whose friction, angle and speed fill the stated intervals evenly.
 
-    With each come places within what is not known of its strikes.
+    With each come places within what is not known of its first strikes, as good as independent of each other:
+    finite elements lie now above and now below a coarser model from strike to strike.
     """
     scene, surface, impact = case.scene, case.scene.surface, case.scene.impact
     low, high = surface.friction_low, surface.friction_high
     for run, share in enumerate(np.linspace(0.0, 1.0, RUNS).tolist(), 1):
-        angle, speed, *places = (2.0 * _halton(run, base) - 1.0 for base in (2, 3, 5, 7, 11, 13))
-        e, mu, vibration, force = (place / HELD for place in places)
+        angle, speed = (2.0 * _halton(run, base) - 1.0 for base in (2, 3))
         off = angle * (scene.strikes.angle_error or 0.0)
         faster = 1.0 + speed * (scene.strikes.speed_error or 0.0)
         moved = replace(
@@ -219,7 +230,13 @@ def _drawn(case: Case) -> Iterator[tuple[Scene, Doubt]]:
         )
         friction = low + share * (high - low)
         drawn = replace(scene, surface=replace(surface, friction=friction), impact=moved)
-        yield drawn, Doubt(e, mu, mu, vibration, force)
+        yield drawn, [_place(run * SHUFFLE**strike % CYCLE) for strike in range(SEEN)]
+
+
+def _place(run: int) -> Doubt:
+    """Return places within what is not known of a strike, of which nine in ten lie within -1 to 1."""
+    e, mu, vibration, force = ((2.0 * _halton(run, base) - 1.0) / HELD for base in (5, 7, 11, 13))
+    return Doubt(e, mu, mu, vibration, force)
 
 
 def _halton(number: int, base: int) -> float:
@@ -235,17 +252,17 @@ def _halton(number: int, base: int) -> float:
     return place
 
 
-def _run(scene: Scene, each: Sequence[Known], at: Doubt = KNOWN) -> list[StrikeRecord]:
-    """Return the first strikes of a scene; ``at`` are places within what is not known of them."""
-    body = Followed.of(Case.of(scene, "rigid"))
-    mass, left = body.case.contact.body.mass, list(each)
+def _run(scene: Scene, each: Sequence[Known], at: Sequence[Doubt] = ()) -> list[StrikeRecord]:
+    """Return the first strikes of a scene; ``at`` are places within what is not known of each."""
+    body, at = Followed.of(Case.of(scene, "rigid")), at or [KNOWN] * len(each)
+    mass, left = body.case.contact.body.mass, list(zip(each, at, strict=False))
 
     def moved(strike: Strike) -> Strike:
         before = strike.before
-        if not left or left[0].own.part != body.part_of(before.place, before.line, before.state.alpha):
+        if not left or left[0][0].own.part != body.part_of(before.place, before.line, before.state.alpha):
             left.clear()  # from here on another sequence
             return strike
-        one = left.pop(0)
+        one, at = left.pop(0)
         doubt, own, law = one.doubt or KNOWN, one.own, one.law
         return strike.having(
             max(0.0, strike.e + own.e - law.e + at.e * doubt.e),
@@ -256,13 +273,11 @@ def _run(scene: Scene, each: Sequence[Known], at: Doubt = KNOWN) -> list[StrikeR
 
     body.moved, body.upto = moved, min(SEEN, scene.impact.most_strikes or SEEN)
     body.go_on(body.coming)
-    pairs = zip(body.each, each, strict=False)
-    alike = [_divided(one, of, at) for one, of in takewhile(lambda pair: _same_part(*pair), pairs)]
-    return alike + body.each[len(alike) :]
-
-
-def _same_part(one: StrikeRecord, of: Known) -> bool:
-    return one.part == of.own.part
+    alike = takewhile(
+        lambda three: three[0].part == three[1].own.part, zip(body.each, each, at, strict=False)
+    )
+    divided = [_divided(*three) for three in alike]
+    return divided + body.each[len(divided) :]
 
 
 def _divided(one: StrikeRecord, of: Known, at: Doubt) -> StrikeRecord:

@@ -7,14 +7,16 @@ import numpy as np
 from scipy.optimize import brentq
 
 from fem_impact.arrays import Array
-from fem_impact.case.case import Case
-from fem_impact.case.effects.damping import loss_factor
+from fem_impact.case.case import PERIODS, Case
+from fem_impact.case.effects.damping import loss_factor, states_loss
 from fem_impact.case.effects.registry import AUTO
+from fem_impact.modal.dents import Dent
 from fem_impact.modal.impact import Arrival, ModalResult
 from fem_impact.modal.motion import AT
 from fem_impact.modal.rod import ModalRod, modal_rod
 from fem_impact.modal.sites import lowest_place
-from fem_impact.outcome.strikes import StrikeRecord
+from fem_impact.outcome.strikes import PHASED, StrikeRecord
+from fem_impact.run.certain import SEEN
 from fem_impact.run.modal import closed
 from fem_impact.run.strikes import LEAST_BY_LAW, Followed
 from rigid.strikes import Finish, State, next_touch
@@ -24,11 +26,20 @@ MOST = 40
 LOOK, LOOKS = 0.5, 1000  # rad of the fastest mode between looks at a rod that nearly touches, and most looks
 MARGIN = 1.2  # over the amplitudes of the modes together, about which a touch is looked for
 TOLD = (
-    "{} strikes are computed with modes, each on a surface that no strike before has dented; what touches "
-    "again within a bending period belongs to the strike before. In flight the modes swing on, damped by the "
-    "loss factor {:g}. Strikes after {} by modes are those of a rigid body, and so are weak ones; the modes "
-    "do not feel them."
+    "{} strikes are computed with modes, {}; what touches again within {:g} bending periods belongs to the "
+    "strike before. In flight the modes swing on, damped by the loss factor {}. Strikes after {} by modes "
+    "are those of a rigid body, and so are weak ones; the modes do not feel them."
 )
+FRESH = "each on a surface that no strike before has dented"
+AGAIN = (
+    "of which {} meet the dents of earlier ones, which give nearly all back (e of a ball .99, by finite "
+    "elements .96), all others an undented surface"
+)
+OF_IRON = "{:g} of iron, as the material states none (`loss_factor`)"
+QUARTERS = (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)
+"""Cosine and sine of the phases by which vibration that comes in is moved on, to see what that changes."""
+LEAST = 1e-3
+"""Vibration that comes in, over the energy of the rigid motion, from which on its phase counts."""
 SMOOTH = "A rod that leaves its dent is taken to leave the surface beside it."
 
 
@@ -37,6 +48,11 @@ def modal_loss(case: Case) -> float:
     effects = case.scene.effects
     named = "material-damping" in effects or (AUTO in effects and "-material-damping" not in effects)
     return loss_factor(case.bodies) if named else 0.0
+
+
+def loss_told(case: Case, loss: float) -> str:
+    """Return a loss factor of modes in flight in words: that of iron where the material states none."""
+    return OF_IRON.format(loss) if loss and not states_loss(case.bodies) else f"{loss:g}"
 
 
 @dataclass(eq=False)
@@ -50,6 +66,7 @@ class ModalCourse:
     loss : loss factor of the modes in flight
     strikes : by modes so far; finished : whether the last one ended
     damped : energy, J, that the modes have lost since the last strike
+    dents : that its strikes have left
     """
 
     case: Case
@@ -62,13 +79,14 @@ class ModalCourse:
     strikes: int = 0
     finished: bool = True
     damped: float = 0.0
+    dents: tuple[Dent, ...] = ()
 
     @classmethod
     def at_first(cls, case: Case, followed: Followed) -> "ModalCourse":
         """Return the course after the first strike."""
         first, begin = closed(case, alone=False), followed.coming
         course = cls(case, followed, first.rod, begin, first.last.q, first.last.rate, modal_loss(case))
-        course._enter(begin, first, 0.0)
+        course._enter(begin, first, 0.0, [])
         return course
 
     @classmethod
@@ -86,7 +104,9 @@ class ModalCourse:
     @property
     def told(self) -> tuple[str, ...]:
         """What is to be told of strikes by modes."""
-        return TOLD.format(self.strikes, self.loss, MOST), SMOOTH
+        met = sorted(self.followed.again)
+        struck = AGAIN.format(", ".join(map(str, met))) if met else FRESH
+        return TOLD.format(self.strikes, struck, PERIODS, loss_told(self.case, self.loss), MOST), SMOOTH
 
     def to_the_end(self) -> Finish:
         """Follow the rod: hard strikes by modes, what lies between and after them as a rigid body."""
@@ -116,9 +136,17 @@ class ModalCourse:
         """Strike at a later state in flight."""
         self.followed.gravity += self.followed.work(self.state, before)
         self.swing_on(before)
-        turn = before.alpha - self.case.scene.impact.angle
-        arrival = Arrival(before.V_n, before.V_t, before.Omega, turn, self.q, self.rate)
-        self._enter(before, closed(self.case, arrival=arrival, alone=False), self.vibration)
+        turn, omega, taken = before.alpha - self.case.scene.impact.angle, self.rod.omega, self.vibration
+        here = Arrival(
+            *(before.V_n, before.V_t, before.Omega, turn, self.q, self.rate), before.along, self.dents
+        )
+        counts = len(self.followed.each) < SEEN and taken > LEAST * self.followed.kinetic(before)
+        others = [
+            replace(here, q=c * self.q + s * self.rate / omega, rate=c * self.rate - s * omega * self.q)
+            for c, s in (QUARTERS if counts else ())
+        ]
+        own, *moved = (closed(self.case, arrival=one, alone=False) for one in (here, *others))
+        self._enter(before, own, taken, moved)
 
     def _touch(self) -> State | None:
         """Return the rigid motion in which the vibrating rod touches next.
@@ -156,32 +184,45 @@ class ModalCourse:
         """Return amplitudes and rates of the modes ``dt``, s, from now: exact damped oscillators."""
         return swung(self.rod.omega, self.loss, dt, self.q, self.rate)
 
-    def _enter(self, before: State, result: ModalResult, taken: float) -> None:
-        """Enter a strike, and go on from the state after it."""
-        last, angle = result.last, self.case.scene.impact.angle
+    def _enter(self, before: State, result: ModalResult, taken: float, moved: list[ModalResult]) -> None:
+        """Enter a strike that began with a vibration ``taken``, J, and go on from the state after it.
+
+        ``moved`` is the same with vibration of other phases.
+        """
+        after, last = self._after(before, result), result.last
+        self.followed.gravity += self.followed.work(before, after)
+        if result.met:
+            self.followed.again.add(len(self.followed.each) + 1)
+        self.dents = (*(dent for dent in self.dents if dent not in result.met), *result.dents)
+        own = self._record(before, result, taken)
+        others = [self._record(before, one, taken) for one in moved]
+        swings = {
+            f"{name}_phase": max(abs(getattr(one, name) - getattr(own, name)) for one in others)
+            for name in (PHASED if others else ())
+        }
+        self.followed.each.append(replace(own, **swings))
+        outside = self.followed.touching(after.alpha, after.V_n, after.V_t, after.Omega).height
+        self.state = after._replace(height=max(after.height, outside))  # beside its dent
+        self.rod, self.q, self.rate = result.rod, last.q, last.rate
+        self.strikes, self.finished, self.damped = self.strikes + 1, result.finished, 0.0
+
+    def _after(self, before: State, result: ModalResult) -> State:
+        """Return the motion after a strike."""
+        last = result.last
         V_n, V_t, Omega = (float(v) for v in last.rigid[:3])
-        after = before._replace(
+        return before._replace(
             time=before.time + result.time,
             height=float(last.rigid[AT.height]),
             along=before.along + float(last.rigid[AT.along]),
-            alpha=angle + float(last.rigid[AT.turn]),
+            alpha=self.case.scene.impact.angle + float(last.rigid[AT.turn]),
             V_n=V_n,
             V_t=V_t,
             Omega=Omega,
         )
-        fell = self.followed.work(before, after)
-        self.followed.gravity += fell
-        self.followed.each.append(self._record(before, after, result, taken, fell))
-        outside = self.followed.touching(after.alpha, V_n, V_t, Omega).height  # beside its dent
-        self.state = after._replace(height=max(after.height, outside))
-        self.rod, self.q, self.rate = result.rod, last.q, last.rate
-        self.strikes, self.finished, self.damped = self.strikes + 1, result.finished, 0.0
 
-    def _record(
-        self, before: State, after: State, result: ModalResult, taken: float, fell: float
-    ) -> StrikeRecord:
-        """Return the record of a strike that began with a vibration ``taken``; gravity gave ``fell``, J."""
-        followed = self.followed
+    def _record(self, before: State, result: ModalResult, taken: float) -> StrikeRecord:
+        """Return the record of a strike that began with a vibration ``taken``, J."""
+        followed, after = self.followed, self._after(before, result)
         corner = followed.shape.corners[followed.shape.lowest(before.alpha, before.Omega)]
         place = corner.place(before.alpha)
         p, q = (float(one) for one in result.contacts[:, 2:].sum(axis=0))
@@ -197,7 +238,7 @@ class ModalCourse:
             taken=taken,
         )
         spent = record.vibration + result.friction + result.plastic + result.viscous
-        return replace(record, other=record.lost + taken + fell - spent)
+        return replace(record, other=record.lost + taken + followed.work(before, after) - spent)
 
 
 def swung(omega: Array, loss: float, dt: float, q: Array, rate: Array) -> tuple[Array, Array]:

@@ -24,7 +24,7 @@ from fem_impact.modal.sites import skin
 from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import or_none
 from fem_impact.outcome.strikes import StrikeRecord
-from fem_impact.run.modal_strikes import ModalCourse, modal_loss, swung
+from fem_impact.run.modal_strikes import ModalCourse, loss_told, modal_loss, swung
 from fem_impact.run.resolution import unresolved
 from fem_impact.run.solid import readings
 from fem_impact.run.strikes import LEAST_BY_LAW, Followed
@@ -35,7 +35,7 @@ from rigid.strikes import Finish, State, next_touch
 
 TOLD = (
     "{} strikes are computed with finite elements of one rod, which keeps its dents, hardening and residual "
-    "stress; {} In flight {} modes swing on, damped by the loss factor {:g}; what vibrates above them ends "
+    "stress; {} In flight {} modes swing on, damped by the loss factor {}; what vibrates above them ends "
     "with its strike."
 )
 FRESH = "each meets a surface that no strike before has dented."
@@ -47,6 +47,7 @@ BEYOND = (
 ELSEWHERE = (
     "Strike {} lands {:.2g} mm beside the fine cells that are held ready: finite elements end before it."
 )
+ALONE = "Where it will strike is foretold by rigid theory alone, as the reduced model refuses the scene: {}."
 STOPPED = "Strike {} is not that of finite elements, which did not see its end. {}"
 NARROW = "Of strike {} {}."
 """What is told of a strike whose contact is narrow: its number, and how narrow."""
@@ -74,12 +75,9 @@ def _expected(case: Case, count: int) -> list[LaterStrike]:
     rigid = Followed.of(case)
     rigid.upto = count
     rigid.go_on(rigid.coming)
-    courses = [rigid]
-    try:
-        modal = Followed.of(Case.of(case.scene, "modal"))
-    except SceneError:
-        pass
-    else:
+    courses, by_modes = [rigid], _by_modes(case)
+    if isinstance(by_modes, Case):
+        modal = Followed.of(by_modes)
         modal.upto = count
         ModalCourse.at_first(modal.case, modal).to_the_end()
         courses.append(modal)
@@ -88,6 +86,14 @@ def _expected(case: Case, count: int) -> list[LaterStrike]:
         for course in courses
         for one in course.each[1:]
     ]
+
+
+def _by_modes(case: Case) -> Case | str:
+    """Return the case of the reduced model, or why that refuses the scene."""
+    try:
+        return Case.of(case.scene, "modal")
+    except SceneError as refused:
+        return refused.problem
 
 
 class Dent(NamedTuple):
@@ -118,7 +124,7 @@ class SolidCourse:
     flight : its vibration now
     loss : loss factor of the modes in flight
     damped : energy, J, that the modes have lost since the last strike
-    dents : of the barrier; again : numbers of the strikes that met one
+    dents : of the barrier
     told : what limits trust in them
     """
 
@@ -131,7 +137,6 @@ class SolidCourse:
     loss: float
     damped: float = 0.0
     dents: list[Dent] = field(default_factory=list)
-    again: list[int] = field(default_factory=list)
     told: list[str] = field(default_factory=list)
 
     @classmethod
@@ -155,8 +160,15 @@ class SolidCourse:
     @property
     def limits(self) -> list[str]:
         """What limits trust in them."""
-        struck = AGAIN.format(", ".join(map(str, self.again))) if self.again else FRESH
-        several = [TOLD.format(len(self.body.each), struck, len(self.flight.a), self.loss)]
+        met = sorted(self.body.again)
+        struck = AGAIN.format(", ".join(map(str, met))) if met else FRESH
+        loss = loss_told(self.case, self.loss)
+        several, by_modes = (
+            [TOLD.format(len(self.body.each), struck, len(self.flight.a), loss)],
+            _by_modes(self.case),
+        )
+        if isinstance(by_modes, str):
+            several.append(ALONE.format(by_modes.rstrip(".")))
         return [*(several if self.body.upto != 1 else []), *self.told]
 
     def to_the_end(self, options: RunOptions) -> Finish:
@@ -247,7 +259,7 @@ class SolidCourse:
         centre = np.array([motion.centre[0], 0.0, before.height])
         if dent is not None:
             model, centre[0] = dented(model, dent.end), before.along - dent.along
-            self.again.append(len(self.body.each) + 1)
+            self.body.again.add(len(self.body.each) + 1)
         moved = replace(motion, centre=centre, V_n=before.V_n, V_t=before.V_t, Omega=before.Omega)
         vibration = replace(self.flight, modes=view.modes)
         model = lowered(carry(model, view, self.last, turn, moved, vibration), START_GAP)

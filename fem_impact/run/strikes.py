@@ -1,6 +1,6 @@
 """The strikes after the first impact, by rigid theory: each with the restitution of its own contact."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import copysign, cos, hypot, inf, pi, remainder, sin
@@ -9,7 +9,7 @@ from fem_impact.case.bodies import LaterStrike
 from fem_impact.case.case import Case
 from fem_impact.case.effects.registry import AUTO
 from fem_impact.outcome.keys import Num, Unknown, unknown
-from fem_impact.outcome.strikes import StrikeRecord, Strikes
+from fem_impact.outcome.strikes import PHASED, StrikeRecord, Strikes, other_end
 from fem_impact.physics.contact import ContactPair
 from fem_impact.run.common import rod_flows
 from fem_impact.run.rigid import NormalLoss, normal_loss
@@ -67,8 +67,8 @@ LOSSLESS = (
     "The rattle lasts longer than a real one."
 )
 AGAIN = (
-    "{} of the strikes not by finite elements land in the dent of an earlier one. They are computed as on an "
-    "undented surface, which loses too much: a hardened dent gives nearly all back."
+    "{} of the strikes land in the dent of an earlier one, but are computed as on an undented surface, which "
+    "loses too much: a hardened dent gives nearly all back."
 )
 
 
@@ -87,6 +87,7 @@ class Followed:
     losses : restitution and what follows from it, by the motion before a strike of the rigid body
     gravity, settled, heat : J, of gravity, of strikes too weak to count, of friction between strikes
     level, lossless : strikes of the rigid body that land level, and that lose nothing along the normal
+    again : numbers of the strikes that met the dent of an earlier one
     upto : strikes after which another model goes on, None where none does
     moved : changes the strikes of the rigid body; see `sequence`
     """
@@ -101,6 +102,7 @@ class Followed:
     heat: float = 0.0
     level: int = 0
     lossless: int = 0
+    again: set[int] = field(default_factory=set)
     upto: int | None = None
     moved: Moved = as_it_is
 
@@ -150,15 +152,19 @@ class Followed:
         return tuple(sentence.format(count) for sentence, count in counts if count)
 
     def _again(self) -> int:
-        """Return how many strikes land within half a contact's length of a dent, in the body that yields."""
+        """Return how many strikes land within half a contact's length of a dent that they do not meet."""
         in_body, dents, count = rod_flows(self.case), list[tuple[StrikeRecord, float]](), 0
-        for one in self.each:
+        for number, one in enumerate(self.each, 1):
             if one.plastic <= 0.0:
                 continue
             begin = self.touching(one.alpha, one.v_n, one.v_t, one.omega)
-            count += one.fidelity != "solid" and any(
-                (hypot(one.x - old.x, one.z - old.z) if in_body else abs(one.along - old.along)) < half
-                for old, half in dents
+            count += (
+                one.fidelity != "solid"
+                and number not in self.again
+                and any(
+                    (hypot(one.x - old.x, one.z - old.z) if in_body else abs(one.along - old.along)) < half
+                    for old, half in dents
+                )
             )
             dents.append((one, self.later(begin).contact.estimate.a_t))
         return count
@@ -313,7 +319,6 @@ class Followed:
         gauge: tuple[float | None, float | None] = (None, None),
         vibration: float = 0.0,
         taken: float = 0.0,
-        other: float = 0.0,
     ) -> StrikeRecord:
         """Return the record of a strike.
 
@@ -354,7 +359,8 @@ class Followed:
             damping=damping,
             vibration=vibration,
             taken=taken,
-            other=other,
+            other=0.0,
+            **{f"{name}_phase": 0.0 for name in PHASED},
         )
 
     def part_of(self, place: tuple[float, float], line: float, alpha: float) -> str:
@@ -386,14 +392,3 @@ def _hardest(values: Iterable[float | None]) -> int | Unknown:
     """Return the number, from 1, of the largest value that is known."""
     known_ones = [(value, -number) for number, value in enumerate(values, 1) if value is not None]
     return -max(known_ones)[1] if known_ones else NO_FORCE
-
-
-def other_end(each: Sequence[StrikeRecord], length: float) -> Num:
-    """Return the largest speed at which the other end strikes over that of the first strike."""
-    if each[0].part == "surface":
-        return Unknown("a ball has no other end")
-    first = each[0].z < 0.5 * length
-    others = [one.approach for one in each if (one.z < 0.5 * length) != first and one.part in ("tip", "tail")]
-    if not others:
-        return Unknown("the other end does not strike by itself")
-    return max(others) / each[0].approach

@@ -6,6 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from fem_impact.arrays import Array, Ints
+from fem_impact.case.case import before_other_end
 from fem_impact.fem.flight import FreeVibration, RigidMotion
 from fem_impact.solid.contact.surface import SurfaceContact
 from fem_impact.solid.model import Model
@@ -62,10 +63,7 @@ class Separation:
             f"The rod does not touch again within the next {self.horizon * 1e3:.3g} ms of free flight."
         )
         if ahead < self.horizon:
-            self.reason = (
-                f"The rod's other end strikes {ahead * 1e3:.2g} ms later: this is the motion before, and "
-                '`impact.until = "rest"` follows the body on.'
-            )
+            self.reason = before_other_end(ahead)
         return True
 
     def _tail_strikes(self, state: State, motion: RigidMotion) -> float:

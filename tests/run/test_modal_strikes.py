@@ -94,6 +94,16 @@ def test_a_strike_may_take_vibration_back_into_motion():
     assert max(gained) > 0.0
 
 
+def test_another_phase_of_what_vibrates_changes_a_strike_and_widens_its_half_widths():
+    changes = FLOOR | {"impact.until": "2 strikes", "impact.angle": "85 deg", "impact.v_t": "0 m/s"}
+    first, second = (whole := simulate(replace_all(load("quick"), changes), "modal").strikes).each
+    assert (first.e_phase, first.force_phase) == (0.0, 0.0)  # nothing vibrates before it
+    assert second.taken > 0.01 * second.before
+    assert second.e_phase > 0.05
+    assert whole.half_width(2, "e") > second.e_phase
+    assert whole.half_width(2, "Omega_rad_per_s") > 2.0 * whole.half_width(1, "Omega_rad_per_s")
+
+
 def test_modes_in_flight_are_damped_oscillators():
     scene = replace_all(load("quick"), FLOOR)
     case = Case.of(scene, "modal")

@@ -12,9 +12,19 @@ LOSS_FACTOR = 6e-4
 
 def loss_factor(bodies: Bodies) -> float:
     """Return the loss factor of the rod's modes: the largest that its materials state, or that of iron."""
+    return max(_stated(bodies), default=LOSS_FACTOR)
+
+
+def states_loss(bodies: Bodies) -> bool:
+    """Return whether a material of the rod states a loss factor."""
+    return bool(_stated(bodies))
+
+
+def _stated(bodies: Bodies) -> list[float]:
+    """Return the loss factors that the rod's materials state."""
     rod = bodies.rod
-    stated = [part.material.loss_factor for part in rod.segments] or [rod.material.loss_factor]
-    return max((one for one in stated if one is not None), default=LOSS_FACTOR)
+    metals = [part.material for part in rod.segments] or [rod.material]
+    return [metal.loss_factor for metal in metals if metal.loss_factor is not None]
 
 
 def number(bodies: Bodies) -> float:
