@@ -1,12 +1,12 @@
 """The contact laws of a site, made when it touches: from the attitude of the rod and its speed there."""
 
 from dataclasses import replace
-from math import cos, inf, pi, sin, sqrt, tan
+from math import atan, cos, inf, pi, sin, sqrt, tan
 
 import numpy as np
 
 from fem_impact.case.case import Case
-from fem_impact.modal.groove import ACROSS, LONGEST, Flank
+from fem_impact.modal.groove import ACROSS, LONGEST, Flank, half_length
 from fem_impact.modal.groove import AT as IN_GROOVE
 from fem_impact.modal.hertz import springs_over
 from fem_impact.modal.landing import height_of, in_body, lay_flat
@@ -22,6 +22,7 @@ from rigid import Faceted
 BESIDE = 1e-4  # rad, that a law is at least away from the ends of its site's range of normals
 STEADIER = 30.0  # times as many steps where a whole row of cells touches and leaves at once
 FLATTEST, UPRIGHT = 1e-4, 1.5  # rad, least and most lean of a straight part beside a site
+BEYOND = 0.25 * pi  # rad, by which its far end leans more: cells leave a loaded end over a way, not at once
 SLOWEST = 0.25  # of the first approach, at which a site that touches later counts as coming at least
 
 
@@ -156,31 +157,49 @@ def start_of(case: Case, rod: ModalRod) -> Start:
 def shape(sites: Sites, held: Touched, s: int, turn: float, longest: float) -> None:
     """Give a site that touches at a turn, rad, the straight parts beside it, see `Flank`.
 
-    A part belongs to that of its ends which touches first. One not ``longest``, m, takes the corner at its
-    other end along: both press into one groove.
+    A part belongs to that of its ends which touches first, the other end has what that one left of it. One
+    not ``longest``, m, takes the corner at its other end along: both press into one groove. The cells of the
+    groove hold the whole of a long part and resolve a corner alone.
     """
     begin, end, (t, n) = int(sites.begin[s]), int(sites.begin[s + 1]), skin(sites, s, turn)
     arcs = [a for a in range(begin, end) if sites.high[a] > sites.low[a]]
     if len(arcs) == 1:
         held.tip[s, 0] = sites.radius[arcs[0]]
-    count = len(sites.begin) - 1
+    count, deepest = len(sites.begin) - 1, (ACROSS * held.size[s]) ** 2 / (2 * held.flow[s, 0])
+    longer = 0.0
     for side, other in enumerate(((s - 1) % count, (s + 1) % count)):
-        if held.site[other, SITE.known] or other == s:
+        if other == s or held.site[other, SITE.known] == LAID:
             continue
         u, w = skin(sites, other, turn)
         far = slice(int(sites.begin[other]), int(sites.begin[other + 1]))
-        slope = _slope(turn - sites.low[begin] if side == 0 else sites.high[end - 1] - turn)
-        flank = Flank(slope, abs(cos(turn) * (u - t) + sin(turn) * (w - n)), inf)
-        if np.hypot(u - t, w - n) <= longest and not sites.radius[far].any():
+        flank = _flank(
+            turn - sites.low[begin] if side == 0 else sites.high[end - 1] - turn, u - t, w - n, turn
+        )
+        if held.site[other, SITE.known]:
+            theirs = Flank(*held.tip[other, 4 - 3 * side : 7 - 3 * side].tolist())
+            gone = half_length(float(held.tip[other, 0]), theirs, float(held.site[other, SITE.deepest]))
+            flank = flank._replace(end=max(flank.end - gone, 0.0))
+        elif np.hypot(u - t, w - n) <= longest and not sites.radius[far].any():
             lean = turn - sites.low[far][0] if side == 0 else sites.high[far][-1] - turn
             flank = flank._replace(beyond=_slope(lean))
             held.site[other, SITE.known] = LAID
         held.tip[s, 1 + 3 * side : 4 + 3 * side] = flank
+        longer = max(longer, half_length(float(held.tip[s, 0]), flank, deepest))
+    held.size[s] = min(max(held.size[s], longer / LONGEST), longer / ACROSS)
+
+
+def _flank(lean: float, t: float, n: float, turn: float) -> Flank:
+    """Return a straight part that leans by an angle, rad, to its far end (t, n), m, of a rod at a turn."""
+    slope = _slope(lean)
+    along, rise = abs(cos(turn) * t + sin(turn) * n), cos(turn) * n - sin(turn) * t
+    # of a steep part, whose slope is bounded, the rise counts
+    return Flank(slope, max(along, rise / slope), tan(min(atan(slope) + BEYOND, UPRIGHT)))
 
 
 def _slope(lean: float) -> float:
-    """Return the slope of a straight part that leans by an angle, rad, over the barrier."""
-    return tan(min(max(lean - 2 * pi * round(lean / (2 * pi)), FLATTEST), UPRIGHT))
+    """Return the slope of a straight part that leans by an angle, rad, over the barrier; inf if it hangs."""
+    lean = (lean + 0.5 * pi) % (2 * pi) - 0.5 * pi
+    return tan(min(max(lean, FLATTEST), UPRIGHT)) if lean < 0.5 * pi else inf
 
 
 def _metal(case: Case, rod: ModalRod, s: int, turn: float) -> tuple[Material, bool]:

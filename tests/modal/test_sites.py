@@ -79,6 +79,17 @@ def test_the_tail_strikes_after_the_nose_has_left(monkeypatch):
     assert "comes down at 0.329 m/s, so that the rod strikes again" in alone.validity.stopped_because
 
 
+@pytest.mark.parametrize(("angle", "v_n", "v_t"), [("89.5", "-10", "-1"), ("89.7", "-5", "1")])
+def test_a_side_that_slaps_down_in_one_contact_is_borne_by_both_ends_and_loses_nothing(angle, v_n, v_t):
+    """The end that comes down later has the part of the side that the first one has not pressed."""
+    moves = {"impact.angle": f"{angle} deg", "impact.v_n": f"{v_n} m/s", "impact.v_t": f"{v_t} m/s"}
+    found = follow(NEARLY_FLAT | moves)
+    assert abs(found.residual) < 2e-4 * found.E_0  # up to 0.7 where the tail digs in as a corner alone
+    first, second = found.sites
+    assert second.start < first.end
+    assert second.impulse_n == pytest.approx(first.impulse_n, rel=0.1)
+
+
 def test_two_elastic_strikes_of_a_stiff_rod_are_those_of_rigid_theory():
     """Without friction each gives 2 m* w at its own arm, w the approach there (Brach 2007, chapter 6)."""
     changes = NEARLY_FLAT | {"impact.v_t": "0 m/s"}
