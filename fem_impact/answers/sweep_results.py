@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from fem_impact.answers.vary import Variation, in_unit, measure
 from fem_impact.errors import UsageError, did_you_mean
 from fem_impact.jobs.job import Failure
-from fem_impact.outcome.keys import known, or_none
+from fem_impact.outcome.keys import Unknown, known, or_none
 from fem_impact.outcome.record import KEY_TABLE, KEYS, Outcome
 from fem_impact.tables.table import Cell, Table
 
@@ -237,11 +237,12 @@ def _same(stated: Any, wanted: Any) -> bool:
 def _ended(row: SweepRow, columns: Sequence[str]) -> list[Cell]:
     if row.outcome is None:
         return [False, row.reason, *([None] * len(columns))]
-    values, validity, bands = row.outcome.to_dict(), row.outcome.validity, known_bands(row.outcome)
-    for name, band in bands.items():
+    validity, e = row.outcome.validity, KEY_TABLE["e_edge"].of(row.outcome)
+    values = row.outcome.to_dict([KEY_TABLE[name] for name in columns if name in KEY_TABLE])
+    for name, band in known_bands(row.outcome).items():
         limit = values[name] = known(row.outcome.estimate(name)[0])
         values |= {name + LOW: limit - band, name + HIGH: limit + band}
-    reason = row.outcome.reasons.get("e_edge", "") if validity.finished else validity.stopped_because
+    reason = (e.reason if isinstance(e, Unknown) else "") if validity.finished else validity.stopped_because
     cells = (values.get(name) for name in columns)
     return [validity.finished, reason, *(len(cell) if isinstance(cell, list) else cell for cell in cells)]
 

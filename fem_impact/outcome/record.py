@@ -2,7 +2,7 @@
 
 import json
 import platform
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields
 from datetime import UTC, datetime
 from functools import cache
@@ -141,9 +141,9 @@ class Outcome:
             return plain(scale * value) if abs(value) >= least else "0"
         return plain(scale * value, 4)
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return the flat keys with plain JSON values."""
-        return {key.name: _plain(key, key.of(self)) for key in KEYS}
+    def to_dict(self, keys: Iterable[Key] | None = None) -> dict[str, Any]:
+        """Return the flat keys, all unless some are named, with plain JSON values."""
+        return {key.name: _plain(key, key.of(self)) for key in (KEYS if keys is None else keys)}
 
     def to_json(self) -> str:
         """Return the text that ``write`` writes and ``--json`` prints."""
