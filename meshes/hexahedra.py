@@ -97,7 +97,7 @@ class Hexahedra:
 
 
 def as_hexahedra(points: FloatArray, blocks: tuple[tuple[str, IntArray], ...]) -> Hexahedra:
-    """Return the hexahedra of cells of all kinds, the order of nodes put right where all of a kind agree.
+    """Return the hexahedra of cells of all kinds, those that are inside out put right.
 
     Parameters
     ----------
@@ -125,25 +125,30 @@ def as_hexahedra(points: FloatArray, blocks: tuple[tuple[str, IntArray], ...]) -
     cells, parent = (np.concatenate([part[k] for part in made]) for k in (1, 2))
     of = np.concatenate([np.full(len(part), list(KINDS.values()).index(kind)) for kind, part, _ in made])
     outside_in = (np.linalg.det(jacobians_of(points, cells)) < 0.0).all(axis=1)
+    parts, bad = (np.bincount(parent[here], minlength=parent.max() + 1) for here in (..., outside_in))
+    turned = (parts == bad)[parent]  # a cell of the file whose parts are all inside out is numbered so
+    cells[turned] = cells[turned][:, TURNED]
+    wrong = turned & _at_odds(cells) & (of == list(KINDS.values()).index(HEXAHEDRON))
+    cells[wrong] = cells[wrong][:, TURNED]  # it lies in its neighbours: refused as folded
     for number, kind in enumerate(KINDS.values()):
-        turned = _agreed(outside_in & (of == number), of == number, parent, kind)
-        if turned.any():
-            cells[turned] = cells[turned][:, TURNED]
-            if (turned == (of == number)).all():
-                told.append(f"the order of the nodes of each {kind.name} is turned round")
+        own = np.bincount(parent[(of == number) & turned & ~wrong]) > 0
+        if own.any():
+            every = ((turned & ~wrong) == (of == number))[of == number].all()
+            whole = f"each {kind.name}" if every else counted(int(own.sum()), kind.name)
+            told.append(f"the order of the nodes of {whole} is turned round")
     return Hexahedra(points, cells, parent, tuple(told))
 
 
-def _agreed(outside_in: BoolArray, own: BoolArray, parent: IntArray, kind: _Kind) -> BoolArray:
-    """Return the mask (m,) of the hexahedra of a kind whose order of nodes may be put right.
+def _at_odds(cells: IntArray) -> BoolArray:
+    """Return the mask (m,) of hexahedra that share a face with another which goes round it the same way.
 
-    A tetrahedron or wedge whose parts are all inside out is numbered the other way round, whatever the others
-    are. Hexahedra of a file that are inside out are that only if all of them are.
+    Cells on both sides of a face go round it in opposite ways; else one lies in the other.
     """
-    if kind is HEXAHEDRON:
-        return outside_in if outside_in.sum() == own.sum() else np.zeros_like(own)
-    parts, bad = (np.bincount(parent[here], minlength=parent.max() + 1) for here in (own, outside_in))
-    return np.asarray(own & ((parts > 0) & (parts == bad))[parent])
+    faces = cells[:, FACES].reshape(-1, 4)
+    first = faces.argmin(axis=1)[:, None]
+    around = np.take_along_axis(faces, (first + np.arange(4)) % 4, axis=1)
+    ways = np.unique(around, axis=0, return_inverse=True, return_counts=True)
+    return np.asarray((ways[2][ways[1].ravel()] > 1).reshape(-1, 6).any(axis=1))
 
 
 def _groups(block: tuple[str, IntArray], first: int) -> list[tuple[_Kind, IntArray, IntArray]]:

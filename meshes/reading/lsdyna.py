@@ -1,62 +1,72 @@
 """Keyword files of LS-DYNA: nodes, solid elements, parts."""
 
 from collections.abc import Iterator
+from itertools import pairwise
 from math import nan
 from pathlib import Path
 
-from meshes.common import MeshError
-from meshes.reading.stored import Elements, PointMass, StoredMesh, part_names
-from meshes.reading.text import fixed_fields, lines_of, number_of, place_of, sections, whole_number
+import numpy as np
 
+from meshes.common import MeshError
+from meshes.reading.lsdyna_moves import WIDE, Moves, filled, parameters, split
+from meshes.reading.stored import Elements, PointMass, StoredMesh, keep, part_names
+from meshes.reading.text import lines_of, number_of, numbers_between, place_of, sections, whole_number
+
+PATHS = ("INCLUDE_PATH", "INCLUDE_PATH_RELATIVE")  # files that a deck takes lie beside it
 REFUSED = {
     "INCLUDE_": "takes a part of the mesh from another file by *{0}, which is not read. Copy its lines into "
     "this one.",
-    "NODE_TRANSFORM": "moves nodes by *{0}. Write the deck with the nodes where they are.",
     "NODE_MERGE": "merges nodes by *{0}. Write the deck with merged nodes.",
     "NODE_SCALAR": "has nodes by *{0}, which are not read. Leave them out.",
-    "PARAMETER": "states numbers as parameters by *{0}. Write the deck with the numbers themselves.",
     "ELEMENT_SOLID_NURBS": "holds cells of *{0}, which are no hexahedra. Mesh the body with hexahedra.",
 }
 SOLIDS = ("ELEMENT_SOLID", "ELEMENT_SOLID_TITLE", "ELEMENT_TSHELL")
 LINES_MORE = {"ORTHO": 2, "DOF": 1}  # that an option adds to each element
 # how many whole numbers stand before the mass
 MASSES = {"ELEMENT_MASS": 2, "ELEMENT_MASS_NODE_SET": 2, "ELEMENT_MASS_PART": 1, "ELEMENT_MASS_PART_SET": 1}
-SETS = ("SET_SEGMENT", "SET_NODE", "SET_NODE_LIST")
+GENERATED = ("SET_NODE_LIST_GENERATE", "SET_NODE_GENERATE")
+SETS = ("SET_SEGMENT", "SET_NODE", "SET_NODE_LIST", *GENERATED)
 
 
 def lsdyna(path: Path) -> StoredMesh:
     """Read *NODE and *ELEMENT_SOLID, fixed or free fields; a set is a part, by its number and its title.
 
-    Sets of segments and nodes, and shells of a part, may name faces.
+    Sets of segments and nodes, and shells of a part, may name faces. Numbers of *PARAMETER are put in, nodes
+    of *NODE_TRANSFORM are moved.
 
     Raises
     ------
     MeshError
         If the deck includes or moves what it does not hold, or names what is not there.
     """
-    titles: dict[int, str] = {}
+    titles, places = dict[int, str](), dict[int, tuple[float, ...]]()
     solids: list[tuple[int, list[int]]] = []
     found, flat, sets = Elements(), list[list[int]](), list[tuple[str, int, list[str]]]()
     masses: list[tuple[str, int, str]] = []
-    for name, width, lines in _keywords(lines_of(path, "lsdyna")):
+    moves, moved = Moves(), list[list[int]]()
+    for name, width, lines in _filled(_keywords(lines_of(path, "lsdyna"))):
         stated = [line for line in lines if line]
         for start, problem in REFUSED.items():
-            if name.startswith(start):
+            if name.startswith(start) and name not in PATHS:
                 raise MeshError(problem.format(name))
         if name == "NODE":
             for line in stated:
-                number, *rest = _split(line, [width] + [_wide(width)] * 3)
-                found.node(whole_number(number, "*NODE"), place_of(rest, number))
+                number, *rest = split(line, [width] + [_wide(width)] * 3)
+                keep(places, whole_number(number, "*NODE"), place_of(rest, number), "nodes")
+        elif name == "DEFINE_TRANSFORMATION":
+            moves.define(stated, name)
+        elif name == "NODE_TRANSFORM":
+            moved += [_numbers(line, WIDE, name, 2) for line in stated]
         elif name == "PART":
             for title, numbers in zip(lines[::2], lines[1::2], strict=False):
-                if (number := _split(numbers, [max(width, 10)])[0]).isdigit():
+                if (number := split(numbers, [max(width, WIDE)])[0]).isdigit():
                     titles[int(number)] = title.strip()
         elif name.startswith(("ELEMENT_SOLID", "ELEMENT_TSHELL")):
             solids += _solids(name, lines, width)
         elif name == "ELEMENT_SHELL":
             flat += [_numbers(line, width, name, 6) for line in stated]
         elif name.removesuffix("_TITLE") in SETS:
-            sets.append((name, max(width, 10), lines))
+            sets.append((name, max(width, WIDE), lines))
         elif name.startswith(("SET_SEGMENT", "SET_NODE")):
             found.leave(f"set (*{name})")
         elif name.startswith(("ELEMENT_MASS", "ELEMENT_INERTIA")):
@@ -65,6 +75,10 @@ def lsdyna(path: Path) -> StoredMesh:
             found.leave(f"line of *{name}", len(stated))
         elif name.startswith("RIGIDWALL"):
             found.leave(f"wall (*{name})")
+    for pair in moved:
+        _move(places, moves, pair, sets)
+    for number, place in places.items():
+        found.node(number, place)
     for part, nodes in solids:
         kind = {8: "hexahedron", 10: "tetra10"}[len(nodes)]
         found.solid(kind, nodes, f"a solid of part {part}", *part_names(part, titles.get(part, "")))
@@ -87,7 +101,7 @@ def _keywords(lines: list[str]) -> Iterator[tuple[str, int, list[str]]]:
         if head.startswith("KEYWORD"):
             bare = head.replace(" ", "")
             every = 20 if "LONG=Y" in bare else 10 if "I10=Y" in bare else 8
-        name = head.rstrip("+-% ").strip()
+        name = head.partition("(")[0].rstrip("+-% ").strip()  # as in (ten nodes format)
         if name == "END":
             return
         yield name, {"+": 20, "%": 10, "-": 8}.get(head[-1:], every), held
@@ -98,14 +112,41 @@ def _wide(width: int) -> int:
     return 20 if width == 20 else 16
 
 
-def _split(line: str, widths: list[int]) -> list[str]:
-    """Return the fields of a line: between commas, or of fixed widths."""
-    return [part.strip() for part in line.split(",")] if "," in line else fixed_fields(line, widths)
+def _filled(keywords: Iterator[tuple[str, int, list[str]]]) -> Iterator[tuple[str, int, list[str]]]:
+    """Yield the keywords that are read with the numbers of *PARAMETER in their lines."""
+    known: dict[str, str] = {}
+    for name, width, lines in keywords:
+        if name in ("PARAMETER", "PARAMETER_LOCAL"):
+            known |= parameters(lines)
+        elif name.startswith(("NODE", "ELEMENT", "SET_", "DEFINE_TRANS")):
+            wide = width if name.startswith("ELEMENT") else max(width, WIDE)
+            widths = [width] + [_wide(width)] * 3 if name == "NODE" else [wide] * WIDE
+            bare = lines[:1] if name.endswith("_TITLE") else []
+            rest = [filled(line, widths, known) if "&" in line else line for line in lines[len(bare) :]]
+            yield name, width, [*bare, *rest]
+        else:
+            yield name, width, lines
+
+
+def _move(
+    places: dict[int, tuple[float, ...]],
+    moves: Moves,
+    pair: list[int],
+    sets: list[tuple[str, int, list[str]]],
+) -> None:
+    """Move the nodes of a set: the ``pair`` is of the numbers of the transformation and the set."""
+    move, number = (*pair, 0)[:2]
+    chosen = [nodes for one in sets if "NODE" in one[0] for of, nodes in [_nodes_of(*one)] if of == number]
+    if not chosen:
+        raise MeshError(f"moves the nodes of a set {number} that is not there.")
+    for node in chosen[0]:
+        if node in places:
+            places[node] = tuple(moves.moved(move, np.array([places[node]]))[0].tolist())
 
 
 def _numbers(line: str, width: int, name: str, most: int = 10) -> list[int]:
     """Return the whole numbers in the first ``most`` fields of a line, those that are left out not."""
-    return [whole_number(text, f"*{name}") for text in _split(line, [width] * most)[:most] if text]
+    return [whole_number(text, f"*{name}") for text in split(line, [width] * most)[:most] if text]
 
 
 def _mass(name: str, width: int, line: str, found: Elements) -> PointMass:
@@ -113,26 +154,39 @@ def _mass(name: str, width: int, line: str, found: Elements) -> PointMass:
     if name not in MASSES:
         return PointMass(name)
     at = MASSES[name]
-    fields = _split(line, [width] * at + [_wide(width)])
+    fields = split(line, [width] * at + [_wide(width)])
     number = number_of(fields[at], f"*{name}")
     node = found.at([whole_number(fields[1], name)])[0] if name == "ELEMENT_MASS" else -1
     return PointMass(name, number if number or "PART" not in name else nan, node)
 
 
+def _nodes_of(name: str, width: int, lines: list[str]) -> tuple[int, list[int]]:
+    """Return the number of a set of nodes, and those in it."""
+    head, *rest = lines[name.endswith("_TITLE") :]
+    found: list[int] = []
+    for line in filter(None, rest):
+        nodes = _numbers(line, width, name, 8)
+        if name.removesuffix("_TITLE") in GENERATED:
+            pairs = list(pairwise(nodes))[::2]
+            nodes = [node for low, high in pairs for node in numbers_between(low, high, 1, f"*{name}")]
+        found += nodes
+    return whole_number(split(head, [width])[0], f"*{name}"), found
+
+
 def _take_set(name: str, lines: list[str], width: int, found: Elements) -> None:
     """Add a set of segments or nodes, by its number and its title."""
     titled, what = name.endswith("_TITLE"), "SEGMENT" if "SEGMENT" in name else "NODE"
-    head, *rest = lines[titled:]
-    number = whole_number(_split(head, [width])[0], f"*{name}")
-    names = {lines[0].strip() if titled else "", f"{what} SET {number}"} - {""}
-    for line in filter(None, rest):
-        # attributes of a segment follow its nodes
-        nodes = _numbers(line, width, name, 4 if what == "SEGMENT" else 8)
-        if what == "SEGMENT":
-            found.add_face("", found.at(nodes), *names)
-            continue
-        for one in names:
+    title = lines[0].strip() if titled else ""
+    if what == "NODE":
+        number, nodes = _nodes_of(name, width, lines)
+        for one in {title, f"NODE SET {number}"} - {""}:
             found.add_nodes(one, nodes)
+        return
+    head, *rest = lines[titled:]
+    number = whole_number(split(head, [width])[0], f"*{name}")
+    for line in filter(None, rest):  # attributes of a segment follow its nodes
+        corners = found.at(_numbers(line, width, name, 4))
+        found.add_face("", corners, *({title, f"SEGMENT SET {number}"} - {""}))
 
 
 def _solids(name: str, lines: list[str], width: int) -> Iterator[tuple[int, list[int]]]:
@@ -151,12 +205,12 @@ def _solids(name: str, lines: list[str], width: int) -> Iterator[tuple[int, list
         while line.rstrip().endswith(",") and at + 1 < len(lines):
             at += 1
             line += lines[at]
-        head = [whole_number(text, name) for text in _split(line, [width] * 10) if text]
+        head = [whole_number(text, name) for text in split(line, [width] * 10) if text]
         at += 1
         if len(head) <= 2:
             if at >= len(lines):
                 raise MeshError(f"ends within a cell of *{name}.")
-            nodes = [whole_number(text, name) for text in _split(lines[at], [width] * 10) if text]
+            nodes = [whole_number(text, name) for text in split(lines[at], [width] * 10) if text]
             at += 1
         else:
             nodes = head[2:]

@@ -317,12 +317,23 @@ def test_included_files_are_read_and_part_of_the_content(tmp_path, ending):
         read_own(main, 1e-3)
 
 
-def test_tetrahedra_may_be_numbered_either_way_round_in_one_file(tmp_path):
-    points, cells = cells_of("tetra")
-    mixed = np.where(np.arange(len(cells))[:, None] % 3 == 0, cells[:, [0, 2, 1, 3]], cells)
+@pytest.mark.parametrize(
+    ("kind", "order"), [("tetra", [0, 2, 1, 3]), ("hexahedron", [4, 5, 6, 7, 0, 1, 2, 3])]
+)
+def test_cells_may_be_numbered_either_way_round_in_one_file(tmp_path, kind, order):
+    points, cells = cells_of(kind)
+    mixed = np.where(np.arange(len(cells))[:, None] % 3 == 0, cells[:, order], cells)
     body = read_own(decks.write(tmp_path / "bar.inp", points, mixed), 1e-3)
     plain = read_own(decks.write(tmp_path / "bar.vtu", points, cells), 1e-3)
     assert summary(body.half) == pytest.approx(summary(plain.half), abs=1e-12)
+
+
+def test_a_cell_pulled_through_its_neighbour_is_not_put_right(tmp_path):
+    """The lowest layer is pulled up beyond the next one: all of its cells are inside out."""
+    points, cells = cells_of("hexahedron", end=1.0)
+    points[points[:, 2] == 0.0, 2] = 15.0
+    with pytest.raises(MeshError, match="6 of 30 cells that are folded or inside out"):
+        read_own(decks.write(tmp_path / "bar.vtu", points, cells), 1e-3, meshes.Stated("half"))
 
 
 def test_middles_that_are_left_out_lie_halfway_and_pyramids_are_refused(tmp_path):
@@ -534,9 +545,9 @@ def test_fields_of_ten_letters_of_lsdyna(tmp_path, stated):
     mark = "%" if stated == "*KEYWORD" else ""
     part = ["*PART", "", f"{3:{wide}d}", "with a blank title", f"{4:{wide}d}", ""]
     some = [
-        "*SET_NODE_LIST_GENERATE",
+        "*SET_NODE_GENERAL",
         "1",
-        "1, 4",
+        "NODE, 1, 4",
         f"*ELEMENT_MASS{mark}",
         f"{900:{wide}d}{2:{wide}d}{0.5:{far}.3f}",
     ]
@@ -545,7 +556,39 @@ def test_fields_of_ten_letters_of_lsdyna(tmp_path, stated):
     assert volume_of(tmp_path / "i.k") == pytest.approx(8640.0)
     body = read_own(tmp_path / "i.k", 1e-3)
     assert (set(body.sets), body.masses[0].mass) == ({"PART 3"}, 0.5)
-    assert body.told[0] == "left out: 1 set (*SET_NODE_LIST_GENERATE)"
+    assert body.told[0] == "left out: 1 set (*SET_NODE_GENERAL)"
+
+
+ROTATE = f"ROTATE    {'&zero':>10}{1.0:10.1f}" + f"{0.0:10.1f}" * 4 + f"{'-&half':>10}\n"
+
+
+@pytest.mark.parametrize("steps", [ROTATE, "MIRROR,0,0,&tall,0,0,0\n", "TRANSL,1,,5\nTRANSL,0,0,2\n"])
+def test_lsdyna_moves_nodes_and_takes_numbers_from_parameters(tmp_path, steps):
+    """The bar lies along x, is turned over, or stands elsewhere: the same body each time."""
+    points, cells = square()
+    laid = points[:, [2, 1, 0]] * [1, 1, -1] if steps is ROTATE else points
+    head, part, text = decks.lsdyna(laid, cells).partition("*NODE")
+    stated = f"*PARAMETER\nRzero, 0.0, Ihalf,90\nR{'tall':<9}{30.0:10.1f}\n"
+    nodes = "*SET_NODE_LIST_GENERATE_TITLE\nThe R&D rod\n9\n1, 9000\n"
+    moved = f"*NODE_TRANSFORM\n4,9\n*DEFINE_TRANSFORMATION\n         4\n{steps}"
+    (tmp_path / "a.k").write_text(head + stated + nodes + moved + part + text)
+    plain = read_own(decks.write(tmp_path / "b.k", points, cells), 1e-3)
+    assert summary(read_own(tmp_path / "a.k", 1e-3).half) == pytest.approx(summary(plain.half), abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("steps", "reason"),
+    [
+        ("TRANSL,1,0,0\nROTATE,0,1,0,0,0,0,90\n", r"_TRANSFORMATION 4 in steps whose order matters"),
+        ("ROTATE,1,2,90\n", r"moves nodes by ROTATE of \*DEFINE_TRANSFORMATION, which is not read"),
+        ("TRANSL,&far,0,0\n", r"has the parameter &far, which no \*PARAMETER of it states"),
+    ],
+)
+def test_moves_of_lsdyna_that_are_not_certain_are_refused(tmp_path, steps, reason):
+    text = decks.lsdyna(*square())
+    (tmp_path / "a.k").write_text(text.replace("*NODE", f"*DEFINE_TRANSFORMATION\n4\n{steps}*NODE", 1))
+    with pytest.raises(MeshError, match=reason):
+        read_own(tmp_path / "a.k", 1e-3)
 
 
 def test_a_blank_title_of_radioss_is_one_line(tmp_path):
