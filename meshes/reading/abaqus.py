@@ -106,12 +106,6 @@ class _Deck:
                 f"makes nodes or cells by *{name}, which is not read. Write the deck with all of them, as "
                 "Abaqus/CAE and PrePoMax do."
             )
-        if "INPUT" in card.options and name in ("NODE", "ELEMENT", "ELSET", "NSET"):
-            other = card.options.get("INPUT", "")
-            raise MeshError(
-                f"takes a part of the mesh from another file by *{name}, {other!r}. Name that file as mesh "
-                "if it holds all nodes and cells, or copy its lines into this one."
-            )
         self.stated = self.stated or name in STATED
         taken = {
             "PART": self._part,

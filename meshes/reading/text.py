@@ -8,9 +8,13 @@ from pathlib import Path
 
 from meshes.common import MeshError
 
-# the line that takes another file, by the program; the names of the files follow
+# the line that takes another file, by the program; the names of the files follow. Of Abaqus also a keyword
+# whose lines of data stand in a file
 LINES = {
-    "abaqus": re.compile(r"^[ \t]*\*INCLUDE[ \t]*,[ \t]*INPUT[ \t]*=[ \t]*([^,\n]+)[^\n]*$", re.I | re.M),
+    "abaqus": re.compile(
+        r"^[ \t]*\*(?:INCLUDE|NODE|ELEMENT|ELSET|NSET)[ \t]*,[^\n*]*?\bINPUT[ \t]*=[ \t]*([^,\n]+)[^\n]*$",
+        re.I | re.M,
+    ),
     "nastran": re.compile(r"^[ \t]*INCLUDE[ \t]+['\"]?([^'\"\n]+)['\"]?[^\n]*$", re.I | re.M),
     "radioss": re.compile(r"^#include[ \t]+([^\n]+)$", re.M),
     "lsdyna": re.compile(r"^\*INCLUDE[ \t]*\n((?:\$[^\n]*\n|[^\n*$][^\n]*\n?)+)", re.I | re.M),
@@ -21,6 +25,8 @@ ENDINGS = {
     "radioss": (".rad",),
     "lsdyna": (".k", ".key", ".dyn"),
 }
+INCLUDE = re.compile(r"\W*INCLUDE\b", re.I)
+INPUT = re.compile(r",[ \t]*INPUT[ \t]*=[^,\n]*", re.I)
 XDMF = re.compile(r">\s*([^<>:]+\.h5):")
 MOST = 10**7  # numbers in a range
 # a number, of which Fortran may leave the E of the exponent out
@@ -56,7 +62,9 @@ def _full_text(path: Path, program: str, within: tuple[Path, ...]) -> str:
 
     def put_in(match: re.Match[str]) -> str:
         inner = (*within, path.resolve())
-        return "\n".join(_full_text(other, program, inner) for other in _named(match, path))
+        keyword = "" if INCLUDE.match(match[0]) else INPUT.sub("", match[0])
+        texts = (_full_text(other, program, inner) for other in _named(match, path))
+        return "\n".join(part for part in (keyword, *texts) if part)
 
     text = decoded(path.read_bytes())
     return LINES[program].sub(put_in, text) if program else text

@@ -11,6 +11,7 @@ from own_bodies import taper
 import meshes
 from meshes import MeshError, own_body, read_own
 from meshes.hexahedra import as_hexahedra
+from meshes.reading.text import included
 
 TETRAHEDRA = [[0, 1, 2, 6], [0, 2, 3, 6], [0, 3, 7, 6], [0, 7, 4, 6], [0, 4, 5, 6], [0, 5, 1, 6]]
 WEDGES = [[0, 1, 2, 4, 5, 6], [0, 2, 3, 4, 6, 7]]
@@ -155,7 +156,7 @@ def test_a_mass_at_a_node_of_another_body_is_not_the_bodys_own(tmp_path):
     [
         ("*NGEN\n1, 5, 1", r"makes nodes or cells by \*NGEN"),
         ("*INCLUDE, INPUT=mesh.inp", r"takes a part from the file 'mesh.inp', which is not beside it"),
-        ("*NODE, INPUT=nodes.txt", r"from another file by \*NODE, 'nodes.txt'"),
+        ("*NODE, INPUT=nodes.txt", r"takes a part from the file 'nodes.txt', which is not beside it"),
         ("*ELEMENT, TYPE=C3D8\n999, 1, 2, 3, 4, 5, 6, 7, 9999", "a cell 999 that names the node 9999"),
         ("*ELEMENT, TYPE=CIN3D8\n999, 1, 2, 3, 4, 5, 6, 7, 8", "infinite cells"),
     ],
@@ -309,6 +310,12 @@ def test_included_files_are_read_and_part_of_the_content(tmp_path, ending):
     other.write_text(mark + more)
     main.write_text(first + line)
     assert volume_of(main) == pytest.approx(8640.0)
+    if ending == ".inp":  # the lines of data of a keyword alone
+        rows = first.partition("*Node\n")
+        (tmp_path / "nodes.txt").write_text(rows[2])
+        main.write_text(f"{rows[0]}*Node, Input=nodes.txt, nset=n\n{line}")
+        assert volume_of(main) == pytest.approx(8640.0)
+        assert len(included(main)) == 2
     before = OwnMesh.of(str(main), "mm").content
     other.write_text(mark + more + "\n")
     assert OwnMesh.of(str(main), "mm").content != before
