@@ -20,7 +20,7 @@ from meshes.order import in_order
 from meshes.quality import edge_lengths, scaled_jacobians
 from meshes.reading.read import stored_mesh
 from meshes.reading.stored import NODES, StoredMesh, counted
-from meshes.symmetry import NEAR, Part, half_of, place_text, size_text
+from meshes.symmetry import NEAR, Part, at_planes, half_of, place_text, size_text
 
 SAME = 1e-6  # of the shortest edge: nodes so near to each other are one place
 FARTHEST = 1e30  # of a coordinate, m: its powers that moments need are numbers
@@ -47,11 +47,13 @@ class Stated:
     symmetry : which part of the body it is, see `PARTS`
     tip : where the tip points: a key of `TIPS`, a direction in the file, "-axis" or "+axis" (see `stood_up`)
     sets : sets of the file whose cells are the body
+    planes : in which it was cut, in place of ``symmetry``: axis of the file and place on it, m
     """
 
     symmetry: str | None = None
     tip: Tip | None = None
     sets: tuple[str, ...] = ()
+    planes: tuple[tuple[int, float], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,6 +111,9 @@ def read_own(path: str | Path, unit: float = 1.0, stated: Stated | None = None) 
     used = np.concatenate([cells.ravel() for _, cells in blocks])
     masses = loose_masses(stored.masses, points, used if stated.sets else None)
     stood = tuple[str, ...]()
+    if stated.planes:
+        points, symmetry = at_planes(points, used[used >= 0], stated.planes)
+        stated = replace(stated, symmetry=symmetry)
     if is_oblique(stated.tip):
         whole = as_hexahedra(points, blocks)
         points, stated, stood = _stood(whole.points, whole.cells, points, stated)
@@ -251,7 +256,7 @@ def _own(part: Part, stated: Stated, hint: str) -> tuple[OwnBody, IntArray]:
         part = replace(part, points=_axes(part.points, stated.tip))
     elif stated.symmetry is None:
         _require_upright(part, 1.0)  # what mirror images add makes it wider, not longer
-    part = half_of(part, stated.symmetry)
+    part = half_of(part, stated.symmetry, bool(stated.planes))
     if not stated.tip:
         _require_upright(part, 2.0)
     half = from_cells(part.points, part.cells, half_body_tags)

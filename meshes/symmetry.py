@@ -45,7 +45,7 @@ class Part:
         return replace(self, told=(*self.told, sentence))
 
 
-def half_of(part: Part, stated: str | None) -> Part:
+def half_of(part: Part, stated: str | None, ends: bool = False) -> Part:
     """Return the half y >= 0 of the body that a mesh is a part of.
 
     Parameters
@@ -53,6 +53,8 @@ def half_of(part: Part, stated: str | None) -> Part:
     part : Part
     stated : str or None
         One of `PARTS`; None where it is to be found.
+    ends : bool
+        Whether a half or a quarter may have been cut in z = 0, on which most meshes only stand.
 
     Raises
     ------
@@ -60,7 +62,7 @@ def half_of(part: Part, stated: str | None) -> Part:
         If it is not certain which part it is, or it is not what is stated, or the body is not symmetric.
     """
     part, flat = _snapped(part)
-    planes = _stated(part, flat, stated) if stated else _found(part, flat)
+    planes = _stated(part, flat, stated, ends) if stated else _found(part, flat)
     if not planes:
         return _cut(part if _crosses(part) else _centred(part))
     name = PARTS[len(planes)]
@@ -84,6 +86,21 @@ def half_of(part: Part, stated: str | None) -> Part:
     )
 
 
+def at_planes(
+    points: FloatArray, used: IntArray, planes: tuple[tuple[int, float], ...]
+) -> tuple[FloatArray, str]:
+    """Return points (n, 3) of which stated planes are those through the origin, and which of `PARTS` it is.
+
+    Along the other axes the body, of the points ``used``, stands beside the origin: no face of it is a plane
+    of symmetry there.
+    """
+    corners = points[used]
+    shift = corners.min(axis=0) - np.ptp(corners, axis=0).max()
+    for axis, place in planes:
+        shift[axis] = place
+    return points - shift, PARTS[len(planes)]
+
+
 def _snapped(part: Part) -> tuple[Part, set[int]]:
     """Put nodes near x, y or z = 0 there, where the body lies on one side of it; return these planes."""
     points, near, flat = part.points.copy(), part.near, set[int]()
@@ -99,18 +116,24 @@ def _snapped(part: Part) -> tuple[Part, set[int]]:
     return replace(part, points=points), flat
 
 
-def _stated(part: Part, flat: set[int], stated: str) -> tuple[int, ...]:
+def _stated(part: Part, flat: set[int], stated: str, ends: bool) -> tuple[int, ...]:
     """Return the planes in which a part of the stated kind was cut."""
     count = PARTS.index(stated)
-    there = [axis for axis in ORDER if axis in flat]
+    may = ORDER if ends or count == 3 else ORDER[:2]
+    there = [axis for axis in may if axis in flat]
     if len(there) < count:
-        planes = " and ".join(f"{'xyz'[axis]} = 0" for axis in there) or "none of x = 0, y = 0 and z = 0"
+        none = "none of x = 0, y = 0 and z = 0" if len(may) == 3 else "none of x = 0 and y = 0"
+        planes = " and ".join(f"{'xyz'[axis]} = 0" for axis in there) or none
         raise MeshError(
             f'is stated as mesh_symmetry = "{stated}", which is cut in {count} '
             f"plane{'s' * (count > 1)} of symmetry, but it has flat faces on {planes} alone, with all of it "
-            "on one side. Move it there, or state what it is."
+            f"on one side. State what it is, or where it was cut: {_example(part)}."
         )
     return tuple(there[:count])
+
+
+def _example(part: Part) -> str:
+    return f'mesh_symmetry = "y = {1e3 * float(part.points[:, 1].min()):.6g} mm", for example'
 
 
 def _found(part: Part, flat: set[int]) -> tuple[int, ...]:
@@ -130,7 +153,7 @@ def _found(part: Part, flat: set[int]) -> tuple[int, ...]:
     if not there:
         raise MeshError(
             "lies beside y = 0 without a flat face on it: it is not certain what part of the body it is. "
-            f"State mesh_symmetry = {sizes[0]}, or move its plane of symmetry to y = 0."
+            f"State mesh_symmetry = {sizes[0]}, or where it was cut: {_example(part)}."
         )
     raise MeshError(
         f"has flat faces on {where} and lies on one side of them: it is not certain what part of the body it "

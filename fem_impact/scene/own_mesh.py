@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -12,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from fem_impact.errors import MissingLibraryError, SceneError
 from fem_impact.scene.fields import check_choice, check_text
-from fem_impact.scene.units import DIMENSIONS
+from fem_impact.scene.units import DIMENSIONS, parse_quantity
 
 if TYPE_CHECKING:
     from fem_impact.arrays import Array, Bools, Ints
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
 
 UNITS = tuple(unit.symbol for unit in DIMENSIONS["length"].units)
 PARTS = ("whole", "half", "quarter", "eighth")
+PLANE = re.compile(r"\s*([xyz])\s*=(.*)")
+POUNDS = ("inch", "in", "ft")  # units of length beside which decks count pounds of force
 KEYS = (
     *("mesh", "mesh_unit", "mesh_content", "mesh_symmetry", "mesh_tip", "mesh_sets"),
     *("mesh_materials", "mesh_surfaces"),
@@ -39,7 +42,8 @@ class OwnMesh:
 
     Attributes
     ----------
-    symmetry : which part of the body the mesh is, one of `PARTS`; None: recognised
+    symmetry : which part of the body the mesh is, one of `PARTS`, or the planes in which it was cut, such as
+        "x = 10 mm, y = 20 mm"; None: recognised
     tip : where the tip points in the file, one of `TIPS` or a direction; None: to its lowest z
     sets : sets of cells of the file that are the body; empty: all cells
     """
@@ -69,8 +73,9 @@ class OwnMesh:
             If the file is missing or has changed, or a word is none of its choices.
         """
         check_choice(unit, UNITS, "mesh_unit")
-        if symmetry is not None:
-            check_choice(symmetry, PARTS, "mesh_symmetry")
+        if symmetry is not None and not _planes(symmetry):
+            other = 'the planes in which it was cut, such as "x = 10 mm, y = 20 mm"'
+            check_choice(symmetry, PARTS, "mesh_symmetry", other)
         if tip is not None and not isinstance(tip, tuple):
             check_choice(tip, TIPS, "mesh_tip", "a direction such as [1, 0, -1]")
         found = _content(path)
@@ -98,7 +103,7 @@ class OwnMesh:
         Those that may be the body's ``own``, or all others. A file's unit of mass is the one that goes with
         its unit of length, newtons and seconds, or with inches, pounds of force and seconds.
         """
-        these, force = [one for one in self.body().masses if one.own == own], self.unit == "inch"
+        these, force = [one for one in self.body().masses if one.own == own], self.unit in POUNDS
         kg = (POUND if force else 1.0) / _metres(self)
         told = []
         for one in these:
@@ -145,6 +150,16 @@ def _direction(parts: list[Any]) -> tuple[float, float, float]:
     return numbers[0], numbers[1], numbers[2]
 
 
+def _planes(symmetry: object) -> tuple[tuple[int, float], ...]:
+    """Return axis and place, m, of each plane that is stated; none where a word is."""
+    found = [PLANE.fullmatch(part) for part in symmetry.split(",")] if isinstance(symmetry, str) else [None]
+    if not all(found) or len({one[1] for one in found if one}) < len(found):
+        return ()
+    return tuple(
+        ("xyz".index(one[1]), parse_quantity(one[2], "length", "mesh_symmetry")) for one in found if one
+    )
+
+
 def _content(path: str) -> str:
     """Return the SHA-256 of a file and of those that it takes parts from."""
     from meshes import included
@@ -170,7 +185,8 @@ def _metres(mesh: OwnMesh) -> float:
 def _body(mesh: OwnMesh) -> OwnBody:
     import meshes
 
-    stated = meshes.Stated(mesh.symmetry, mesh.tip, mesh.sets)
+    planes = _planes(mesh.symmetry)
+    stated = meshes.Stated(None if planes else mesh.symmetry, mesh.tip, mesh.sets, planes)
     try:
         return meshes.read_own(mesh.path, _metres(mesh), stated)
     except meshes.MissingReaderError as error:

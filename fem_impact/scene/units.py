@@ -13,7 +13,7 @@ from fem_impact.errors import SceneError, UsageError, did_you_mean
 _NUMBER = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 _QUANTITY = re.compile(rf"\s*({_NUMBER})\s*(\D.*)?", re.DOTALL)
 _LONGEST = 64
-SPELLINGS = {"³": "3", "^3": "3", "°": "deg", "µ": "u", "μ": "u"}
+SPELLINGS = {"³": "3", "^3": "3", "²": "2", "^2": "2", "°": "deg", "µ": "u", "μ": "u"}
 
 
 @dataclass(frozen=True, slots=True)

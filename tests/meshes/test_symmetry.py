@@ -1,5 +1,6 @@
 """Which part of a body a mesh is: recognised, stated, or refused until it is stated."""
 
+import decks
 import numpy as np
 import pytest
 from own_bodies import box, taper
@@ -100,9 +101,29 @@ def test_what_is_stated_must_fit():
     with pytest.raises(MeshError, match=r'"eighth", which is cut in 3 planes .* on y = 0 and z = 0 alone'):
         own_body(*bar("half"), Stated(symmetry="eighth"))
     with pytest.raises(
-        MeshError, match=r"stated as mesh_symmetry = \"half\".* none of x = 0, y = 0 and z = 0"
+        MeshError, match=r"stated as mesh_symmetry = \"half\".* none of x = 0 and y = 0 alone"
     ):
         own_body(bar("whole")[0] - [0, 0, 0.1], bar("whole")[1], Stated(symmetry="half"))
+
+
+@pytest.mark.parametrize(
+    ("part", "planes"),
+    [
+        ("half", ((1, 3e-3),)),
+        ("quarter", ((0, 1e-3), (1, 3e-3))),
+        ("eighth", ((0, 1e-3), (1, 3e-3), (2, 0.0))),
+    ],
+)
+def test_planes_of_symmetry_may_lie_anywhere(tmp_path, part, planes):
+    points, cells = bar("quarter" if part == "eighth" else part)
+    points[:, 2] *= 0.5 if part == "eighth" else 1.0
+    at = np.array([1e-3, 3e-3, 0.0])  # the bottom of the half and the quarter lies on z = 0, and is none
+    decks.write(tmp_path / "bar.vtu", points + at, cells)
+    found = meshes.read_own(tmp_path / "bar.vtu", 1.0, Stated(planes=planes))
+    assert found.told[-1] == "whole body: 12 x 12 x 60 mm, 8.64 cm3"
+    if part != "eighth":
+        with pytest.raises(MeshError, match=r'where it was cut: mesh_symmetry = "y = 3 mm", for example'):
+            meshes.read_own(tmp_path / "bar.vtu", 1.0, Stated(part))
 
 
 @pytest.mark.parametrize("tip", sorted(meshes.TIPS))
