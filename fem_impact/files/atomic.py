@@ -67,9 +67,21 @@ def read_text(path: str | Path) -> str:
         The file is missing, a folder, not allowed to be read, or no text.
     """
     try:
-        return Path(path).read_bytes().decode("utf-8")
+        return read_bytes(path).decode("utf-8")
     except UnicodeDecodeError as error:
         raise ResultError(f"{path}: not UTF-8 text at byte {error.start}; the file is damaged.") from error
+
+
+def read_bytes(path: str | Path) -> bytes:
+    """Return the content of a file.
+
+    Raises
+    ------
+    ResultError
+        The file is missing, a folder, or not allowed to be read.
+    """
+    try:
+        return Path(path).read_bytes()
     except OSError as error:
         raise ResultError(f"{path}: cannot be read ({error.strerror}).") from error
 

@@ -49,7 +49,7 @@ def read_camera(path: str | Path) -> Camera:
     Parameters
     ----------
     path : path
-        UTF-8 CSV with a header. Columns are named ``v_n_m_per_s`` or ``v_n [m/s]``, and so on, in
+        CSV with a header. Columns are named ``v_n_m_per_s`` or ``v_n [m/s]``, and so on, in
         any unit of speed (m/s, mm/s, km/s) and of angular speed (rad/s, deg/s, rpm); capitals are the
         motion after impact. A column ``test`` may label the rows, columns
         ``d_c_m`` and ``d_d_m`` may state the arms of the contact point.
@@ -80,10 +80,9 @@ def _columns(table: UserTable) -> dict[str, tuple[str, Unit]]:
     """Return name and unit of the column of each quantity; refuse a header that lacks one."""
     missing = [name for name in OF_TESTS if not table.stating(name)]
     if missing and not any(len(table.stating(name)) > 1 for name in OF_TESTS):
-        hint = " Separate columns by commas." if any(";" in n or "\t" in n for n in table.names) else ""
         known = [name for name in ("e", "mu", "V_n", "V_t", "Omega") if table.stating(name)]
         means = f" {', '.join(known)} alone can be given as means: a file {MEANS}." if known else ""
-        lacks = f"{table.path}: the header lacks {', '.join(missing)}.{hint}"
+        lacks = f"{table.path}: the header lacks {', '.join(missing)}."
         raise ResultError(f"{lacks} It needs {HEADER} (capitals: after impact).{means}")
     stated = {name: table.quantity(name, dimension) for name, dimension in {**OF_TESTS, **ARMS}.items()}
     return {name: column for name, column in stated.items() if column}
@@ -172,7 +171,7 @@ def read_means(path: str | Path, others: Collection[str] = ()) -> Means:
     Parameters
     ----------
     path : path
-        UTF-8 CSV with the columns ``quantity``, ``mean``, ``sd`` (standard deviation of single tests) or
+        CSV with the columns ``quantity``, ``mean``, ``sd`` (standard deviation of single tests) or
         ``standard_error`` (of the mean), and ``n`` (number of tests). A quantity is ``e``, ``mu``,
         ``Omega_rad_per_s``, ``V_n_m_per_s`` or ``V_t_m_per_s``, the last three in any unit of theirs. Columns
         ``d_c_m`` and ``d_d_m`` may state the arms of the contact point with which ``e`` was worked out, a
@@ -199,12 +198,30 @@ def read_means(path: str | Path, others: Collection[str] = ()) -> Means:
             arms[arm].append(finite(f"{place}, column {arm}_m", row[f"{arm}_m"]))
     if not means:
         raise ResultError(f"{path}: holds no line below its header.")
-    for name, mean in means.items():
+    _check_correlations(means, path)
+    return Means(means, one_pair(arms, path))
+
+
+def _check_correlations(means: Mapping[str, Mean], path: str | Path) -> None:
+    """Refuse coefficients that no quantities have; what is not stated counts as 0."""
+    together = np.eye(len(means))
+    for row, (name, mean) in enumerate(means.items()):
         for other, r in mean.correlation.items():
             if other not in means or not abs(r) <= 1 or (other == name and r != 1):
                 known = f"-1 to 1, with one of {', '.join(means)}"
                 raise ResultError(f"{path}: {name}, column {CORRELATION}{other}: {r:g} is none from {known}.")
-    return Means(means, one_pair(arms, path))
+            if (back := means[other].correlation.get(name, r)) != r:
+                both = f"{r:g} in the line of {name}, {back:g} in that of {other}"
+                raise ResultError(
+                    f"{path}: the correlation of {name} and {other} is {both}. It is one number."
+                )
+            column = list(means).index(other)
+            together[row, column] = together[column, row] = r
+    if np.linalg.eigvalsh(together).min() < -1e-6:  # of coefficients that are rounded
+        raise ResultError(
+            f"{path}: no quantities have these correlations together (their matrix has a negative "
+            "eigenvalue, those that are not stated counted as 0). Check their signs and sizes."
+        )
 
 
 def _scatter(names: Sequence[str], path: str | Path) -> str:

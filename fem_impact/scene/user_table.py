@@ -1,4 +1,8 @@
-"""A table that a user wrote: CSV text with units in its header; complaints name file, line and column."""
+"""A table that a user wrote: CSV text with units in its header; complaints name file, line and column.
+
+Columns stand between commas; where the header has semicolons or tabs, between these, and then a number may
+have a decimal comma, as spreadsheets of many countries write it.
+"""
 
 import csv
 import io
@@ -9,9 +13,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from fem_impact.errors import ResultError
-from fem_impact.files.atomic import read_text
+from fem_impact.files.atomic import read_bytes
 from fem_impact.scene.units import DIMENSIONS, Unit
 
+DECIMAL = re.compile(r"([+-]?\d*),(\d+(?:[eE][+-]?\d+)?)")  # a number with a decimal comma
 Line = tuple[int, list[str]]
 """Number and cells of a line of the file."""
 
@@ -39,7 +44,8 @@ class UserTable:
         ResultError
             A line has another number of cells than the header.
         """
-        for line, cells in self.lines:
+        for line, stated in self.lines:
+            cells = stated if any(stated[len(self.names) :]) else stated[: len(self.names)]
             if len(cells) != len(self.names):
                 counts = f"line {line} has {len(cells)} cells, the header {len(self.names)}"
                 raise ResultError(f"{self.path}: {counts}. Give each line one cell a column.")
@@ -78,7 +84,9 @@ class UserTable:
 
 
 def read_user_table(path: str | Path, header: str) -> UserTable:
-    """Read UTF-8 CSV text; blank lines and comments (#) are left out.
+    """Read CSV text; blank lines and comments (#) are left out.
+
+    Text is UTF-8, UTF-16 with its mark, or of one byte a letter, as spreadsheets write it.
 
     Parameters
     ----------
@@ -90,20 +98,44 @@ def read_user_table(path: str | Path, header: str) -> UserTable:
     ResultError
         The file cannot be read, is empty, or is not CSV.
     """
-    lines = list(_lines(read_text(path), path))
+    lines = list(_lines(_text(path), path))
     if not lines:
         raise ResultError(f"{path}: is empty. Begin it with the header {header}.")
-    return UserTable(path, tuple(lines[0][1]), tuple(lines[1:]))
+    names = lines[0][1]
+    while names and not names[-1]:  # spreadsheets end lines by empty cells
+        names.pop()
+    return UserTable(path, tuple(names), tuple(lines[1:]))
+
+
+def _text(path: str | Path) -> str:
+    data = read_bytes(path)
+    for encoding in ("utf-16",) if data.startswith((b"\xff\xfe", b"\xfe\xff")) else ("utf-8-sig", "cp1252"):
+        try:
+            return data.decode(encoding)
+        except UnicodeDecodeError:
+            continue
+    raise ResultError(f"{path}: is no text. Save it as CSV.")
 
 
 def _lines(text: str, path: str | Path) -> Iterator[Line]:
-    reader = csv.reader(io.StringIO(text.removeprefix("\ufeff")), strict=True)
+    header = next((line for line in text.split("\n") if line.strip() and not line.startswith("#")), "")
+    mark = next((one for one in ";\t" if one in header), ",")
+    reader = csv.reader(io.StringIO(text), strict=True, delimiter=mark)
     try:
         for cells in reader:
             if any(cell.strip() for cell in cells) and not cells[0].startswith("#"):
-                yield reader.line_num, [cell.strip() for cell in cells]
+                yield (
+                    reader.line_num,
+                    [_point(cell.strip()) if mark != "," else cell.strip() for cell in cells],
+                )
     except csv.Error as error:
         raise ResultError(f"{path}: line {reader.line_num} is not CSV ({error}).") from None
+
+
+def _point(cell: str) -> str:
+    """Return a number with a decimal comma with a point, other text as it is."""
+    found = DECIMAL.fullmatch(cell)
+    return f"{found[1]}.{found[2]}" if found else cell
 
 
 def unit_of(stated: str, dimension: str, name: str, place: str) -> Unit:
@@ -138,6 +170,8 @@ def finite(place: str, text: str) -> float:
         number = float(text)
     except ValueError:
         number = math.nan
+    if not text:
+        raise ResultError(f"{place}: is empty. Give a number, or leave the line out.")
     if not math.isfinite(number):
         raise ResultError(f"{place}: {text[:40]!r} is not a finite number. Write one such as -1.5 or 2e-3.")
     return number

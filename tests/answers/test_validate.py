@@ -184,6 +184,11 @@ def test_the_command_says_first_that_the_reduced_model_refutes_little(tmp_path, 
         (MU.replace("0.015", "-0.015"), "column systematic"),
         ("quantity,mean,sd,n\nmu,0.3,,1\n", "must be above 0: one test has no other"),
         ("quantity,mean,sd,n,r_e\nmu,0.3,0.1,4,0.5\n", "column r_e: 0.5 is none"),
+        ("quantity,mean,sd,n,r_e,r_mu\ne,0.3,0.1,4,,0.5\nmu,0.3,0.1,4,-0.5,\n", "0.5 in the line of e, -0.5"),
+        (
+            "quantity,mean,sd,n,r_e,r_mu\ne,0.3,0.1,4,,0.9\nmu,0.3,0.1,4,,\nV_n_m_per_s,1,1,4,0.9,-0.9\n",
+            "no quantities have these correlations together",
+        ),
     ],
 )
 def test_what_no_outcome_has_is_refused(tmp_path, means, words):

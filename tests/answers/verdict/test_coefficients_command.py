@@ -115,12 +115,23 @@ def test_a_spreadsheets_file_is_read(cli, camera_file):
     assert document["notes"][0] == "columns not used: note"
 
 
+@pytest.mark.parametrize(("mark", "encoding"), [(";", "cp1252"), ("\t", "utf-16")])
+def test_tables_of_spreadsheets_are_read_as_they_are_saved(cli, camera_file, mark, encoding):
+    """Semicolons or tabs, decimal commas, empty cells at the ends, another encoding of the comment."""
+    path = camera_file(*GOOD)
+    plain = found(cli, path)
+    rows = "\n".join(line.replace(",", mark).replace(".", ",") + mark for line in GOOD)
+    text = f"# at 20 \u00b0C\n{HEADER.replace(',', mark)}{mark}\n{rows}\n"
+    path.write_bytes(text.encode(encoding))
+    assert found(cli, path)["rows"] == plain["rows"]
+
+
 @pytest.mark.parametrize(
     ("lines", "header", "words"),
     [
         (GOOD[:1], HEADER, ["holds 1 tests", "at least two"]),
         ((*GOOD, "4,-1.5,-1.5,0.3,abc,5"), HEADER, ["line 5, column V_t_m_per_s", "'abc'"]),
-        ((*GOOD, "4,-1.5,-1.5,0.3,,5"), HEADER, ["line 5, column V_t_m_per_s", "''"]),
+        ((*GOOD, "4,-1.5,-1.5,0.3,,5"), HEADER, ["line 5, column V_t_m_per_s: is empty"]),
         ((*GOOD, "4,-1.5,-1.5,0.3,nan,5"), HEADER, ["line 5, column V_t_m_per_s", "finite"]),
         ((*GOOD, "4,-1.5,-1.5,0.3,-0.4,1e150"), HEADER, ["line 5, column Omega_rad_per_s", "no speed"]),
         ((GOOD[0], "", "4,1.5,-1.5,0.3,-0.4,5"), HEADER, ["line 4, column v_n_m_per_s: 1.5 must be"]),
@@ -128,9 +139,9 @@ def test_a_spreadsheets_file_is_read(cli, camera_file):
         ((*GOOD, "4,-1.5,-1.5"), HEADER, ["line 5 has 3 cells, the header 6"]),
         (GOOD, HEADER.replace("Omega_rad_per_s", "spin"), ["lacks Omega"]),
         (GOOD, HEADER.replace("v_n_m_per_s", "v_n"), ["'v_n' names no unit", "v_n_m_per_s"]),
-        (GOOD, HEADER.replace("v_n_m_per_s", "v_n [ft/s]"), ["'ft/s' is not a unit of speed", "mm/s"]),
+        (GOOD, HEADER.replace("v_n_m_per_s", "v_n [kn]"), ["'kn' is not a unit of speed", "mm/s"]),
         (GOOD, HEADER.replace("v_t_m", "v_n_m"), ["v_n has two columns"]),
-        (GOOD, HEADER.replace(",", ";"), ["Separate columns by commas"]),
+        (GOOD, HEADER.replace(",", ";"), ["line 2 has 1 cells, the header 6"]),
         (('1,"-1.5', "2"), HEADER, ["not CSV"]),
     ],
 )  # fmt: skip
