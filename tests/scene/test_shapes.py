@@ -107,7 +107,7 @@ def test_a_profile_is_read_from_a_table_beside_the_scene(tmp_path):
     ("text", "told"),
     [
         ("a,b\n0,0\n", "has no columns z and r. The first line names them, such as z_mm,r_mm"),
-        ("z_mm,r_ft\n0,0\n", "'ft' is not a unit of length"),
+        ("z_mm,r_yd\n0,0\n", "'yd' is not a unit of length"),
         ("z_mm,r_mm,z_m\n0,0,0\n", "z has two columns, the second is 'z_m'"),
         ("z_mm,r_mm\n0,0\n\n9\n", "line 4 has 1 cells, the header 2"),
         ("", "is empty. Begin it with the header z_mm,r_mm"),
