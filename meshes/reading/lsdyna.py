@@ -77,8 +77,8 @@ def lsdyna(path: Path) -> StoredMesh:
             found.leave(f"wall (*{name})")
     for pair in moved:
         _move(places, moves, pair, sets)
-    for number, place in places.items():
-        found.node(number, place)
+    for node, place in places.items():
+        found.node(node, place)
     for part, nodes in solids:
         kind = {8: "hexahedron", 10: "tetra10"}[len(nodes)]
         found.solid(kind, nodes, f"a solid of part {part}", *part_names(part, titles.get(part, "")))
