@@ -24,8 +24,8 @@ from fem_impact.outcome.keys import markdown_table
 from fem_impact.outcome.record import KEYS
 from fem_impact.pages.bibliography import references
 from fem_impact.scene import fields, library
-from fem_impact.scene.family import FAMILIES
 from fem_impact.scene.fields import Parameter
+from fem_impact.scene.material import FAMILIES
 from fem_impact.scene.units import DIMENSIONS
 from fem_impact.tables.table import Table
 

@@ -20,9 +20,8 @@ from fem_impact.errors import FemImpactError, UsageError, did_you_mean
 from fem_impact.figures.panels import Panel, Picture, Series
 from fem_impact.files.atomic import checksum, directory_lock, make_directory
 from fem_impact.jobs.executors import LocalProcesses
-from fem_impact.jobs.job import Failure, Job
+from fem_impact.jobs.job import STORE, Failure, Job
 from fem_impact.jobs.run import run_jobs
-from fem_impact.jobs.store import STORE
 from fem_impact.options import FIDELITIES
 from fem_impact.outcome.record import KEY_TABLE, KEYS
 from fem_impact.progress import Notice, ProgressMeter, watched

@@ -2,9 +2,8 @@
 
 from fem_impact.case.effects.registry import AUTO
 from fem_impact.errors import SceneError
-from fem_impact.scene.family import kind_of
 from fem_impact.scene.library import family_of
-from fem_impact.scene.material import Material
+from fem_impact.scene.material import Material, kind_of
 from fem_impact.scene.types import Scene
 
 UPPER = "so that e is an upper bound"

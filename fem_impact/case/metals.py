@@ -7,9 +7,9 @@ from fem_impact.case.effects.plasticity import hardening_of
 from fem_impact.case.elastic_only import left_out
 from fem_impact.physics.hardening import TABOR_STRAIN, rate_gain, rate_law
 from fem_impact.scene import material as materials
-from fem_impact.scene.family import kind_of
 from fem_impact.scene.inputs import materials_of, melting
 from fem_impact.scene.library import family_of
+from fem_impact.scene.material import kind_of
 from fem_impact.scene.surface_table import known_pair
 
 RATES = (1e2, 1e3, 1e4)  # 1/s, at which flow stresses are told

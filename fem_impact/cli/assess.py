@@ -7,19 +7,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from fem_impact.cli import scene_options
 from fem_impact.cli.parser import CommandParser, Options, add_text, add_workers, stated_budget
 from fem_impact.cli.paths import checked_out
-from fem_impact.cli.scene_options import (
-    ROD,
-    SHAPE,
-    add_rod,
-    add_scene,
-    add_uncertain,
-    angle_of,
-    command_line,
-    named_scene,
-    rod_of,
-)
 from fem_impact.cli.terminal import print_answer
 from fem_impact.errors import UsageError
 from fem_impact.tables.text import wrapped
@@ -35,13 +25,13 @@ SHORT = ("length", "diameter", "height", "angle", "surface")
 
 def add_options(parser: CommandParser) -> None:
     """State the command and its options."""
-    dropped = f'fem-impact assess --height "0.82 m" --surface machined {ROD}'
+    dropped = f'fem-impact assess --height "0.82 m" --surface machined {scene_options.ROD}'
     limited = (
         'fem-impact assess t5b --for heat --limit "430 degC"',
         'fem-impact assess t5b --for force --limit "5 kN" \\\n      --uncertain impact.angle=30,50deg',
     )
     parser.state(assess, "fem-impact assess t5b", *limited, dropped)
-    add_scene(parser, optional=True)
+    scene_options.add_scene(parser, optional=True)
     parser.add_argument(
         "--fidelity",
         choices=["auto", "modal", "solid"],
@@ -54,7 +44,7 @@ def add_options(parser: CommandParser) -> None:
     )
     parser.add_argument("--for", dest="question", choices=QUESTIONS, default=QUESTIONS[0], help=asked)
     add_text(parser, "--limit", "VALUE", 'what heat, force or dent must stay below, such as "5 kN"')
-    add_uncertain(parser, "the answer then holds for the whole interval")
+    scene_options.add_uncertain(parser, "the answer then holds for the whole interval")
     within = (
         "change by vibration that may be neglected: of e, of the energy that the body keeps or of the work "
         'of friction, such as "e 0.05" (default), "energy 2 %%" or "friction 2 %%", both of E_0'
@@ -68,7 +58,7 @@ def add_options(parser: CommandParser) -> None:
     page = "write a page to print and sign, and verdict.json"
     parser.add_argument("--out", type=Path, metavar="DIR", help=page)
     rod = parser.add_argument_group("a dropped steel rod, instead of SCENE")
-    add_rod(rod)
+    scene_options.add_rod(rod)
     add_text(rod, "--height", "HEIGHT", 'drop height, such as "0.82 m"')
     add_text(rod, "--angle", "ANGLE", 'rod axis to barrier normal, such as "45 deg"')
     surfaces = ("machined", "contaminated", "cleaned")
@@ -80,7 +70,7 @@ def assess(options: Options) -> int:
     limited = options.question != QUESTIONS[0] or bool(options.uncertain)
     _refuse(options, limited)
     out = checked_out(options.out) if options.out else None
-    scene = named_scene(options, SHORT) or _dropped_rod(options)
+    scene = scene_options.named_scene(options, SHORT) or _dropped_rod(options)
     if out is not None:
         from fem_impact.files.run_directory import refuse_other_scene
         from fem_impact.scene.types import to_toml
@@ -124,7 +114,9 @@ def _rigid(options: Options, scene: Scene) -> tuple[dict[str, Any], Picture]:
     of, change = _within(options)
     verdict = assessed(scene, options.fidelity, change, *_means(options), tell=_telling(options), of=of)
     # without the options that the next step may add
-    answer = document(verdict, command_line(options, "assess", *SHORT, *SHAPE, "within"))
+    answer = document(
+        verdict, scene_options.command_line(options, "assess", *SHORT, *scene_options.SHAPE, "within")
+    )
     if scene.impact.until != FIRST:
         from fem_impact.answers.verdict.sequence import sequence_verdict
 
@@ -169,18 +161,21 @@ def _limited(options: Options, scene: Scene) -> tuple[dict[str, Any], None]:
     means = options.fidelity, *_means(options)
     found = judge(scene, criterion, limit, uncertain, *means, tell=_telling(options))
     given = "question", "limit", "uncertain", "within"
-    command = command_line(options, "assess", *SHORT, *SHAPE, *given).replace("--question", "--for")
+    command = scene_options.command_line(options, "assess", *SHORT, *scene_options.SHAPE, *given).replace(
+        "--question", "--for"
+    )
     return document(found, command), None
 
 
 def _dropped_rod(options: Options) -> Scene:
     """Return the scene of the dropped steel rod that the options state."""
-    from fem_impact.answers.verdict.drop import RodDropInput
-    from fem_impact.answers.verdict.dropped import scene_of
+    from fem_impact.answers.verdict.dropped import RodDropInput, scene_of
     from fem_impact.scene.units import option_quantity
 
     height = option_quantity(options.height, "length", "--height")
-    return scene_of(RodDropInput(rod_of(options), height, angle_of(options), options.surface))
+    return scene_of(
+        RodDropInput(scene_options.rod_of(options), height, scene_options.angle_of(options), options.surface)
+    )
 
 
 def _within(options: Options) -> tuple[str, float]:

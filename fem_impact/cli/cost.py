@@ -70,7 +70,7 @@ def cost(options: Options) -> int:
     if options.page:
         raise UsageError("shows all sets.", key="--page", remedy="Leave it out, or run `cost paper`.")
     out = checked_out(options.out or Path("results") / "cost" / scene.id)
-    from fem_impact.answers.cost.document import text_table
+    from fem_impact.answers.cost.measure import text_table
     from fem_impact.evidence.studies.cost_report import answers, scene_report
     from fem_impact.files.atomic import directory_lock
 
@@ -87,7 +87,7 @@ def cost(options: Options) -> int:
 
 def _write(options: Options, study: CostStudy, report: StudyReport, out: Path, scene: str = "") -> list[str]:
     """Write the tables of a scene's costs and its page; return what could not be made."""
-    from fem_impact.answers.cost.document import write_cost
+    from fem_impact.answers.cost.measure import write_cost
     from fem_impact.answers.report import Request, publish
     from fem_impact.pages.write import page
 
@@ -119,7 +119,7 @@ def _measured(scene: Scene, out: Path, options: Options, budget: float = inf) ->
 
 def _paper(options: Options, names: tuple[str, ...]) -> int:
     """Measure all sets of the paper, one store and page each; write summary.json and a page over all."""
-    from fem_impact.answers.cost.document import summarise
+    from fem_impact.answers.cost.measure import summarise
     from fem_impact.answers.report import Request, publish
     from fem_impact.evidence.studies.cost_report import paper_report, scene_report
     from fem_impact.files.atomic import directory_lock, write_text

@@ -23,11 +23,24 @@ from fem_impact.outcome.keys import Key, Num, Unknown, or_none, why_unknown
 from fem_impact.outcome.limitation import WRONG_NUMBERS, by_weight
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.outcome.shares import ABOVE, ADDED, IF_ON, EnergyShare, above_modes, shares
+from fem_impact.outcome.strikes import SHOWN, spread_table, strikes_table, told
 from fem_impact.progress import clock_text
 from fem_impact.scene.impact import FIRST
 from fem_impact.scene.types import OWN, Scene, digest
 from fem_impact.tables.table import Table
 from fem_impact.tables.text import plain, wrapped
+
+
+def print_strikes(outcome: Outcome, options: Options) -> None:
+    """Print what is told of a sequence, the strikes that are certain, and how later ones spread."""
+    sys.stdout.writelines(f"{line}\n" for sentence in told(outcome.strikes) for line in wrapped(sentence))
+    strikes = outcome.strikes
+    if isinstance(strikes.each, Unknown):
+        return
+    print_table(strikes_table(strikes, or_none(strikes.certain) or SHOWN), options, indent="  ")
+    if later := (or_none(strikes.spread) or ())[or_none(strikes.certain) or 0 :]:
+        print_table(spread_table(later), options, indent="  ")
+
 
 if TYPE_CHECKING:
     from fem_impact.answers.friction_spread import FrictionSpread
@@ -120,8 +133,6 @@ def run(options: Options) -> int:
         spread = friction_spread(scene, case.fidelity, outcome) if outcome.validity.finished else None
         print_outcome(outcome, out, own_tests, spread, scene.accuracy.target_of, scene.projectile.named)
         if scene.impact.until != FIRST:
-            from fem_impact.cli.strikes import print_strikes
-
             print_strikes(outcome, options)
         _say_comparison(scene, outcome, options)
         _say_screening(case, options)

@@ -6,9 +6,8 @@ from typing import Any
 
 from fem_impact.answers.report import Request, StudyResult, publish
 from fem_impact.files.atomic import directory_lock
-from fem_impact.jobs.job import JobResults
+from fem_impact.jobs.job import STORE, JobResults
 from fem_impact.jobs.run import WorkForecast, estimate, run_jobs
-from fem_impact.jobs.store import STORE
 from fem_impact.progress import ProgressMeter
 
 

@@ -14,7 +14,7 @@ from fem_impact.errors import ResultError
 from fem_impact.figures.still import INK, QUIET
 from fem_impact.films import frame
 from fem_impact.films.encode import best_suffix, encode, require_gl
-from fem_impact.films.layout import FrameLayout, Rectangle, SideBySideLayout
+from fem_impact.films.frame import FrameLayout, Rectangle, SideBySideLayout
 from fem_impact.films.motion import FilmData, prepare
 from fem_impact.films.movement import FPS, WHOLE, Span, film_times, read_movement, slow_motion
 from fem_impact.films.views import CloseView, Overlay, RodPicture, needed_height

@@ -10,8 +10,8 @@ import numpy as np
 
 from fem_impact.arrays import Array
 from fem_impact.errors import ResultError
+from fem_impact.figures.runs import body_line, flies, placed, state_at
 from fem_impact.figures.still import PALETTE, new_figure
-from fem_impact.figures.strikes import body_line, flies, placed, state_at
 from fem_impact.films.encode import encode
 from fem_impact.films.film import RenderResult, target
 from fem_impact.films.movement import FPS

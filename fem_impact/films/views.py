@@ -8,8 +8,7 @@ import pyvista
 from PIL import Image
 
 from fem_impact.figures.still import INK, PALETTE, QUIET
-from fem_impact.films.frame import CLOSE_WIDTH, font
-from fem_impact.films.layout import Rectangle
+from fem_impact.films.frame import CLOSE_WIDTH, Rectangle, font
 from fem_impact.films.motion import FIELDS, FilmData, nice_factor, to_points
 
 MARGIN = 0.45

@@ -12,8 +12,7 @@ from typing import Any
 
 from fem_impact.errors import ResultError, RunError
 from fem_impact.jobs.executors import LocalProcesses
-from fem_impact.jobs.job import Answer, Failure, JobKind, Result, Work, compute
-from fem_impact.jobs.store import Store
+from fem_impact.jobs.job import Answer, Failure, JobKind, Result, Store, Work, compute
 from fem_impact.progress import CaseProgress, Notice, ProgressMeter
 from fem_impact.run.program import source_digest
 

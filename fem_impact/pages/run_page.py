@@ -14,13 +14,12 @@ from fem_impact.answers.verdict.sentences import Line, screening_lines
 from fem_impact.case.case import Case
 from fem_impact.errors import ResultError, RunError, SceneError, UsageError
 from fem_impact.figures.panels import Picture
-from fem_impact.figures.runs import partition_picture
+from fem_impact.figures.runs import accounts_picture, partition_picture, path_picture, tail_picture
 from fem_impact.figures.still import draw, percent
-from fem_impact.figures.strikes import accounts_picture, path_picture, tail_picture
 from fem_impact.files.atomic import make_directory, read_text, signed, write_text
 from fem_impact.outcome.keys import Key, Unknown, or_none
 from fem_impact.outcome.record import KEY_TABLE, KEYS, Outcome, utc_now
-from fem_impact.outcome.strike_text import spread_table, strikes_table, told
+from fem_impact.outcome.strikes import spread_table, strikes_table, told
 from fem_impact.pages import html, sections
 from fem_impact.physics.flash import ASSUMPTIONS
 from fem_impact.run.certain import other_end_curve

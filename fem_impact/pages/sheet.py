@@ -14,7 +14,7 @@ from fem_impact.outcome.keys import Unknown, or_none, why_unknown
 from fem_impact.outcome.limitation import HEAVIEST_FIRST, WRONG_NUMBERS, texts
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.outcome.shares import IF_ON, shares
-from fem_impact.outcome.strike_text import SHOWN, strikes_table, told
+from fem_impact.outcome.strikes import SHOWN, strikes_table, told
 from fem_impact.pages import html
 from fem_impact.pages.drawing import draw_projectile
 from fem_impact.pages.run_page import verdict_box

@@ -10,8 +10,17 @@ from typing import Any
 from fem_impact.errors import SceneError, did_you_mean
 from fem_impact.plugins import added, wrong
 from fem_impact.scene import fields
-from fem_impact.scene.family import family_by_words
-from fem_impact.scene.material import FLOWS, RATES, Flow, Material, Rate, SkinSpec, Surface, TableFlow
+from fem_impact.scene.material import (
+    FLOWS,
+    RATES,
+    Flow,
+    Material,
+    Rate,
+    SkinSpec,
+    Surface,
+    TableFlow,
+    family_by_words,
+)
 from fem_impact.scene.sliding import SlidingLaw, law_of
 from fem_impact.scene.tables import Table, check_keys, needed, numbers_of, values_of, within
 from fem_impact.scene.types import MEASURED_SETS

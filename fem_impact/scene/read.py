@@ -9,22 +9,12 @@ from pathlib import Path
 from typing import Any
 
 from fem_impact.errors import ResultError, SceneError, UsageError
-from fem_impact.scene import fields, library, own_mesh, shapes, types
+from fem_impact.scene import fields, library, own_mesh, shapes, tables, types
 from fem_impact.scene.barrier import Barrier, Layer
 from fem_impact.scene.impact import WAYS, Following, Impact, the_way
 from fem_impact.scene.material import Material, Surface
 from fem_impact.scene.projectile import Face, ProjectileSpec, Region, Segment
 from fem_impact.scene.surface_table import of_known, pair_surface, read_surface
-from fem_impact.scene.tables import (
-    UNKNOWN_KEY,
-    Table,
-    check_keys,
-    listed,
-    needed,
-    numbers_of,
-    values_of,
-    within,
-)
 from fem_impact.scene.units import parse_number, parse_quantity, parse_share
 
 _LARGEST_FILE = 1_000_000
@@ -112,18 +102,20 @@ OPTIONAL = ("accuracy", "save", "heating", "strikes")
 """Sections that may be left out."""
 
 
-def read_scene(data: Table) -> types.Scene:
+def read_scene(data: tables.Table) -> types.Scene:
     """Make a scene from its tables; keys in messages are dotted from the top."""
     if not isinstance(data, Mapping):
         raise SceneError("a scene must be a table of tables.", value=data)
-    check_keys(data, (*TOP, *PARTS))
+    tables.check_keys(data, (*TOP, *PARTS))
     effects = fields.check_names(data.get("effects", "auto"), "effects")
     # only a list of effects without friction needs no surface
     rubs = "friction" in effects or ("auto" in effects and "-friction" not in effects)
     restitution = parse_number(data["restitution"], "restitution") if "restitution" in data else None
-    parts: dict[str, Callable[[], Any]] = {"id": lambda: needed(data, "id", '"my-rod", a name for the scene')}
+    parts: dict[str, Callable[[], Any]] = {
+        "id": lambda: tables.needed(data, "id", '"my-rod", a name for the scene')
+    }
     parts |= {
-        name: partial(within, data, name, read_part, {} if name in OPTIONAL else None)
+        name: partial(tables.within, data, name, read_part, {} if name in OPTIONAL else None)
         for name, read_part in PARTS.items()
     }
     if "surface" not in data:
@@ -137,11 +129,11 @@ def read_scene(data: Table) -> types.Scene:
         except SceneError as error:
             complaints.append(error)
     if complaints:
-        raise min(complaints, key=lambda error: error.problem != UNKNOWN_KEY)
+        raise min(complaints, key=lambda error: error.problem != tables.UNKNOWN_KEY)
     if read["surface"] is None:
         pair = read["projectile"].material, read["barrier"].struck
         of_pair = partial(of_known, lambda: pair_surface(*pair))
-        read["surface"] = within(data, "surface", of_pair, {}) if rubs or "surface" in data else SMOOTH
+        read["surface"] = tables.within(data, "surface", of_pair, {}) if rubs or "surface" in data else SMOOTH
     scene = types.Scene(
         **read,
         title=data.get("title", data.get("id")),
@@ -180,13 +172,15 @@ def _check_measured(scene: types.Scene) -> None:
         )
 
 
-def _projectile(table: Table) -> ProjectileSpec:
+def _projectile(table: tables.Table) -> ProjectileSpec:
     """Read a rod with a tip, a named shape, a profile or a mesh, with a bore and segments or without."""
     if tube := {key: table[key] for key in ("inner_diameter", "inner_diameter_m") if key in table}:
         return _tube({key: value for key, value in table.items() if key not in tube}, tube)
     own = {
         "bore": shapes.stated_points(table.get("bore", ()), "bore"),
-        "segments": listed(table["segments"], "segments", _segment, SEGMENT) if "segments" in table else (),
+        "segments": tables.listed(table["segments"], "segments", _segment, SEGMENT)
+        if "segments" in table
+        else (),
     }
     known = {key: value for key, value in table.items() if key not in own}
     _refuse_length(known)
@@ -198,19 +192,19 @@ def _projectile(table: Table) -> ProjectileSpec:
     if "mesh" in known:
         return _of_mesh(known, own)
     if "profile" in known:
-        check_keys(known, ("profile", "profile_smooth", "material"))
+        tables.check_keys(known, ("profile", "profile_smooth", "material"))
         points = shapes.stated_points(known["profile"], "profile")
         shape = shapes.Profile(points, known.get("profile_smooth", False))
-        return ProjectileSpec.turned(shape, within(known, "material", library.read_material), **own)
+        return ProjectileSpec.turned(shape, tables.within(known, "material", library.read_material), **own)
     return _named_shape(known, own) if "shape" in known else _rod(known, own)
 
 
-def _tube(table: Table, inner: Table) -> ProjectileSpec:
+def _tube(table: tables.Table, inner: tables.Table) -> ProjectileSpec:
     """Read a projectile with a straight bore from tip to tail, which is stated by its diameter."""
     if other := next((key for key in ("bore", "mesh") if key in table), ""):
         problem = f"stands beside a {other}, which has its own."
         raise SceneError(problem, key="inner_diameter", remedy="Keep one of the two.")
-    radius = numbers_of(inner, fields.TUBE)["inner_diameter"] / 2
+    radius = tables.numbers_of(inner, fields.TUBE)["inner_diameter"] / 2
     solid = _projectile(table)
     return replace(solid, bore=((0.0, radius), (solid.length, radius)))
 
@@ -223,7 +217,7 @@ LENGTH_OF = {
 """What gives a projectile its length where that is not stated, and the key of it."""
 
 
-def _refuse_length(table: Table) -> None:
+def _refuse_length(table: tables.Table) -> None:
     """Refuse the length of a projectile that has its own."""
     kind = next((key for key in ("mesh", "profile") if key in table), table.get("shape"))
     key = next((key for key in ("length", "length_m") if key in table), None)
@@ -234,16 +228,16 @@ def _refuse_length(table: Table) -> None:
         raise SceneError(problem, key=key, value=table[key], remedy=remedy)
 
 
-def _refuse_hollow(table: Table) -> None:
+def _refuse_hollow(table: tables.Table) -> None:
     """Refuse other words for a bore, and say how it is stated."""
     for key in table:
         if any(word in key for word in ("inner", "wall", "hollow")):
             remedy = 'State inner_diameter = "14 mm", or a bore by points (place from the tip, radius).'
-            raise SceneError(UNKNOWN_KEY, key=key, value=table[key], remedy=remedy)
+            raise SceneError(tables.UNKNOWN_KEY, key=key, value=table[key], remedy=remedy)
 
 
-def _of_mesh(table: Table, own: dict[str, Any]) -> ProjectileSpec:
-    check_keys(table, (*own_mesh.KEYS, "material"))
+def _of_mesh(table: tables.Table, own: dict[str, Any]) -> ProjectileSpec:
+    tables.check_keys(table, (*own_mesh.KEYS, "material"))
     if own["bore"]:
         raise SceneError("stands beside a mesh, which has its own.", key="bore", remedy="Leave it out.")
     mesh, stated = own_mesh.stated(table), table.get("mesh_materials", {})
@@ -253,18 +247,20 @@ def _of_mesh(table: Table, own: dict[str, Any]) -> ProjectileSpec:
     if stated and own["segments"]:
         raise SceneError("stands beside segments.", key="mesh_materials", remedy="State one of them.")
     regions = tuple(Region(name, _region(stated[name], name)) for name in stated)
-    faces = within(table, "mesh_surfaces", _faces) if "mesh_surfaces" in table else ()
-    material = within(table, "material", library.read_material)
+    faces = tables.within(table, "mesh_surfaces", _faces) if "mesh_surfaces" in table else ()
+    material = tables.within(table, "material", library.read_material)
     return ProjectileSpec.meshed(mesh, material, own["segments"], regions, faces)
 
 
-def _faces(table: Table) -> tuple[Face, ...]:
+def _faces(table: tables.Table) -> tuple[Face, ...]:
     """Read the surface of each set whose outer faces have a state of their own; one law holds for all."""
     for name in table:
         if isinstance(table[name], Mapping) and "sliding_law" in table[name]:
             remedy = "State it in [surface]: it multiplies f of every face."
             raise SceneError("stands beside that of the scene.", key=f"{name}.sliding_law", remedy=remedy)
-    found = tuple(Face(name, surface) for name in table if (surface := within(table, name, read_surface)))
+    found = tuple(
+        Face(name, surface) for name in table if (surface := tables.within(table, name, read_surface))
+    )
     for name in set(table) - {face.name for face in found}:
         remedy = "Leave it out, or name another state, such as custom."
         raise SceneError("is the state of the scene's surface.", key=f"{name}.state", remedy=remedy)
@@ -273,18 +269,18 @@ def _faces(table: Table) -> tuple[Face, ...]:
 
 def _region(material: Any, name: str) -> Material:
     try:
-        return within({"material": material}, "material", library.read_material)
+        return tables.within({"material": material}, "material", library.read_material)
     except SceneError as error:
         raise error.under(f"mesh_materials.{name}") from None
 
 
-def _named_shape(table: Table, own: dict[str, Any]) -> ProjectileSpec:
+def _named_shape(table: tables.Table, own: dict[str, Any]) -> ProjectileSpec:
     """Read a shape by name; those that are rods with a published kind of tip become such rods."""
     name = table["shape"]
     shapes.refuse_tip(table)
     by_length = shapes.stated_by_length(name, table)
-    sizes = numbers_of(table, shapes.sizes_of(name, by_length), ("shape", "material"))
-    material = within(table, "material", library.read_material)
+    sizes = tables.numbers_of(table, shapes.sizes_of(name, by_length), ("shape", "material"))
+    material = tables.within(table, "material", library.read_material)
     if name not in shapes.TIPS:
         return ProjectileSpec.turned(
             shapes.NamedShape(name, tuple(sizes.values()), by_length), material, **own
@@ -295,55 +291,55 @@ def _named_shape(table: Table, own: dict[str, Any]) -> ProjectileSpec:
     )
 
 
-def _segment(table: Table) -> Segment:
-    check_keys(table, ("to", "material"))
+def _segment(table: tables.Table) -> Segment:
+    tables.check_keys(table, ("to", "material"))
     end = parse_quantity(table["to"], "length", "to") if "to" in table else inf
-    return Segment(end, within(table, "material", library.read_material))
+    return Segment(end, tables.within(table, "material", library.read_material))
 
 
-def _layer(table: Table) -> Layer:
+def _layer(table: tables.Table) -> Layer:
     return Layer(
-        **numbers_of(table, fields.LAYER, ("material",)),
-        material=within(table, "material", library.read_material),
+        **tables.numbers_of(table, fields.LAYER, ("material",)),
+        material=tables.within(table, "material", library.read_material),
     )
 
 
-def _rod(table: Table, own: dict[str, Any]) -> ProjectileSpec:
+def _rod(table: tables.Table, own: dict[str, Any]) -> ProjectileSpec:
     shapes.refuse_as_tip(table.get("tip"))
     plain = {"tip_radius": 0.0} if table.get("tip") == "plain" else {}
-    numbers = numbers_of(table, fields.PROJECTILE, ("tip", "material"), plain)
-    tip = needed(table, "tip", '"A", "B" or "plain"')
+    numbers = tables.numbers_of(table, fields.PROJECTILE, ("tip", "material"), plain)
+    tip = tables.needed(table, "tip", '"A", "B" or "plain"')
     return ProjectileSpec(
-        tip=tip, material=within(table, "material", library.read_material), **numbers, **own
+        tip=tip, material=tables.within(table, "material", library.read_material), **numbers, **own
     )
 
 
-def _barrier(table: Table) -> Barrier:
-    given = values_of(table, fields.BARRIER, ("boundary", "support"), ("material", "layers"))
+def _barrier(table: tables.Table) -> Barrier:
+    given = tables.values_of(table, fields.BARRIER, ("boundary", "support"), ("material", "layers"))
     if "layers" in table:
         example = '{thickness = "2 mm", material = "rod-steel"}'
-        given["layers"] = listed(table["layers"], "layers", _layer, example)
-    return Barrier(within(table, "material", library.read_material), **given)
+        given["layers"] = tables.listed(table["layers"], "layers", _layer, example)
+    return Barrier(tables.within(table, "material", library.read_material), **given)
 
 
-def _impact(table: Table) -> Impact:
+def _impact(table: tables.Table) -> Impact:
     """Read a motion that a height, a speed or velocities state, and how far it is followed."""
     known = (*fields.IMPACT, fields.SLOPE, fields.HEIGHT, fields.SPEED)
     given = {p.key for p in known if {p.key, p.si_key} & set(table)}
     shown = [*(p.key for p in known), "until"]
-    check_keys(table, (*shown, *(p.si_key for p in known)), shown)
+    tables.check_keys(table, (*shown, *(p.si_key for p in known)), shown)
     way = the_way(given)
     made: dict[tuple[str, ...], Callable[..., Impact]] = {WAYS[0]: Impact.dropped, WAYS[1]: Impact.thrown}
     stated = (fields.ANGLE, fields.OMEGA, fields.SLOPE, *(p for p in known if p.key in way))
-    return made.get(way, Impact)(**values_of(table, stated, ("until",)))
+    return made.get(way, Impact)(**tables.values_of(table, stated, ("until",)))
 
 
-def _accuracy(table: Table | str) -> types.Accuracy:
+def _accuracy(table: tables.Table | str) -> types.Accuracy:
     """Read a mesh, or a wanted error written alone or as the key ``target``."""
     if isinstance(table, str):
         return types.Accuracy(**_wanted(table, ""))
     choices = ("element", "yielding_element", "fine_zone", "unresolved")
-    stated = values_of(table, fields.ACCURACY, choices, ("target",))
+    stated = tables.values_of(table, fields.ACCURACY, choices, ("target",))
     if "target" not in table:
         return types.Accuracy(**stated)
     for key in fields.MESH:
@@ -366,8 +362,8 @@ PARTS: Mapping[str, Callable[[Any], Any]] = {
     "surface": read_surface,
     "impact": _impact,
     "accuracy": _accuracy,
-    "save": lambda table: types.Save(**values_of(table, fields.SAVE, ("fields",))),
-    "heating": lambda table: types.Heating(**numbers_of(table, fields.HEATING)),
-    "strikes": lambda table: Following(**values_of(table, fields.STRIKES, ("fidelity",))),
+    "save": lambda table: types.Save(**tables.values_of(table, fields.SAVE, ("fields",))),
+    "heating": lambda table: types.Heating(**tables.numbers_of(table, fields.HEATING)),
+    "strikes": lambda table: Following(**tables.values_of(table, fields.STRIKES, ("fidelity",))),
 }
 """What reads each section of a scene."""

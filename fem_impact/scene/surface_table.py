@@ -7,8 +7,7 @@ from itertools import product
 
 from fem_impact.errors import SceneError
 from fem_impact.scene import fields, library
-from fem_impact.scene.family import widening
-from fem_impact.scene.material import Material, Surface
+from fem_impact.scene.material import Material, Surface, widening
 from fem_impact.scene.sliding import EXAMPLE, SlidingLaw, law_of
 from fem_impact.scene.tables import Table, check_keys, needed, numbers_of
 

@@ -16,8 +16,8 @@ from math import cos, radians, sin
 from pathlib import Path
 
 from fem_impact.answers.verdict.chart import COLUMNS, TABLE
-from fem_impact.answers.verdict.effect import modal_pair, unfinished
 from fem_impact.answers.verdict.screening import screening
+from fem_impact.answers.verdict.vibration import modal_pair, unfinished
 from fem_impact.case.case import Case
 from fem_impact.errors import SceneError
 from fem_impact.evidence.studies.rods import BODY, TIP, length_of

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from fem_impact.figures.live import live
+from fem_impact.figures.runs import FRAMES, SHOWN, accounts_picture, path_picture
 from fem_impact.figures.still import draw
-from fem_impact.figures.strikes import FRAMES, SHOWN, accounts_picture, path_picture
 from fem_impact.options import RunOptions
-from fem_impact.outcome.strike_text import strikes_table, told
+from fem_impact.outcome.strikes import strikes_table, told
 from fem_impact.pages.run_page import run_page
 from fem_impact.pages.sheet import write_sheet
 from fem_impact.run.simulate import simulate

@@ -9,6 +9,8 @@ from matplotlib.figure import Figure
 from fem_impact.figures.still import QUIET
 from fem_impact.films.film import TITLE, _title
 from fem_impact.films.frame import (
+    FrameLayout,
+    SideBySideLayout,
     below,
     blank,
     clock,
@@ -17,7 +19,6 @@ from fem_impact.films.frame import (
     limits_of,
     picture,
 )
-from fem_impact.films.layout import FrameLayout, SideBySideLayout
 from fem_impact.films.motion import FIELDS
 
 LONG = "a rod of a title that somebody wrote with all that was known of surfaces, speed, angle and tip " * 3

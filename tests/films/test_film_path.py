@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from fem_impact.figures.strikes import body_line, placed, state_at
+from fem_impact.figures.runs import body_line, placed, state_at
 from fem_impact.films import path
 from fem_impact.films.movement import FPS
 from fem_impact.run.simulate import simulate

@@ -16,7 +16,7 @@ from fem_impact.errors import MissingLibraryError, OutputPathError, ResultError,
 from fem_impact.files.fields import read_fields
 from fem_impact.films.encode import require_gl
 from fem_impact.films.film import _on_one_scale, render, render_side_by_side
-from fem_impact.films.layout import FrameLayout, SideBySideLayout
+from fem_impact.films.frame import FrameLayout, SideBySideLayout
 from fem_impact.films.motion import (
     axis_of,
     hex_volumes,

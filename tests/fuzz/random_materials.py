@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from fem_impact.case.effects.registry import NAMES
-from fem_impact.scene.family import FAMILIES
 from fem_impact.scene.library import aliases_of, materials
+from fem_impact.scene.material import FAMILIES
 
 Tree = dict[str, Any]
 STIFF = (  # E, yield stress

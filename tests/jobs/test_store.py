@@ -15,9 +15,8 @@ import fem_impact.run.program as sources_module
 import fem_impact.run.simulate
 from fem_impact.errors import OutputPathError, ResultError
 from fem_impact.jobs import job as job_module
-from fem_impact.jobs.job import Failure
+from fem_impact.jobs.job import Failure, Store
 from fem_impact.jobs.run import run_jobs
-from fem_impact.jobs.store import Store
 from fem_impact.progress import Notice, NullMeter
 from fem_impact.run.program import source_digest, stamp
 from fem_impact.scene.shipped import load, replace
@@ -146,7 +145,7 @@ def test_a_damaged_store_is_told_as_damaged(tmp_path, damage):
 
 
 def test_a_full_disk_and_a_busy_store_are_told_apart(tmp_path, monkeypatch):
-    monkeypatch.setattr("fem_impact.jobs.store.PATIENCE", 0.05)
+    monkeypatch.setattr("fem_impact.jobs.job.PATIENCE", 0.05)
     store = tmp_path / "store.sqlite"
     run(store, job("a"))
     other = sqlite3.connect(store)

@@ -25,9 +25,8 @@ import fem_impact
 import meshes
 import rigid
 from fem_impact.errors import FemImpactError, ResultError, SceneError
-from fem_impact.jobs import store as store_module
-from fem_impact.jobs.job import Job
-from fem_impact.jobs.store import Store
+from fem_impact.jobs import job as store_module
+from fem_impact.jobs.job import Job, Store
 from fem_impact.outcome.record import Outcome
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load

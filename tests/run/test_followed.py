@@ -13,7 +13,7 @@ from fem_impact.errors import SceneError, UsageError
 from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.limitation import texts
 from fem_impact.outcome.record import Outcome
-from fem_impact.outcome.strike_text import told as in_words
+from fem_impact.outcome.strikes import told as in_words
 from fem_impact.run import certain
 from fem_impact.run.modal import closed, reduce
 from fem_impact.run.simulate import simulate

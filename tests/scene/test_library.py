@@ -6,7 +6,6 @@ from fem_impact.case.case import Case
 from fem_impact.case.metals import unknowns
 from fem_impact.errors import SceneError
 from fem_impact.scene import fields, library
-from fem_impact.scene.family import FAMILIES, family_by_words, kind_of
 from fem_impact.scene.library import (
     aliases_of,
     family_of,
@@ -18,7 +17,7 @@ from fem_impact.scene.library import (
     sourced_values,
     sources_of,
 )
-from fem_impact.scene.material import Material
+from fem_impact.scene.material import FAMILIES, Material, family_by_words, kind_of
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load, replace, replace_all
 from fem_impact.scene.surface_table import known_pair, pair_surface

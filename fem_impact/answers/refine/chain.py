@@ -16,9 +16,7 @@ from functools import cached_property, partial
 from itertools import pairwise
 from pathlib import Path
 
-from fem_impact.answers.refine.budget import about_s, in_turns, longest_s, turns
-from fem_impact.answers.refine.extrapolate import UNRESOLVED, level_limits, quantity_limits
-from fem_impact.answers.refine.forecast import MIDDLE, LevelProgress, enough_s, now, require_pilot
+from fem_impact.answers.refine import extrapolate, forecast
 from fem_impact.answers.refine.level import STAMP, LevelRun, simulate_level
 from fem_impact.answers.refine.level_meshes import LevelMeshes, steps_between
 from fem_impact.answers.refine.quantities import TARGETED
@@ -32,7 +30,7 @@ from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import Unknown, known
 from fem_impact.outcome.limitation import limitations
 from fem_impact.outcome.record import Outcome
-from fem_impact.outcome.strike_text import levels_told
+from fem_impact.outcome.strikes import levels_told
 from fem_impact.progress import Notice
 from fem_impact.run.simulate import begin
 from fem_impact.scene.impact import FIRST
@@ -122,7 +120,7 @@ class LevelChain:
         It raises what `run` does.
         """
         if not self.done:
-            require_pilot(self.meshes.pilot, self._limit_s)
+            forecast.require_pilot(self.meshes.pilot, self._limit_s)
         splits = self._next if self.done else self.meshes.first
         while splits is not None:
             try:
@@ -182,7 +180,7 @@ class LevelChain:
         What has no band is left out: all where the last level does not resolve its contact, and the vibration
         of a rod that is rigid.
         """
-        limits = quantity_limits([level.runs for level in self.done[: self.counted]])
+        limits = extrapolate.quantity_limits([level.runs for level in self.done[: self.counted]])
         of = self.scene.accuracy.target_of
         return {name: limits[name].error for name in ((of,) if of else TARGETED) if name in limits}
 
@@ -209,7 +207,9 @@ class LevelChain:
         """Say that the budget does not hold the next level, and which does; empty where none is wanted."""
         if self.failed or self.following is None:
             return ""
-        used = f"{about_s(self.spent_s)} of the budget of {about_s(self.budget_s)} are used up"
+        used = (
+            f"{forecast.about_s(self.spent_s)} of the budget of {forecast.about_s(self.budget_s)} are used up"
+        )
         return f"{used}. {self.advice[0]}"
 
     @property
@@ -246,9 +246,11 @@ class LevelChain:
     def forecast_s(self, splits: int) -> float:
         """Return about the wall time, s, of a level whose mesh is not made yet, from that of the last one."""
         last = self.done[-1]
-        took_s = longest_s([one.cost.whole_wall for one in last.outcomes], self.workers)
-        one = took_s / turns(len(last.outcomes), self.workers)
-        return float(one * MIDDLE ** (splits - last.splits) * turns(self._runs, self.workers))
+        took_s = forecast.longest_s([one.cost.whole_wall for one in last.outcomes], self.workers)
+        one = took_s / forecast.turns(len(last.outcomes), self.workers)
+        return float(
+            one * forecast.MIDDLE ** (splits - last.splits) * forecast.turns(self._runs, self.workers)
+        )
 
     def _run_level(self, splits: int) -> None:
         """Run a level, again with more room where it needs that, and add it to what is done."""
@@ -263,7 +265,7 @@ class LevelChain:
         # a film is made of the first alone: storing frames takes a tenth of a quick run
         scenes = [*places[:1], *(replace(one, save=still) for one in places[1:])]
         scenes += [replace(self.twin, accuracy=accuracy)] if self.twin else []
-        begun, room, took_s, earlier = now(), 1.0, 0.0, [0.0] * len(scenes)
+        begun, room, took_s, earlier = forecast.now(), 1.0, 0.0, [0.0] * len(scenes)
         kept: LevelRun | None = None
         for repeats in range(MOST_REPEATS + 1):
             planned = [] if self.done or repeats else [self.meshes.pilot]
@@ -273,17 +275,17 @@ class LevelChain:
                 for number, case in enumerate(cases)
             ]
             try:
-                runs = in_turns(work, self.workers)
+                runs = forecast.in_turns(work, self.workers)
             except (SceneError, RunError) as late:
                 if kept is None:  # what ended in smaller zones is better than none
                     raise
-                level = replace(kept, wall_s=now() - begun, late=str(late))
+                level = replace(kept, wall_s=forecast.now() - begun, late=str(late))
                 break
             outcomes, record = tuple(one for one, _ in runs), together([found for _, found in runs])
             ended = all(outcome.validity.finished for outcome in outcomes)
             size = contact_edge(cases[0].bodies)  # as it came out, which is not always as asked for
             # without a first compilation of the kernels, and with what ran before an interruption
-            took_s += longest_s([one.cost.whole_wall for one in outcomes], self.workers)
+            took_s += forecast.longest_s([one.cost.whole_wall for one in outcomes], self.workers)
             level = LevelRun(splits, size, tuple(cases), outcomes, record, took_s, repeats, tuple(earlier))
             earlier = [t + one.cost.whole_cpu for t, one in zip(earlier, outcomes, strict=True)]
             zones = cases[0].zones
@@ -313,21 +315,21 @@ class LevelChain:
         out = self.options.out and self._place(number, repeats, run)
         later = steps_between(splits, max(self.finest, splits))
         name = f"{self.scene.id}, level {number}" + f" of {number + len(later)}" * bool(self.done)
-        progress = LevelProgress(show, name, used_s=self.spent_s, limit_s=self._limit_s, begun=begun)
+        progress = forecast.LevelProgress(show, name, used_s=self.spent_s, limit_s=self._limit_s, begun=begun)
         if self.done:
             before = self.done[-1].outcome.cost
             progress.load = before.whole_wall / max(before.whole_cpu, 1e-3)
             progress.duration_s = known(before.steps) * known(before.min_step)
             progress.halvings = [fine - coarse for coarse, fine in pairwise([splits, *later])]
-            progress.turns = turns(self._runs, self.workers)
+            progress.turns = forecast.turns(self._runs, self.workers)
         return replace(self.options, out=out, progress=progress)
 
     def _stated(self) -> Outcome:
         """Return the outcome of the level that counts, of the scene as stated, with limits and bands."""
         upto = self.done[: self.counted]
         counted, beyond = upto[-1], self.done[self.counted :]
-        limits, bands = level_limits([level.runs for level in upto])
-        why = bands if isinstance(bands, Unknown) else UNRESOLVED
+        limits, bands = extrapolate.level_limits([level.runs for level in upto])
+        why = bands if isinstance(bands, Unknown) else extrapolate.UNRESOLVED
         if bands is why:
             limits = bands = Unknown(f"{why.reason}; {self._finer}")
         short = self.meshes.lacking(counted.splits, counted.record, self.finest)
@@ -393,5 +395,8 @@ class LevelChain:
         if then is None:
             return f"No finer level is tried: {self._finer}.", None
         more_s = self.forecast_s(then)
-        enough = enough_s(self.spent_s, more_s)
-        return f"{name} takes about {about_s(more_s)} more: for it give a budget of {enough} s.", enough
+        enough = forecast.enough_s(self.spent_s, more_s)
+        return (
+            f"{name} takes about {forecast.about_s(more_s)} more: for it give a budget of {enough} s.",
+            enough,
+        )

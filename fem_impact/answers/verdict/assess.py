@@ -7,16 +7,7 @@ from math import isclose
 import numpy as np
 
 from fem_impact.answers.refine.level import LevelRun
-from fem_impact.answers.verdict.effect import (
-    Answer,
-    VibrationEffect,
-    largest,
-    modal_effect,
-    modal_pair,
-    solid_effect,
-    unfinished,
-    untargeted,
-)
+from fem_impact.answers.verdict import vibration
 from fem_impact.answers.verdict.levels import Means, Tell, by_levels, finite_elements
 from fem_impact.answers.verdict.reliability import CHANGED
 from fem_impact.answers.verdict.screening import Screening, screening
@@ -61,8 +52,8 @@ class Verdict:
     tolerance: float
     fidelity: str
     screening: Screening
-    here: VibrationEffect
-    elsewhere: VibrationEffect | None
+    here: vibration.VibrationEffect
+    elsewhere: vibration.VibrationEffect | None
     not_known: tuple[tuple[float, ...], str]
     over_friction: tuple[float, float] | None
     steps: tuple[str, ...]
@@ -77,7 +68,7 @@ class Verdict:
         )
 
     @property
-    def answer(self) -> Answer:
+    def answer(self) -> vibration.Answer:
         """May rigid theory be used at the scene's inclination."""
         return self.here.answer(self.tolerance)
 
@@ -93,12 +84,12 @@ class Verdict:
         )
 
     @property
-    def worst(self) -> VibrationEffect | None:
+    def worst(self) -> vibration.VibrationEffect | None:
         """The largest change over all inclinations, None where only this one is known."""
-        return None if self.elsewhere is None else largest([self.here, self.elsewhere])
+        return None if self.elsewhere is None else vibration.largest([self.here, self.elsewhere])
 
     @property
-    def worst_answer(self) -> Answer:
+    def worst_answer(self) -> vibration.Answer:
         """May it be used at any inclination: no where it may not at this one."""
         both = {self.answer, self.elsewhere.answer(self.tolerance) if self.elsewhere else "undecided"}
         if "no" in both:
@@ -162,10 +153,10 @@ def assess(
     open_still = quick is None or not quick.alike or quick.answer(tolerance) == "undecided"
     if fidelity == "solid" or (fidelity == "auto" and open_still):
 
-        def estimate(levels: Sequence[LevelRun]) -> VibrationEffect | None:
-            return solid_effect([level.runs for level in levels], of)
+        def estimate(levels: Sequence[LevelRun]) -> vibration.VibrationEffect | None:
+            return vibration.solid_effect([level.runs for level in levels], of)
 
-        pair, means = twins(untargeted(scene)), (budget_s, workers)
+        pair, means = twins(vibration.untargeted(scene)), (budget_s, workers)
         try:
             solid, told, more = by_levels(pair, estimate, _told, tolerance, means, tell, steps)
         except (SceneError, RunError) as refused:
@@ -194,17 +185,17 @@ def assess(
     )
 
 
-def _told(effect: VibrationEffect) -> str:
+def _told(effect: vibration.VibrationEffect) -> str:
     return f"{effect.of} changes by {effect.told}"
 
 
-def _quick(scene: Scene, of: str, tell: Tell) -> tuple[VibrationEffect | None, list[str]]:
+def _quick(scene: Scene, of: str, tell: Tell) -> tuple[vibration.VibrationEffect | None, list[str]]:
     """Return what the reduced model says, None where it has no answer; and notes."""
     tell("the reduced model, at this inclination and at others ...")
-    pair = modal_pair(scene)
-    if failed := unfinished(pair, of):
+    pair = vibration.modal_pair(scene)
+    if failed := vibration.unfinished(pair, of):
         return None, [f"The reduced model has no answer here: {failed}"]
-    return modal_effect(scene, pair, of), []
+    return vibration.modal_effect(scene, pair, of), []
 
 
 def check_means(fidelity: str, budget_s: float) -> None:
@@ -218,26 +209,26 @@ def check_means(fidelity: str, budget_s: float) -> None:
 
 def _over_angles(
     scene: Scene, of: str, off: float
-) -> tuple[VibrationEffect | None, tuple[tuple[float, ...], str]]:
+) -> tuple[vibration.VibrationEffect | None, tuple[tuple[float, ...], str]]:
     """Return the largest change of the reduced model over other inclinations, and where it has no answer.
 
     ``off`` is its error at the scene's own inclination, as far as finite elements show it.
     """
-    changes, missing, why = list[VibrationEffect](), list[float](), ""
+    changes, missing, why = list[vibration.VibrationEffect](), list[float](), ""
     side = -1.0 if scene.impact.angle < 0 else 1.0  # that of the tip which comes down first
     for angle in (side * float(angle) for angle in ANGLES if not isclose(side * angle, scene.impact.angle)):
         try:
             one = inclined(scene, angle)
-            pair = modal_pair(one)
-            failed = unfinished(pair, of)
+            pair = vibration.modal_pair(one)
+            failed = vibration.unfinished(pair, of)
         except SceneError as error:
             failed = str(error)
         if failed:
             missing.append(angle)
             why = why or failed
         else:
-            changes.append(modal_effect(one, pair, of).at_least(off))
-    return (largest(changes) if changes else None), (tuple(missing), why)
+            changes.append(vibration.modal_effect(one, pair, of).at_least(off))
+    return (vibration.largest(changes) if changes else None), (tuple(missing), why)
 
 
 def _over_friction(scene: Scene, of: str) -> tuple[float, float] | None:
@@ -248,6 +239,6 @@ def _over_friction(scene: Scene, of: str) -> tuple[float, float] | None:
     values = []
     for f in (surface.friction_low, surface.friction, surface.friction_high):
         one = replace(scene, surface=replace(surface, state="custom", friction=f))
-        pair = modal_pair(one)
-        values += [] if unfinished(pair, of) else [modal_effect(one, pair, of).value]
+        pair = vibration.modal_pair(one)
+        values += [] if vibration.unfinished(pair, of) else [vibration.modal_effect(one, pair, of).value]
     return (min(values), max(values)) if values else None

@@ -9,14 +9,7 @@ import numpy as np
 
 from fem_impact.answers.refine.extrapolate import level_limit, level_limits
 from fem_impact.answers.refine.level import LevelRun
-from fem_impact.answers.verdict.effect import (
-    Answer,
-    modal_effect,
-    modal_pair,
-    solid_effect,
-    unfinished,
-    untargeted,
-)
+from fem_impact.answers.verdict import vibration
 from fem_impact.answers.verdict.twins import twins
 from fem_impact.case.case import Case
 from fem_impact.case.effects.heating import halves
@@ -50,7 +43,7 @@ class Bound:
     ceiling: float = inf
     beyond: str = ""
 
-    def answer(self, limit: float) -> Answer:
+    def answer(self, limit: float) -> vibration.Answer:
         """Say whether the number stays below a limit."""
         if self.low > limit:
             return "no"
@@ -94,19 +87,19 @@ class Rigidity(Criterion):
 
     def reduced(self, scene: Scene) -> Bound | Unknown:
         """Return the change with its known error."""
-        pair = modal_pair(scene)
-        if failed := unfinished(pair, self.of):
+        pair = vibration.modal_pair(scene)
+        if failed := vibration.unfinished(pair, self.of):
             return Unknown(failed)
-        effect = modal_effect(scene, pair, self.of)
+        effect = vibration.modal_effect(scene, pair, self.of)
         return _about(abs(effect.value), effect.band, effect.alike)
 
     def meshed(self, scene: Scene) -> tuple[Scene, Scene | None]:
         """Return the twins."""
-        return twins(untargeted(scene))
+        return twins(vibration.untargeted(scene))
 
     def solid(self, levels: Sequence[LevelRun]) -> Bound | None:
         """Return the change and the band of the levels."""
-        effect = solid_effect([level.runs for level in levels], self.of)
+        effect = vibration.solid_effect([level.runs for level in levels], self.of)
         return None if effect is None else _about(abs(effect.value), effect.band)
 
 
@@ -141,7 +134,7 @@ class Limited(Criterion):
 
     def meshed(self, scene: Scene) -> tuple[Scene, Scene | None]:
         """Return the scene without a film."""
-        return untargeted(replace(scene, measured=None, save=replace(scene.save, frames=0))), None
+        return vibration.untargeted(replace(scene, measured=None, save=replace(scene.save, frames=0))), None
 
     def solid(self, levels: Sequence[LevelRun]) -> Bound | None:
         """Return the limit and the half-width of the levels."""

@@ -4,10 +4,10 @@ import shlex
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Protocol, TypeVar
 
-from fem_impact.answers.refine.budget import about_s
 from fem_impact.answers.refine.chain import LevelChain
+from fem_impact.answers.refine.forecast import about_s
 from fem_impact.answers.refine.level import LevelRun
-from fem_impact.answers.verdict.effect import Answer
+from fem_impact.answers.verdict.vibration import Answer
 from fem_impact.case.case import Case
 from fem_impact.options import RunOptions
 from fem_impact.progress import Notice, Progress

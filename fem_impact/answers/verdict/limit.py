@@ -17,9 +17,9 @@ import numpy as np
 from fem_impact.answers.validate import FRICTION, Ends, at_place, interval_of
 from fem_impact.answers.verdict.assess import BUDGET, LACKING, check_means
 from fem_impact.answers.verdict.criteria import Bound, Criterion
-from fem_impact.answers.verdict.effect import Answer
 from fem_impact.answers.verdict.levels import Means, Tell, by_levels, finite_elements, next_step
 from fem_impact.answers.verdict.sentences import case_sentence, never_covered
+from fem_impact.answers.verdict.vibration import Answer
 from fem_impact.case.case import Case
 from fem_impact.case.limits import not_reduced
 from fem_impact.errors import RunError, SceneError, UsageError

@@ -5,9 +5,9 @@ from math import degrees, isclose
 from typing import Any
 
 from fem_impact.answers.verdict.assess import Verdict
-from fem_impact.answers.verdict.effect import CALLED, Answer, VibrationEffect
 from fem_impact.answers.verdict.levels import next_step
 from fem_impact.answers.verdict.screening import Screening
+from fem_impact.answers.verdict.vibration import CALLED, Answer, VibrationEffect
 from fem_impact.outcome.keys import Unknown, known, or_none
 from fem_impact.outcome.limitation import texts
 from fem_impact.outcome.record import Outcome, installed_versions

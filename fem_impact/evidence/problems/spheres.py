@@ -8,16 +8,8 @@ import numpy as np
 import meshes
 from fem_impact.arrays import Array, Ints
 from fem_impact.case.plates import ROWS
-from fem_impact.evidence.problems import setups
+from fem_impact.evidence.problems import discretisation, setups
 from fem_impact.evidence.problems.bodies import Block, FreeBody, body_model, placed
-from fem_impact.evidence.problems.discretisation import (
-    boundary_error,
-    end_error,
-    graded_error,
-    grid_force_error,
-    grid_radiation_error,
-    lean_error,
-)
 from fem_impact.evidence.problems.problem import Check, Solved, Values, within
 from fem_impact.evidence.references.finite_sphere import INERTIA, ball_impact, oblique_ball, oblique_sphere
 from fem_impact.evidence.references.hertz import HertzImpact, contact_modulus, hertz, sliding_ratio
@@ -201,7 +193,9 @@ class SphereErrors:
     @property
     def radiation(self) -> float:
         """Relative error of the radiated energy."""
-        return boundary_error(self.reach, self.wave) + grid_radiation_error(self.cell, self.touch)
+        return discretisation.boundary_error(self.reach, self.wave) + discretisation.grid_radiation_error(
+            self.cell, self.touch
+        )
 
     @property
     def force(self) -> float:
@@ -209,8 +203,8 @@ class SphereErrors:
 
         At the largest approach it follows the stiffness of that moment, elsewhere its mean to the power 0.4.
         """
-        grid = grid_force_error(self.cell, self.touch)
-        return grid + 0.4 * graded_error(REACH) + self._reference() + self._block(OF_FORCE)
+        grid = discretisation.grid_force_error(self.cell, self.touch)
+        return grid + 0.4 * discretisation.graded_error(REACH) + self._reference() + self._block(OF_FORCE)
 
     @property
     def time(self) -> float:
@@ -218,7 +212,9 @@ class SphereErrors:
 
         Nodes that join one by one make it longer, coarse cells around them shorter.
         """
-        mesh = max(grid_force_error(self.cell, self.touch), 0.4 * graded_error(REACH))
+        mesh = max(
+            discretisation.grid_force_error(self.cell, self.touch), 0.4 * discretisation.graded_error(REACH)
+        )
         return mesh + self._reference() + self._block(OF_TIME)
 
     def _reference(self) -> float:
@@ -233,8 +229,8 @@ class SphereErrors:
         """
         if not self.radiated:
             return 0.0
-        heard = self.radiated * (1 + boundary_error(self.reach, self.wave))
-        return share * heard + 0.4 * end_error(self.touch, self.reach)
+        heard = self.radiated * (1 + discretisation.boundary_error(self.reach, self.wave))
+        return share * heard + 0.4 * discretisation.end_error(self.touch, self.reach)
 
 
 def _radiated(p: Values, found: setups.TipImpact, errors: SphereErrors) -> Check:
@@ -299,7 +295,7 @@ def _sliding_errors(
     cell = edge / 2 ** levels_for_radius(edge, normal.radius, p["cells"])
     lost = radiated_energy(normal, p["E"], p["nu"], p["rho"]) / (0.5 * ball_mass(p) * v_n**2)
     bounce = 0.5 * (lost * p["block"] + ENERGY)
-    missed = (1 - leaning / p["f"]) * lean_error(cell, normal.radius)
+    missed = (1 - leaning / p["f"]) * discretisation.lean_error(cell, normal.radius)
     of_ratio, given = 1 - SLIDING + missed * p["block"], p["f"] * v_n / v_t
     back = given * (2 * of_ratio + bounce)
     of_arm = normal.approach / p["radius"] + missed * (1 - p["block"])

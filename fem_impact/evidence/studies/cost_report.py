@@ -3,9 +3,8 @@
 from collections.abc import Mapping, Sequence
 from statistics import median
 
-from fem_impact.answers.cost.document import cost_tables
 from fem_impact.answers.cost.judge import Judged, advice, cheapest, default_sentence, front
-from fem_impact.answers.cost.measure import PLACES, CostStudy
+from fem_impact.answers.cost.measure import PLACES, CostStudy, cost_tables
 from fem_impact.answers.refine.extrapolate import quantity_limits
 from fem_impact.answers.refine.quantities import TARGETED
 from fem_impact.answers.report import Sheet, StudyReport

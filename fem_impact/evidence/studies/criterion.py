@@ -10,7 +10,7 @@ from pandas import DataFrame
 from fem_impact import Outcome, known
 from fem_impact.answers.refine.work import Levels, LevelsJob
 from fem_impact.answers.report import Request, Sheet, StudyReport
-from fem_impact.answers.verdict.effect import solid_effect
+from fem_impact.answers.verdict.vibration import solid_effect
 from fem_impact.arrays import Array
 from fem_impact.evidence.studies import criterion_findings as findings
 from fem_impact.evidence.studies import rods as dropped

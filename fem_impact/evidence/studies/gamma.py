@@ -12,26 +12,8 @@ from pandas import DataFrame
 from fem_impact import Scene, load
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.evidence.studies import gamma_figures as figures
+from fem_impact.evidence.studies import rods as dropped
 from fem_impact.evidence.studies.report_parts import rests_on
-from fem_impact.evidence.studies.rods import (
-    CLOSE,
-    KINDS,
-    LEAST,
-    PAPER_RODS,
-    PLAIN,
-    RESTITUTION,
-    STATES,
-    VIBRATION,
-    DroppedRod,
-    RodRun,
-    among,
-    as_table,
-    cut_job,
-    length_of,
-    longest_first,
-    points_of,
-    run_table,
-)
 from fem_impact.jobs.job import Job, JobResults
 from fem_impact.tables.table import Table
 from fem_impact.tables.text import rounded_up
@@ -50,88 +32,105 @@ ONE_PERCENT = 0.01  # of E_0: beyond it vibration counts as large
 ALIKE = 0.1  # m^-0.3815, difference of gammas that are called one
 
 
-def line(quick: bool) -> list[DroppedRod]:
+def line(quick: bool) -> list[dropped.DroppedRod]:
     """Return the rods of the curve: 19 mm, 2.1 m/s, 45 degrees, elastic and yielding, every state."""
-    lengths = [*(length_of(g) for g in (QUICK_BETWEEN if quick else BETWEEN)), *PAPER_RODS.values()]
+    lengths = [
+        *(dropped.length_of(g) for g in (QUICK_BETWEEN if quick else BETWEEN)),
+        *dropped.PAPER_RODS.values(),
+    ]
     return [
-        DroppedRod(length, friction=f, yields=yields)
+        dropped.DroppedRod(length, friction=f, yields=yields)
         for length in sorted(lengths)
-        for yields, kind in KINDS.items()
-        for state, f in STATES.items()
-        if not quick or state == PLAIN[kind]
+        for yields, kind in dropped.KINDS.items()
+        for state, f in dropped.STATES.items()
+        if not quick or state == dropped.PLAIN[kind]
     ]
 
 
-def others(quick: bool) -> list[DroppedRod]:
+def others(quick: bool) -> list[dropped.DroppedRod]:
     """Return the rods with another diameter, speed, angle or flow curve than the curve's."""
     if quick:
         return []
     changed = [
-        *(DroppedRod(length_of(g, d), diameter=d) for g in FEWER for d in DIAMETERS),
-        *(DroppedRod(length_of(g), speed=v) for g in FEWER for v in SPEEDS),
-        *(DroppedRod(length, angle) for length in PAPER_RODS.values() for angle in ANGLES),
+        *(dropped.DroppedRod(dropped.length_of(g, d), diameter=d) for g in FEWER for d in DIAMETERS),
+        *(dropped.DroppedRod(dropped.length_of(g), speed=v) for g in FEWER for v in SPEEDS),
+        *(dropped.DroppedRod(length, angle) for length in dropped.PAPER_RODS.values() for angle in ANGLES),
     ]
-    harder = [DroppedRod(length_of(g), law="hardness") for g in FEWER]
+    harder = [dropped.DroppedRod(dropped.length_of(g), law="hardness") for g in FEWER]
     return [
-        replace(rod, friction=STATES[PLAIN[kind]], yields=yields)
-        for yields, kind in KINDS.items()
+        replace(rod, friction=dropped.STATES[dropped.PLAIN[kind]], yields=yields)
+        for yields, kind in dropped.KINDS.items()
         for rod in (*changed, *(harder if yields else []))
     ]
 
 
-def reduced(quick: bool) -> list[DroppedRod]:
+def reduced(quick: bool) -> list[dropped.DroppedRod]:
     """Return the rods of the modal fidelity: over the same slendernesses, closer together."""
-    lengths = {length_of(g) for g in (QUICK_REDUCED if quick else REDUCED)}
+    lengths = {dropped.length_of(g) for g in (QUICK_REDUCED if quick else REDUCED)}
     lengths |= {rod.length for rod in line(quick)}
     states = {(rod.friction, rod.yields) for rod in line(quick)}
     return [
-        DroppedRod(length, friction=f, yields=yields)
+        dropped.DroppedRod(length, friction=f, yields=yields)
         for length in sorted(lengths)
         for f, yields in sorted(states)
     ]
 
 
-def families(quick: bool) -> dict[str, list[RodRun]]:
+def families(quick: bool) -> dict[str, list[dropped.RodRun]]:
     """Return all runs of vibrating rods, by family."""
     places = 1 if quick else PLACES
     rods = {"curve": line(quick), "other inputs": others(quick)}
-    solid = {name: [RodRun(rod, "solid", places) for rod in of] for name, of in rods.items()}
-    sets = [RodRun(_most_like(load(name)), "solid", places, name) for name in SETS]
-    return {**solid, "measured sets": sets, "modes": [RodRun(rod) for rod in reduced(quick)]}
+    solid = {name: [dropped.RodRun(rod, "solid", places) for rod in of] for name, of in rods.items()}
+    sets = [dropped.RodRun(_most_like(load(name)), "solid", places, name) for name in SETS]
+    return {**solid, "measured sets": sets, "modes": [dropped.RodRun(rod) for rod in reduced(quick)]}
 
 
-def _most_like(scene: Scene) -> DroppedRod:
+def _most_like(scene: Scene) -> dropped.DroppedRod:
     """Return the yielding rod with length, diameter, tip, angle, speed and friction of a scene."""
     rod, impact = scene.projectile, scene.impact
     speed, angle = hypot(impact.v_n, impact.v_t), round(degrees(impact.angle), 9)
-    return DroppedRod(rod.length, angle, scene.surface.friction, True, rod.diameter, rod.tip_radius, speed)
+    return dropped.DroppedRod(
+        rod.length, angle, scene.surface.friction, True, rod.diameter, rod.tip_radius, speed
+    )
 
 
 def plan(request: Request, results: JobResults) -> list[Job]:
     """Return the jobs, the longest first; with results also those that are cut after a first contact."""
     runs = [run for family in families(request.quick).values() for run in family]
     solid = [run for run in runs if run.fidelity == "solid"]
-    cut = [job for run in solid if run.name in results and (job := cut_job(run, results[run.name]))]
-    return longest_first([*runs, *(run.twin for run in solid)], cut)
+    cut = [job for run in solid if run.name in results and (job := dropped.cut_job(run, results[run.name]))]
+    return dropped.longest_first([*runs, *(run.twin for run in solid)], cut)
 
 
 def conclude(request: Request, results: JobResults) -> StudyReport:
     """Return the study: curves with bands, where the energy went, and the modal fidelity beside them."""
-    table = run_table(families(request.quick), results)
-    points, modes = points_of(table, results), table[table.family == "modes"]
+    table = dropped.run_table(families(request.quick), results)
+    points, modes = dropped.points_of(table, results), table[table.family == "modes"]
     sentences = findings(points)
     pictures = [figures.curve(points, modes), figures.later_contacts(points)]
     pictures += [figures.other_inputs(points)] if (points.family == "other inputs").any() else []
     gaps = points[points.reason != ""]
     gaps_sheet = Sheet(
-        "gaps", "Points without a value or a band", as_table(gaps.loc[:, :"law"].assign(reason=gaps.reason))
+        "gaps",
+        "Points without a value or a band",
+        dropped.as_table(gaps.loc[:, :"law"].assign(reason=gaps.reason)),
     )
     sheets = [
         Sheet("rods", "The paper's rods at 45 degrees and 2.1 m/s, by finite elements", rod_table(points)),
         *([gaps_sheet] if len(gaps) else []),
-        Sheet("points", "Every point by finite elements", as_table(points.loc[:, :"reason"]), shown=False),
+        Sheet(
+            "points",
+            "Every point by finite elements",
+            dropped.as_table(points.loc[:, :"reason"]),
+            shown=False,
+        ),
         Sheet("contacts", "Every contact of every point", contact_table(points), shown=False),
-        Sheet("reduced", "The reduced model (modal)", as_table(modes.loc[:, :RESTITUTION]), shown=False),
+        Sheet(
+            "reduced",
+            "The reduced model (modal)",
+            dropped.as_table(modes.loc[:, : dropped.RESTITUTION]),
+            shown=False,
+        ),
     ]
     return StudyReport(
         "gamma",
@@ -161,8 +160,10 @@ def rod_table(points: DataFrame) -> Table:
             "T1/tau": p.T1_over_tau,
             "E_vib/E_0 by modes, %": None if p.by_modes is None else 100 * p.by_modes,
         }
-        for (rod, length), kind, (state, f) in product(PAPER_RODS.items(), KINDS.values(), STATES.items())
-        for p in among(curve, length_m=length, contact=kind, f=f).itertuples()
+        for (rod, length), kind, (state, f) in product(
+            dropped.PAPER_RODS.items(), dropped.KINDS.values(), dropped.STATES.items()
+        )
+        for p in dropped.among(curve, length_m=length, contact=kind, f=f).itertuples()
     ]
     return Table.of(tuple(rows[0]), rows)
 
@@ -189,11 +190,11 @@ def findings(points: DataFrame) -> list[str]:
     curve = points[points.family == "curve"]
     sentences = [
         what_the_limit_says(curve),
-        *(how_much(curve, kind) for kind in PLAIN),
-        *(where_it_peaks(curve, kind) for kind in PLAIN),
-        *(other_inputs(points, kind) for kind in PLAIN),
+        *(how_much(curve, kind) for kind in dropped.PLAIN),
+        *(where_it_peaks(curve, kind) for kind in dropped.PLAIN),
+        *(other_inputs(points, kind) for kind in dropped.PLAIN),
         measured_sets(points),
-        *(modes_less_elements(curve, kind) for kind in PLAIN),
+        *(modes_less_elements(curve, kind) for kind in dropped.PLAIN),
         how_sure(points),
     ]
     return [sentence for sentence in sentences if sentence]
@@ -202,8 +203,8 @@ def findings(points: DataFrame) -> list[str]:
 def how_much(curve: DataFrame, kind: str) -> str:
     """Return vibration of the paper's rods, in the surface state of `PLAIN`."""
     shares = {p.length_m: share(p) for p in _known(figures.plain_line(curve, kind))}
-    rods = [f"{shares[length]} ({rod} rod)" for rod, length in PAPER_RODS.items() if length in shares]
-    tip = f"A{'n' if kind == 'elastic' else ''} {kind} tip ({PLAIN[kind]}, 45 degrees, 2.1 m/s)"
+    rods = [f"{shares[length]} ({rod} rod)" for rod, length in dropped.PAPER_RODS.items() if length in shares]
+    tip = f"A{'n' if kind == 'elastic' else ''} {kind} tip ({dropped.PLAIN[kind]}, 45 degrees, 2.1 m/s)"
     return f"{tip} leaves as vibration, of E_0: {', '.join(rods)}." if rods else ""
 
 
@@ -214,7 +215,7 @@ def where_it_peaks(curve: DataFrame, kind: str) -> str:
         return ""
     top = max(points, key=_vibration)
     after = points[points.index(top) + 1 :]
-    peak = f"{kind.capitalize()}, {PLAIN[kind]}: vibration is largest at gamma {top.gamma:.0f} with "
+    peak = f"{kind.capitalize()}, {dropped.PLAIN[kind]}: vibration is largest at gamma {top.gamma:.0f} with "
     peak += f"{share(top)} of E_0"
     if not after:
         return f"{peak}, the longest rod."
@@ -242,7 +243,7 @@ def _fall(top: Any, low: Any) -> str:
 def what_the_limit_says(curve: DataFrame) -> str:
     """Return vibration and e at the limit of Eq 29, and where vibration passes `ONE_PERCENT`."""
     sentences = []
-    for kind, state in PLAIN.items():
+    for kind, state in dropped.PLAIN.items():
         points = _known(figures.plain_line(curve, kind))
         for p in [p for p in points if abs(p.gamma - LIMIT) < 1e-6]:
             change = ""
@@ -250,7 +251,9 @@ def what_the_limit_says(curve: DataFrame) -> str:
                 change = f" and e is {p.e_edge:.3f} where a rod that cannot vibrate has {p.e_edge_rigid:.3f}"
             where = f"{kind.capitalize()}, {state}: vibration there takes {share(p)} of E_0{change}"
             sentences.append(f"{where}; {_passes(points)}.")
-    rods = ", ".join(name for name, length in PAPER_RODS.items() if DroppedRod(length).gamma <= LIMIT)
+    rods = ", ".join(
+        name for name, length in dropped.PAPER_RODS.items() if dropped.DroppedRod(length).gamma <= LIMIT
+    )
     called = f"The limit gamma <= {LIMIT} calls the {rods} rod rigid and the longer ones not."
     return " ".join([called, *sentences]) if sentences else ""
 
@@ -272,23 +275,23 @@ def _passes(points: Sequence[Any]) -> str:
 
 def other_inputs(points: DataFrame, kind: str) -> str:
     """Return vibration of rods as slender as the longest of the paper with one input changed."""
-    usual = DroppedRod(max(PAPER_RODS.values()))
+    usual = dropped.DroppedRod(max(dropped.PAPER_RODS.values()))
     changed = [
         f"{_changed(p, usual)} {share(p)}"
         for p in _known(points[(points.family == "other inputs") & (points.contact == kind)])
         if abs(p.gamma - usual.gamma) < ALIKE
     ]
-    curve = among(figures.plain_line(points[points.family == "curve"], kind), length_m=usual.length)
+    curve = dropped.among(figures.plain_line(points[points.family == "curve"], kind), length_m=usual.length)
     if not changed or curve.empty:
         return ""
     return (
-        f"Other inputs at gamma {usual.gamma:.0f}, {kind}, {PLAIN[kind]}: vibration is "
+        f"Other inputs at gamma {usual.gamma:.0f}, {kind}, {dropped.PLAIN[kind]}: vibration is "
         f"{share(next(curve.itertuples()))} of E_0 on the curve ({usual.diameter * 1e3:g} mm, "
         f"{usual.speed:g} m/s, {usual.angle:g} degrees), and with {', '.join(changed)}."
     )
 
 
-def _changed(point: Any, usual: DroppedRod) -> str:
+def _changed(point: Any, usual: dropped.DroppedRod) -> str:
     """Return the input of a point that is not the usual one."""
     if point.law != usual.law:
         return f"strength from {point.law}"
@@ -326,8 +329,8 @@ def how_sure(points: DataFrame) -> str:
     doubted = points.doubted & ~close
     residuals = points.residual_over_E_0.dropna().astype(float).abs()
     return (
-        f"Levels give vibration of {close.sum()} of {len(points)} points within {CLOSE:.0%} of itself or "
-        f"{LEAST:g} of E_0; in {doubted.sum()} of the others its two counts, by modes and without "
+        f"Levels give vibration of {close.sum()} of {len(points)} points within {dropped.CLOSE:.0%} of itself or "
+        f"{dropped.LEAST:g} of E_0; in {doubted.sum()} of the others its two counts, by modes and without "
         f"them, differ by more. {(points.reason != '').sum()} points have no value or no band. The largest "
         f"residual of their ledgers is {max(residuals, default=0.0):.1g} of E_0."
     )
@@ -345,7 +348,7 @@ def share(point: Any) -> str:
 
 def _known(points: DataFrame) -> list[Any]:
     """Return the points whose vibration is known, each with the columns as attributes."""
-    return list(points[points[VIBRATION].notna()].itertuples())
+    return list(points[points[dropped.VIBRATION].notna()].itertuples())
 
 
 def _vibration(point: Any) -> float:

@@ -9,9 +9,17 @@ from benchmarks.own_mesh_memory import half_box
 from cost_fakes import LIMIT, Here, fake_levels, run
 
 import fem_impact.run.simulate
-from fem_impact.answers.cost.document import text_table, write_cost
 from fem_impact.answers.cost.judge import advice, best_within, cheapest, front, worst
-from fem_impact.answers.cost.measure import STIFF, VARIANTS, conclude, jobs_of, judge_stored, measure
+from fem_impact.answers.cost.measure import (
+    STIFF,
+    VARIANTS,
+    conclude,
+    jobs_of,
+    judge_stored,
+    measure,
+    text_table,
+    write_cost,
+)
 from fem_impact.answers.refine import level as level_module
 from fem_impact.answers.refine.chain import LevelChain
 from fem_impact.answers.refine.quantities import TARGETED, chosen

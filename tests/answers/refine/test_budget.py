@@ -5,7 +5,7 @@ from os import getpid
 
 import pytest
 
-from fem_impact.answers.refine.budget import in_turns, longest_s
+from fem_impact.answers.refine.forecast import in_turns, longest_s
 
 
 @pytest.mark.parametrize("workers", [1, 2])

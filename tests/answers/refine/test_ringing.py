@@ -6,8 +6,7 @@ import pytest
 from own_bodies import box, write
 
 from fem_impact.answers.refine.chain import LevelChain
-from fem_impact.answers.refine.extrapolate import level_limits
-from fem_impact.answers.refine.ringing import held_back
+from fem_impact.answers.refine.extrapolate import held_back, level_limits
 from fem_impact.case.case import Case
 from fem_impact.outcome.keys import Unknown
 from fem_impact.scene.read import read_toml

@@ -3,16 +3,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fem_impact.answers.verdict.bounds import (
+from fem_impact.answers.verdict.dropped import RodDropInput, weights_of
+from fem_impact.answers.verdict.transfer import (
     Range,
     carry,
     measured_on,
     sliding_heat,
+    transfer,
     upper_bound_loss,
     worst_losses,
 )
-from fem_impact.answers.verdict.drop import RodDropInput, weights_of
-from fem_impact.answers.verdict.transfer import transfer
 from fem_impact.errors import SceneError
 from rigid import (
     General,

@@ -9,8 +9,8 @@ import pytest
 
 from fem_impact.answers.verdict.assess import assess
 from fem_impact.answers.verdict.chart import COLUMNS, ChartPoints, chart, collapse, points
-from fem_impact.answers.verdict.effect import modal_pair
 from fem_impact.answers.verdict.screening import screening
+from fem_impact.answers.verdict.vibration import modal_pair
 from fem_impact.case.case import Case
 from fem_impact.outcome.keys import known
 from fem_impact.scene.shipped import load

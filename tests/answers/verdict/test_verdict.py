@@ -15,11 +15,11 @@ from fem_impact.answers.refine import level as level_module
 from fem_impact.answers.verdict import assess as assess_module
 from fem_impact.answers.verdict.assess import assess
 from fem_impact.answers.verdict.dropped import dropped
-from fem_impact.answers.verdict.effect import VibrationEffect, modal_effect, modal_pair
 from fem_impact.answers.verdict.reliability import CHANGED, known_error, sentence, stored
 from fem_impact.answers.verdict.screening import screening
 from fem_impact.answers.verdict.sentences import basis, box, case_sentence, document, doubt
 from fem_impact.answers.verdict.twins import inclined, twins
+from fem_impact.answers.verdict.vibration import VibrationEffect, modal_effect, modal_pair
 from fem_impact.case.case import Case
 from fem_impact.case.plates import half_space_error
 from fem_impact.errors import RunError, SceneError

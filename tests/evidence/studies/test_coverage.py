@@ -16,7 +16,7 @@ from fem_impact.answers.report import Request
 from fem_impact.errors import ResultError, SceneError
 from fem_impact.evidence.studies import coverage as study
 from fem_impact.evidence.studies.coverage.bodies import BODIES, write
-from fem_impact.evidence.studies.coverage.families import FAMILIES
+from fem_impact.evidence.studies.coverage.families import FAMILIES, TWELVE
 from fem_impact.evidence.studies.coverage.judge import (
     KEYS,
     LEVELS,
@@ -45,7 +45,6 @@ from fem_impact.evidence.studies.coverage.scenes import (
     DrawnScene,
     drawn,
 )
-from fem_impact.evidence.studies.coverage.twelve import TWELVE
 from fem_impact.jobs.job import Failure
 from fem_impact.outcome.record import KEY_TABLE
 from fem_impact.progress import Notice, Progress

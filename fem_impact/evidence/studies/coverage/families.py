@@ -1,9 +1,10 @@
-"""Families of projectiles whose sizes are drawn at random: the table of a scene's projectile."""
+"""Families of projectiles whose sizes are drawn at random, and twelve bodies, each at five angles."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from fem_impact.evidence.data import read_stated
 from fem_impact.evidence.studies.coverage.bodies import BODIES
 
 Tables = dict[str, Any]
@@ -158,3 +159,26 @@ FAMILIES: Mapping[str, Callable[[Values], Projectile]] = {
     "own mesh": _own_mesh,
 }
 """Functions of drawn numbers to a projectile."""
+
+
+def _points(points: Sequence[Sequence[float]]) -> list[list[str]]:
+    """Return points (z, r), mm, as in a scene's file."""
+    return [[metres(1e-3 * z), metres(1e-3 * r)] for z, r in points]
+
+
+def _body(stated: dict[str, Any]) -> Projectile:
+    """Return a body from its table of data/twelve.toml."""
+    if "mesh" in stated:
+        sizes = {name: 1e-3 * size for name, size in stated["sizes"].items()}
+        return Projectile(sizes["length"], sizes["width"], 0.8, body=stated["mesh"], sizes=sizes)
+    keys = stated.get("keys") or {"profile": _points(stated["profile"])}
+    if hole := stated.get("hole"):
+        keys["bore"] = _points([(0.0, hole), (stated["length"], hole)])
+    return Projectile(1e-3 * stated["length"], 1e-3 * stated["diameter"], stated["filled"], keys)
+
+
+TWELVE = {
+    name: (_body(stated), tuple(stated["angles"]))
+    for name, stated in read_stated("studies/data/twelve.toml").items()
+}
+"""Bodies by name, and the angles, deg, at which each strikes."""

@@ -1,7 +1,7 @@
-"""The report of the study: how often what was told held, and how runs ended; sentences, tables, figures."""
+"""The report of the study: how often what was told held, changes by vibration, and how runs ended."""
 
-from collections.abc import Iterator, Sequence
-from math import log
+from collections.abc import Iterator, Mapping, Sequence
+from math import inf, log
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -10,36 +10,87 @@ import pandas
 
 from fem_impact.answers.report import Sheet, StudyReport
 from fem_impact.answers.verdict.criteria import LIMITED
+from fem_impact.answers.verdict.reliability import CHANGED, scale_of_change
+from fem_impact.answers.verdict.vibration import Pair, difference, modal_pair, unfinished
 from fem_impact.case.case import Case
-from fem_impact.evidence.studies.coverage.changes import changes
-from fem_impact.evidence.studies.coverage.judge import (
-    AIM,
-    KEYS,
-    LEVELS,
-    LEVELS_TWO,
-    REDUCED,
-    Results,
-    coverage,
-    ends,
-    of_reduced,
-    reduced_error,
-    times,
-    told_errors,
-)
-from fem_impact.evidence.studies.coverage.run import DEFAULT, FINER, FINEST, MODAL, MOST, NEXT
+from fem_impact.case.measured import summary
+from fem_impact.evidence.studies.coverage import judge
+from fem_impact.evidence.studies.coverage.run import DEFAULT, FINER, FINEST, MODAL, MOST, NEXT, TWINS
 from fem_impact.evidence.studies.coverage.scenes import SEED, DrawnScene
 from fem_impact.figures.panels import Mark, Panel, Picture, Series
 from fem_impact.outcome.keys import or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.run.modal import closed
 from fem_impact.run.modal_error import FACTORS, HELD, TOLD, Place, place_of
+from fem_impact.scene.read import read_dict
+from fem_impact.scene.types import Scene
 from fem_impact.tables.table import Cell, Column, Table
 from fem_impact.tables.text import plain
 
+KNOWN = 0.06
+"""Widest half-width of finite elements that tells an error of a change by vibration."""
+SUMS: Mapping[str, Mapping[str, float]] = {
+    "e": {"e": 1.0},
+    "energy": {"E_lt": -1.0, "E_ln": -1.0},
+    "friction": {"friction": 1.0},
+}
+"""The numbers of `CHANGED` as sums of what the costs of the measured sets store."""
+Changes = Mapping[str, tuple[float, float]]
+"""Change by vibration and half-width by finite elements, by the numbers of `CHANGED`."""
+
+
+def changes(scenes: Sequence[DrawnScene], results: judge.Results) -> Sheet:
+    """Return where each scene stands that ran with a twin, and by how much the changes by vibration differ.
+
+    A copy, of two seeds, stands in ``fem_impact/case/data/changes.csv``: by it the reduced model's error of a
+    change is told. Changes that finite elements know within `KNOWN` count.
+    """
+    rows: list[tuple[Cell, ...]] = []
+    with TemporaryDirectory() as folder:
+        drawn = (
+            (one.name, one.scene(Path(folder)), results[one.name, TWINS].changes)
+            for one in scenes
+            if (one.name, TWINS) in results
+        )
+        for name, scene, solid in (*drawn, *_of_sets()):
+            pair = modal_pair(scene)
+            errors = [_error(pair, of, solid) for of in CHANGED]
+            if any(error is not None for error in errors):
+                numbers = *place_of(Case(scene), pair[0]), *errors
+                rows.append((name, *(None if one is None else round(one, 5) for one in numbers)))
+    caption = "Where scenes with a twin stand, and changes by vibration: reduced model less finite elements"
+    return Sheet("changes", caption, Table.of(("scene", *Place._fields, *CHANGED), rows), shown=False)
+
+
+def _error(pair: Pair, of: str, solid: Changes) -> float | None:
+    """Return by how much the reduced model's change is off, over its scale; None where it is not known."""
+    value, half = solid.get(of, (0.0, inf))
+    if half > KNOWN or unfinished(pair, of):
+        return None
+    change = difference(pair, of)
+    return (change - value) / scale_of_change(change)
+
+
+def _of_sets() -> Iterator[tuple[str, Scene, Changes]]:
+    """Yield the measured sets with the changes that their stored default runs show."""
+    for name, stored in summary()["scenes"].items():
+        run = next(one for one in stored["settings"] if one["default"])
+        stiff = next(one for one in stored["settings"] if one["name"] == "default run without vibration")
+        value, error = run["value"], run["error"]
+        solid = {
+            of: (
+                sum(sign * (value[part] - stiff["value"][part]) for part, sign in parts.items()),
+                abs(sum(sign * error[part] * abs(value[part]) for part, sign in parts.items())),
+            )
+            for of, parts in SUMS.items()
+        }
+        yield name, read_dict(stored["scene"]), solid
+
+
 MEANT = {
-    LEVELS: "the band of a default run holds the limit of a run with one level more",
-    LEVELS_TWO: "the band of a default run holds the limit of a run with two levels more",
-    REDUCED: f"the half-width of the reduced model, meant for {HELD:.0%}, holds finite elements",
+    judge.LEVELS: "the band of a default run holds the limit of a run with one level more",
+    judge.LEVELS_TWO: "the band of a default run holds the limit of a run with two levels more",
+    judge.REDUCED: f"the half-width of the reduced model, meant for {HELD:.0%}, holds finite elements",
 }
 SHOWN = ("n", "inside", "inside_finest", "share", "low", "high", "half", "error", "needed")
 HEAD = (
@@ -51,7 +102,7 @@ HEAD = (
     Column("high", "95 % high", digits=3),
     Column("half", "median half-width", digits=2),
     Column("error", "median error", digits=2),
-    Column("needed", f"factor for {AIM:.0%}", digits=2),
+    Column("needed", f"factor for {judge.AIM:.0%}", digits=2),
 )
 NUMBERS = ("finished", "strikes again")  # ends of runs that gave numbers
 WORST = 30  # misses that the page shows
@@ -59,12 +110,20 @@ LONGEST = 160  # letters of a reason
 MOST_OFF = 0.5  # widest half-width of finite elements, over the number, that tells a ratio of both models
 
 
-def report_of(scenes: Sequence[DrawnScene], results: Results, seed: int) -> StudyReport:
+def report_of(scenes: Sequence[DrawnScene], results: judge.Results, seed: int) -> StudyReport:
     """Return the study of scenes, drawn by a seed, and their results."""
-    errors, taken = told_errors(scenes, results), times(scenes, results)
-    ended = ends(scenes, results, DEFAULT)
-    by_quantity, by_family = coverage(errors, ["told", "quantity"]), coverage(errors, ["told", "family"])
-    sentences = [*_held(by_quantity), *_times(taken), _ended(ended), *_reduced(ends(scenes, results, MODAL))]
+    errors, taken = judge.told_errors(scenes, results), judge.times(scenes, results)
+    ended = judge.ends(scenes, results, DEFAULT)
+    by_quantity, by_family = (
+        judge.coverage(errors, ["told", "quantity"]),
+        judge.coverage(errors, ["told", "family"]),
+    )
+    sentences = [
+        *_held(by_quantity),
+        *_times(taken),
+        _ended(ended),
+        *_reduced(judge.ends(scenes, results, MODAL)),
+    ]
     pictures = [_shares(by_quantity, by_family), _ratios(errors)] if len(errors) else []
     cpu = sum(result.cpu_s for result in results.values())
     return StudyReport(
@@ -78,7 +137,7 @@ def report_of(scenes: Sequence[DrawnScene], results: Results, seed: int) -> Stud
             _sheet(
                 "families-by-quantity",
                 "By told error, family and quantity",
-                coverage(errors, ["told", "family", "quantity"]),
+                judge.coverage(errors, ["told", "family", "quantity"]),
                 ("told", "family", "quantity"),
                 shown=False,
             ),
@@ -111,8 +170,8 @@ def _held(table: pandas.DataFrame) -> list[str]:
     sentences = []
     for told, group in table.groupby("told", sort=False) if len(table) else ():
         parts = ", ".join(f"{row.quantity} {row.inside} of {row.n}" for row in group.itertuples())
-        below = [row.quantity for row in group.itertuples() if row.high < AIM]
-        judged = f"; surely below {AIM:.0%}: {', '.join(below)}" if below else ""
+        below = [row.quantity for row in group.itertuples() if row.high < judge.AIM]
+        judged = f"; surely below {judge.AIM:.0%}: {', '.join(below)}" if below else ""
         sentences.append(f"{told} ({MEANT[told]}): {parts}{judged}.")
     return sentences
 
@@ -150,7 +209,7 @@ def _sheet(
 
 def _misses(errors: pandas.DataFrame) -> Sheet:
     """Return the numbers of bands that do not hold their truth, the worst first."""
-    missed = errors[~errors["inside"] & (errors["told"] != REDUCED)]
+    missed = errors[~errors["inside"] & (errors["told"] != judge.REDUCED)]
     missed = missed.assign(ratio=missed["error"] / missed["half"]).sort_values("ratio", ascending=False)
     shown = missed[["scene", "told", "quantity", "value", "half", "truth", "ratio"]]
     rows = _cells(shown)
@@ -179,7 +238,7 @@ def _reasons(table: pandas.DataFrame) -> Sheet:
     return Sheet("reasons", "Default runs without numbers", table)
 
 
-def _pairs(scenes: Sequence[DrawnScene], results: Results) -> Sheet:
+def _pairs(scenes: Sequence[DrawnScene], results: judge.Results) -> Sheet:
     """Return where each scene of both models stands, and by how much they differ over the scale.
 
     A copy stands in ``fem_impact/case/data/pairs.csv``: by it the reduced model tells its error.
@@ -187,10 +246,10 @@ def _pairs(scenes: Sequence[DrawnScene], results: Results) -> Sheet:
     rows: list[tuple[Cell, ...]] = []
     with TemporaryDirectory() as folder:
         for scene in scenes:
-            modal, solid = of_reduced(scene, results)
+            modal, solid = judge.of_reduced(scene, results)
             if modal is not None and solid is not None:
                 case = Case.of(scene.scene(Path(folder)), "modal")
-                told = (*(reduced_error(modal, solid, key) for key in TOLD), *_ratios_of(case, solid))
+                told = (*(judge.reduced_error(modal, solid, key) for key in TOLD), *_ratios_of(case, solid))
                 numbers = *place_of(case, modal), *told
                 rows.append((scene.name, *(None if one is None else round(one, 5) for one in numbers)))
     caption = "Where scenes of both models stand, and reduced model less finite elements over the scale"
@@ -238,7 +297,7 @@ def _share_panel(title: str, table: pandas.DataFrame, column: str) -> Panel:
         Series("share inside", table["share"].to_numpy(float), rows, "points", 1),
     )
     names = tuple(f"{name} ({n})" for name, n in zip(table[column], table["n"], strict=True))
-    return Panel(title, "share inside", "", series, (Mark(AIM),), rows=names, x_range=(0.0, 1.05))
+    return Panel(title, "share inside", "", series, (Mark(judge.AIM),), rows=names, x_range=(0.0, 1.05))
 
 
 def _ratios(errors: pandas.DataFrame) -> Picture:
@@ -246,7 +305,7 @@ def _ratios(errors: pandas.DataFrame) -> Picture:
     panels = []
     for told, group in errors.groupby("told", sort=False):
         curves = []
-        for at, name in enumerate(KEYS):
+        for at, name in enumerate(judge.KEYS):
             ratio = group.loc[(group["quantity"] == name) & (group["half"] > 0)].eval("error / half")
             values = np.sort(ratio.to_numpy(float))
             shares = np.arange(1, len(values) + 1) / max(len(values), 1)

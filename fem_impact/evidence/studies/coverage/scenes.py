@@ -16,16 +16,7 @@ import tomli_w
 from scipy.stats import qmc
 
 from fem_impact import load
-from fem_impact.evidence.studies.coverage import bodies
-from fem_impact.evidence.studies.coverage.families import (
-    FAMILIES,
-    Projectile,
-    Tables,
-    Values,
-    between,
-    metres,
-)
-from fem_impact.evidence.studies.coverage.twelve import TWELVE
+from fem_impact.evidence.studies.coverage import bodies, families
 from fem_impact.scene.library import materials
 from fem_impact.scene.types import MEASURED_SETS, Scene, to_toml
 
@@ -77,7 +68,7 @@ class DrawnScene:
 
     name: str
     family: str
-    tables: Tables
+    tables: families.Tables
     body: str
     sizes: Mapping[str, float]
 
@@ -109,18 +100,18 @@ def drawn(count: int, angles: int, seed: int = SEED) -> list[DrawnScene]:
     The others are the twelve bodies at so many of their angles and, if any, by the own seed the measured
     sets. More of them hold the fewer, so that stored runs are kept.
     """
-    random = [one for family in FAMILIES for one in _of_family(family, count, seed)]
+    random = [one for family in families.FAMILIES for one in _of_family(family, count, seed)]
     tests = _of_tests() if angles and seed == SEED else ()
     return [*random, *_gentle(count // 2, seed), *_of_twelve(angles, seed), *tests]
 
 
 def _of_family(family: str, count: int, drawn_by: int) -> Iterator[DrawnScene]:
     """Yield the scenes of a family."""
-    seed = drawn_by, [*FAMILIES].index(family)
+    seed = drawn_by, [*families.FAMILIES].index(family)
     rows, turns = _rows(RANGES, count, seed), _metals(count, seed)
     kinds = _turns(KINDS, count, np.random.default_rng([*seed, 1]))
     for at, (values, kind, (rod, metal)) in enumerate(zip(rows, kinds, turns, strict=True)):
-        projectile = FAMILIES[family](values)
+        projectile = families.FAMILIES[family](values)
         barrier = _barrier(kind, metal, projectile, rod, values["barrier"])
         name = f"{family.replace(', ', '-').replace(' ', '-')}-{at}"
         yield _stated(name, family, projectile, rod, barrier, values)
@@ -128,13 +119,13 @@ def _of_family(family: str, count: int, drawn_by: int) -> Iterator[DrawnScene]:
 
 def _gentle(rounds: int, drawn_by: int) -> Iterator[DrawnScene]:
     """Yield rounds of the turned families that hardly yield: in turns brittle bodies and slow metals."""
-    turned = [family for family in FAMILIES if family != "own mesh"]
-    seed, count = (drawn_by, len(FAMILIES) + 1), rounds * len(turned)
+    turned = [family for family in families.FAMILIES if family != "own mesh"]
+    seed, count = (drawn_by, len(families.FAMILIES) + 1), rounds * len(turned)
     metals = _metals(count, seed)
     rods, barriers = (_turns(BRITTLE, count, np.random.default_rng([*seed, at])) for at in (4, 5))
     kinds = _turns(KINDS[:3], count, np.random.default_rng([*seed, 1]))  # layers: no reduced model
     for at, (values, kind) in enumerate(zip(_rows(RANGES, count, seed), kinds, strict=True)):
-        slow, projectile = at % 2 == 1, FAMILIES[turned[at % len(turned)]](values)
+        slow, projectile = at % 2 == 1, families.FAMILIES[turned[at % len(turned)]](values)
         rod, struck = metals[at] if slow else (rods[at], barriers[at])
         barrier = _barrier(kind, struck, projectile, rod, values["barrier"])
         speed = values["speed"] / (SLOWER if slow else 1.0)
@@ -143,10 +134,10 @@ def _gentle(rounds: int, drawn_by: int) -> Iterator[DrawnScene]:
 
 def _of_twelve(angles: int, drawn_by: int) -> Iterator[DrawnScene]:
     """Yield the twelve bodies at their first angle, all of them at their second, and so on."""
-    seed, count = (drawn_by, len(FAMILIES)), angles * len(TWELVE)
+    seed, count = (drawn_by, len(families.FAMILIES)), angles * len(families.TWELVE)
     numbers = zip(_rows(BENCH, count, seed), _metals(count, seed), strict=True)
     for at in range(angles):
-        for body, (projectile, every) in TWELVE.items():
+        for body, (projectile, every) in families.TWELVE.items():
             values, (rod, metal) = next(numbers)
             name = f"{body} at {every[at]:g} deg".replace(" -", " minus ").replace(" ", "-")
             yield _stated(name, OWN, projectile, rod, {"material": metal}, {**values, "angle": every[at]})
@@ -159,7 +150,9 @@ def _of_tests() -> Iterator[DrawnScene]:
         yield DrawnScene(name, TESTED, {**tables, "save": {"frames": 0}}, "", {})
 
 
-def _rows(ranges: Mapping[str, tuple[float, float]], count: int, seed: Sequence[int]) -> list[Values]:
+def _rows(
+    ranges: Mapping[str, tuple[float, float]], count: int, seed: Sequence[int]
+) -> list[families.Values]:
     """Return so many rows of numbers, each column evenly over its range."""
     if not count:
         return []
@@ -183,25 +176,35 @@ def _turns(names: Sequence[str], count: int, rng: np.random.Generator) -> list[s
     return [names[at] for _ in range(rounds) for at in rng.permutation(len(names))][:count]
 
 
-def _barrier(kind: str, metal: str, projectile: Projectile, rod: str, share: float) -> Tables:
+def _barrier(
+    kind: str, metal: str, projectile: families.Projectile, rod: str, share: float
+) -> families.Tables:
     """Return the table of a barrier whose size follows that of the projectile."""
-    table: Tables = {"material": metal}
+    table: families.Tables = {"material": metal}
     if kind == "plate":
-        thickness = between(share, 0.3, 1.2) * projectile.diameter
-        return table | {"thickness": metres(thickness), "support": "infinite"}
+        thickness = families.between(share, 0.3, 1.2) * projectile.diameter
+        return table | {"thickness": families.metres(thickness), "support": "infinite"}
     if kind == "free":
         cylinder = pi / 4 * projectile.diameter**2 * projectile.length
         mass = materials()[rod].rho * cylinder * projectile.filled
         return table | {"mass": f"{mass * 30.0**share:.4g} kg"}
     if kind == "layers":
         base = SOFT[0] if metal != SOFT[0] else LIGHT[0]
-        layer = {"thickness": metres(between(share, 0.1, 0.6) * projectile.diameter), "material": metal}
+        layer = {
+            "thickness": families.metres(families.between(share, 0.1, 0.6) * projectile.diameter),
+            "material": metal,
+        }
         return {"material": base, "layers": [layer]}
     return table
 
 
 def _stated(
-    name: str, family: str, projectile: Projectile, rod: str, barrier: Tables, values: Values
+    name: str,
+    family: str,
+    projectile: families.Projectile,
+    rod: str,
+    barrier: families.Tables,
+    values: families.Values,
 ) -> DrawnScene:
     """Return a scene with the material, barrier, motion and friction that were drawn."""
     shape = projectile.tables or {"mesh": f"{name}.vtu", "mesh_unit": "m", "mesh_symmetry": "half"}
@@ -211,7 +214,7 @@ def _stated(
     fall, speed = radians(values["fall"]), values["speed"]
     v_n, spin = -speed * cos(fall), values["spin"]
     omega = spin * abs(v_n) / max(projectile.length, projectile.diameter) if abs(spin) > SPINNING else 0.0
-    tables: Tables = {
+    tables: families.Tables = {
         "id": name,
         "projectile": {**shape, "material": rod},
         "barrier": barrier,

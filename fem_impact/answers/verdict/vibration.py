@@ -4,14 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from fem_impact.answers.refine.extrapolate import (
-    ONE_RUN,
-    VIBRATION,
-    MeshRuns,
-    level_limit,
-    level_limits,
-    vibration_floor,
-)
+from fem_impact.answers.refine import extrapolate
 from fem_impact.answers.verdict.reliability import CHANGED, known_error, sentence
 from fem_impact.answers.verdict.twins import twins
 from fem_impact.case.case import Case
@@ -145,7 +138,7 @@ def modal_effect(scene: Scene, pair: Pair, of: str = "e") -> VibrationEffect:
     )
 
 
-def solid_effect(levels: Sequence[MeshRuns], of: str = "e") -> VibrationEffect | None:
+def solid_effect(levels: Sequence[extrapolate.MeshRuns], of: str = "e") -> VibrationEffect | None:
     """Return what finite elements say on the levels of a scene and its twin, from coarse to fine.
 
     It is None where fewer than two levels give a coefficient of both, or the last does not resolve its
@@ -153,15 +146,15 @@ def solid_effect(levels: Sequence[MeshRuns], of: str = "e") -> VibrationEffect |
     """
     useful = [level for level in levels if not unfinished(pair_of(level), of)]
     used = useful[-3:]
-    limits, bands = level_limits([replace(level, runs=level.runs[:1]) for level in used])
+    limits, bands = extrapolate.level_limits([replace(level, runs=level.runs[:1]) for level in used])
     if isinstance(limits, Unknown) or isinstance(bands, Unknown):
         return None
     coarse, fine = used[-2:]
     free, stiff = pair_of(fine)
     changes, wide = [[difference(pair_of(level), of)] for level in used], [level.wide for level in used]
-    value, band = level_limit([level.size for level in used], changes, wide)
-    E_vib, E_vib_band = (of[VIBRATION.name] for of in (limits, bands))
-    floor = vibration_floor(free)
+    value, band = extrapolate.level_limit([level.size for level in used], changes, wide)
+    E_vib, E_vib_band = (of[extrapolate.VIBRATION.name] for of in (limits, bands))
+    floor = extrapolate.vibration_floor(free)
     errors = {
         key.path[-1]: max(abs(limits[key.name] - known(key.of(free))) + bands[key.name], floor)
         for key in (*(share.key for share in SHARES), KEY_TABLE["W_skin_over_E_0"])
@@ -177,7 +170,7 @@ def solid_effect(levels: Sequence[MeshRuns], of: str = "e") -> VibrationEffect |
         free,
         stiff,
         f"Finite elements on {len(levels)} levels, the last two with cells of {_size(coarse)} and "
-        f"{_size(fine)} at the contact; the band is {ONE_RUN:g} times the range of the limits of all orders "
+        f"{_size(fine)} at the contact; the band is {extrapolate.ONE_RUN:g} times the range of the limits of all orders "
         "of convergence from 3/4 up, as each mesh runs once, and at least half of the change before."
         + COUNTS.format(100 * floor),
         MESHES,
@@ -185,13 +178,13 @@ def solid_effect(levels: Sequence[MeshRuns], of: str = "e") -> VibrationEffect |
     )
 
 
-def pair_of(level: MeshRuns) -> Pair:
+def pair_of(level: extrapolate.MeshRuns) -> Pair:
     """Return the outcomes with vibration and without it on a level."""
     free, stiff = level.runs
     return free, stiff
 
 
-def _size(level: MeshRuns) -> str:
+def _size(level: extrapolate.MeshRuns) -> str:
     return f"{level.size * 1e3:.3g} mm"
 
 
