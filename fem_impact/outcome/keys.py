@@ -1,10 +1,12 @@
-"""Keys of the outcome's JSON file, declared once with the fields of its groups: name, unit and meaning.
+"""Keys of the outcome's JSON file: attributes of its groups, with what data/keys.toml states of them.
 
 The table of keys, the checks of a file, its text and the attributes in docstrings are made from these.
 """
 
+import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, fields, is_dataclass
+from importlib.resources import files
 from operator import attrgetter
 from types import UnionType
 from typing import Any, Literal, NoReturn, TypeVar, dataclass_transform, get_args, get_origin, get_type_hints
@@ -23,6 +25,10 @@ KINDS: Mapping[Any, Kind] = {
     Mapping[str, float]: "named numbers",
 }
 """Kind of a value by the annotation of its field."""
+STATED: Mapping[str, Mapping[str, Mapping[str, Any]]] = tomllib.loads(
+    files("fem_impact.outcome").joinpath("data/keys.toml").read_text(encoding="utf-8")
+)
+"""What is stated of every attribute, by group."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,26 +127,7 @@ class Key:
         object.__setattr__(self, "of", attrgetter(".".join(self.path)) if self.path else None)
 
 
-def key(name: str, unit: str, meaning: str, banded: bool = False) -> Any:
-    """Declare a field with its key in the JSON file.
-
-    ``{}`` in name and meaning is replaced by the name and meaning that `part` gives to a group which stands
-    in an outcome more than once.
-    """
-    return field(metadata={"key": (name, unit, meaning, banded)})
-
-
-def share(name: str, meaning: str, banded: bool = True) -> Any:
-    """Declare a field that is an energy over that at first contact."""
-    return key(name, "-", f"{meaning}, as a fraction of E_0.", banded)
-
-
-def part(name: str, meaning: str) -> Any:
-    """Declare a field that holds a group, with the texts for ``{}`` in the names and meanings of its keys."""
-    return field(metadata={"part": (name, meaning)})
-
-
-@dataclass_transform(frozen_default=True, kw_only_default=True, field_specifiers=(key, share, part))
+@dataclass_transform(frozen_default=True, kw_only_default=True)
 def group(cls: type[T]) -> type[T]:
     """Make a frozen dataclass whose docstring names unit and meaning of every field."""
     frozen = dataclass(frozen=True, slots=True, kw_only=True, repr=False)(cls)
@@ -157,13 +144,14 @@ def unknown(cls: type[T], reason: str) -> T:
 
 def keys_of(cls: type, path: tuple[str, ...] = (), name: str = "", meaning: str = "") -> Iterator[Key]:
     """Yield the keys of a group and of the groups in it."""
-    hints = get_type_hints(cls)
+    hints, stated = get_type_hints(cls), STATED.get(cls.__name__, {})
     for one in fields(cls):
-        place = (*path, one.name)
-        if "key" in one.metadata:
-            yield _key(one.metadata["key"], hints[one.name], place, name, meaning)
+        hint, place = hints[one.name], (*path, one.name)
+        if is_dataclass(hint):
+            said = stated.get(one.name, {})
+            yield from keys_of(hint, place, said.get("part", ""), said.get("meaning", ""))
         else:
-            yield from keys_of(hints[one.name], place, *one.metadata.get("part", ()))
+            yield _key(stated[one.name], hint, place, name, meaning)
 
 
 def _own_keys(cls: type) -> Iterator[Key]:
@@ -171,25 +159,20 @@ def _own_keys(cls: type) -> Iterator[Key]:
 
 
 def _key(
-    declared: tuple[str, str, str, bool],
-    hint: Any,
-    path: tuple[str, ...],
-    group_name: str,
-    group_meaning: str,
+    stated: Mapping[str, Any], hint: Any, path: tuple[str, ...], group_name: str, group_meaning: str
 ) -> Key:
-    name, unit, meaning, banded = declared
     options = get_args(hint) if isinstance(hint, UnionType) else (hint,)
     choices = get_args(options[0]) if get_origin(options[0]) is Literal else ()
     entry = object if choices else next(iter(get_args(options[0])), object)
     entries = tuple(keys_of(entry)) if is_dataclass(entry) else ()
     kind = "text" if choices else "entries" if entries else KINDS[options[0]]
     return Key(
-        name.replace("{}", group_name),
+        stated.get("key", path[-1]).replace("{}", group_name),
         kind,
-        unit,
-        meaning.replace("{}", group_meaning),
+        stated.get("unit", ""),
+        stated["meaning"].replace("{}", group_meaning),
         nullable=len(options) > 1,
-        banded=banded,
+        banded=stated.get("banded", False),
         path=path,
         entries=entries,
         entry=entry,

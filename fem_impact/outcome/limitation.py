@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from typing import Literal
 
-from fem_impact.outcome.keys import group, key
+from fem_impact.outcome.keys import group
 
 LimitationKind = Literal["input", "model", "range", "resolution", "result", "run"]
 
@@ -22,13 +22,8 @@ class Limitation:
     ========== ==================================================================================
     """
 
-    kind: LimitationKind = key(
-        "kind",
-        "",
-        "Its cause: input (not stated), model (left out, idealised, taken from elsewhere), range (not "
-        "measured), resolution (of elements and modes), result (an unusual number), run (not done).",
-    )
-    text: str = key("text", "", "The limitation, as a sentence.")
+    kind: LimitationKind
+    text: str
 
 
 def limitations(kind: LimitationKind, *texts: str) -> tuple[Limitation, ...]:

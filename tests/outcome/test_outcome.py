@@ -3,7 +3,7 @@ import importlib
 import json
 import pickle
 import tomllib
-from dataclasses import FrozenInstanceError, replace
+from dataclasses import FrozenInstanceError, fields, replace
 from importlib import metadata
 from pathlib import Path
 
@@ -16,9 +16,10 @@ from result_maker import values
 
 import fem_impact
 from fem_impact.errors import ResultError, UsageError
+from fem_impact.outcome import groups, limitation, strikes
 from fem_impact.outcome.check import SCHEMA_VERSION
 from fem_impact.outcome.groups import ARMS, Energy, Heat
-from fem_impact.outcome.keys import Unknown, known, markdown_table, or_none, unknown
+from fem_impact.outcome.keys import STATED, Unknown, known, markdown_table, or_none, unknown
 from fem_impact.outcome.record import KEY_TABLE, KEYS, Outcome, installed_versions
 from fem_impact.outcome.shares import SHARES, shares
 from fem_impact.pages.bibliography import references
@@ -58,6 +59,9 @@ def test_attributes_hold_the_flat_keys():
 
 def test_every_key_has_an_attribute_of_its_own():
     assert len({key.path for key in KEYS}) == len({key.name for key in KEYS}) == len(KEYS)
+    named = vars(groups) | vars(limitation) | vars(strikes)
+    for name, stated in STATED.items():
+        assert {*stated} <= {one.name for one in fields(named[name])}, name
 
 
 def test_groups_are_frozen_and_changed_by_replace():

@@ -170,9 +170,9 @@ def solid_effect(levels: Sequence[extrapolate.MeshRuns], of: str = "e") -> Vibra
         free,
         stiff,
         f"Finite elements on {len(levels)} levels, the last two with cells of {_size(coarse)} and "
-        f"{_size(fine)} at the contact; the band is {extrapolate.ONE_RUN:g} times the range of the limits of all orders "
-        "of convergence from 3/4 up, as each mesh runs once, and at least half of the change before."
-        + COUNTS.format(100 * floor),
+        f"{_size(fine)} at the contact; the band is {extrapolate.ONE_RUN:g} times the range of the limits of "
+        "all orders of convergence from 3/4 up, as each mesh runs once, and at least half of the change "
+        "before." + COUNTS.format(100 * floor),
         MESHES,
         errors,
     )
