@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fem_impact.cli import scene_options
-from fem_impact.cli.parser import CommandParser, Options, add_text, add_workers, stated_budget
+from fem_impact.cli.parser import Options, stated_budget
 from fem_impact.cli.paths import checked_out
 from fem_impact.cli.terminal import print_answer
 from fem_impact.errors import UsageError
@@ -18,56 +17,14 @@ if TYPE_CHECKING:
     from fem_impact.figures.panels import Picture
     from fem_impact.scene.types import Scene
 
-QUESTIONS = ("rigid", "heat", "force", "dent")
+RIGID = "rigid"  # the question that is asked where no other is
 SHORT = ("length", "diameter", "height", "angle", "surface")
 """Options of a dropped steel rod that must be given where no scene is."""
 
 
-def add_options(parser: CommandParser) -> None:
-    """State the command and its options."""
-    dropped = f'fem-impact assess --height "0.82 m" --surface machined {scene_options.ROD}'
-    limited = (
-        'fem-impact assess t5b --for heat --limit "430 degC"',
-        'fem-impact assess t5b --for force --limit "5 kN" \\\n      --uncertain impact.angle=30,50deg',
-    )
-    parser.state(assess, "fem-impact assess t5b", *limited, dropped)
-    scene_options.add_scene(parser, optional=True)
-    parser.add_argument(
-        "--fidelity",
-        choices=["auto", "modal", "solid"],
-        default="auto",
-        help="auto (default): modal, and solid where the known error of modal leaves the answer open",
-    )
-    asked = (
-        "the question: may rigid theory be used (default), does flash temperature, peak force or "
-        "depth of the dent stay below --limit"
-    )
-    parser.add_argument("--for", dest="question", choices=QUESTIONS, default=QUESTIONS[0], help=asked)
-    add_text(parser, "--limit", "VALUE", 'what heat, force or dent must stay below, such as "5 kN"')
-    scene_options.add_uncertain(parser, "the answer then holds for the whole interval")
-    within = (
-        "change by vibration that may be neglected: of e, of the energy that the body keeps or of the work "
-        'of friction, such as "e 0.05" (default), "energy 2 %%" or "friction 2 %%", both of E_0'
-    )
-    add_text(parser, "--within", "CHANGE", within)
-    budget = "wall time of the finite elements on the cores used, one or two (default: 60 s)"
-    add_text(parser, "--budget", "TIME", budget)
-    add_workers(parser, "runs at a time, 1 or 2 (default: one a core)")
-    carried = "also carry the measured tests over: losses, worst case, bound of the friction heat"
-    parser.add_argument("--heat", action="store_true", help=carried)
-    page = "write a page to print and sign, and verdict.json"
-    parser.add_argument("--out", type=Path, metavar="DIR", help=page)
-    rod = parser.add_argument_group("a dropped steel rod, instead of SCENE")
-    scene_options.add_rod(rod)
-    add_text(rod, "--height", "HEIGHT", 'drop height, such as "0.82 m"')
-    add_text(rod, "--angle", "ANGLE", 'rod axis to barrier normal, such as "45 deg"')
-    surfaces = ("machined", "contaminated", "cleaned")
-    rod.add_argument("--surface", choices=surfaces, default="", help="state of tip and plate")
-
-
 def assess(options: Options) -> int:
     """Assess one scene and print the verdict, before anything else the lines of its box."""
-    limited = options.question != QUESTIONS[0] or bool(options.uncertain)
+    limited = options.question != RIGID or bool(options.uncertain)
     _refuse(options, limited)
     out = checked_out(options.out) if options.out else None
     scene = scene_options.named_scene(options, SHORT) or _dropped_rod(options)
@@ -91,7 +48,7 @@ def assess(options: Options) -> int:
 
 def _refuse(options: Options, limited: bool) -> None:
     """Refuse options that the question has no use for (UsageError)."""
-    of_limits = options.question != QUESTIONS[0]
+    of_limits = options.question != RIGID
     unused = {
         "--limit": (options.limit, not of_limits, "Ask for it: --for heat, force or dent."),
         "--within": (options.within, of_limits, "Leave it out: --limit states what is allowed."),
@@ -151,7 +108,7 @@ def _limited(options: Options, scene: Scene) -> tuple[dict[str, Any], None]:
     from fem_impact.scene.units import option_quantity
 
     criterion: Criterion
-    if options.question == QUESTIONS[0]:
+    if options.question == RIGID:
         of, limit = _within(options)
         criterion = Rigidity(of)
     else:

@@ -1,17 +1,8 @@
 """The command ``audit``: the printed columns of the paper's tables, recomputed."""
 
-from pathlib import Path
-
-from fem_impact.cli.parser import CommandParser, Options
+from fem_impact.cli.parser import Options
 from fem_impact.cli.paths import checked_file
 from fem_impact.cli.terminal import print_answer
-
-
-def add_options(parser: CommandParser) -> None:
-    """State the command and its options."""
-    parser.state(audit, "fem-impact audit --set t5b")
-    parser.add_argument("--set", dest="set_id", metavar="ID", help="one measured set, such as t5b")
-    parser.add_argument("--out", type=Path, metavar="CSV", help="write every number with its recomputation")
 
 
 def audit(options: Options) -> int:
@@ -20,7 +11,7 @@ def audit(options: Options) -> int:
     from fem_impact.evidence.paper.audit import audit_document, audit_text, records_table
     from fem_impact.files.atomic import write_text
 
-    document = audit_document(options.set_id)
+    document = audit_document(options.set_id or None)
     if out:
         write_text(out, records_table(document).csv())
     print_answer(options, document, audit_text(document))

@@ -7,9 +7,9 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fem_impact.cli.parser import CommandParser, Options
+from fem_impact.cli.parser import Options
 from fem_impact.cli.paths import shown_path
-from fem_impact.cli.scene_options import add_scene, changed_scene, say_kept
+from fem_impact.cli.scene_options import changed_scene, say_kept
 from fem_impact.cli.statement import statement_of
 from fem_impact.cli.terminal import headed, limitation_lines, print_json, size_text
 from fem_impact.errors import UsageError
@@ -29,24 +29,6 @@ if TYPE_CHECKING:
 DRAWINGS = (".png", ".svg")
 INSIDE = "inside the measured range of speed, angle, rod, steels and surfaces"
 LONG = "--long prints every value with its source, flow stresses, and each effect with its share of run time."
-
-
-def add_options(parser: CommandParser) -> None:
-    """State the command and its options."""
-    examples = (
-        "fem-impact check t5b --long",
-        "fem-impact check t5b --set accuracy.tip_size='0.5 mm'",
-        "fem-impact check tube --drawing tube.svg",
-    )
-    parser.state(check, *examples)
-    add_scene(parser)
-    details = "print every value with its source, flow stresses, and what each effect adds"
-    parser.add_argument("--long", action="store_true", help=details)
-    drawing = (
-        "draw the projectile with its materials, first contact and mass centre, of a mesh with its cells and "
-        "its tip as the barrier sees it, into a .png or .svg file"
-    )
-    parser.add_argument("--drawing", "--picture", type=Path, default=None, metavar="FILE", help=drawing)
 
 
 def check(options: Options) -> int:

@@ -1,21 +1,8 @@
 """The command ``cite``: what a paper that uses a run should cite, as BibTeX."""
 
-from fem_impact.cli.parser import CommandParser, Options
-from fem_impact.cli.scene_options import add_scene, changed_scene
+from fem_impact.cli.parser import Options
+from fem_impact.cli.scene_options import changed_scene
 from fem_impact.cli.terminal import print_answer
-from fem_impact.options import FIDELITIES
-
-ABOUT = (
-    "Print as BibTeX what a paper that uses a run should cite: this program, the publication, and the papers "
-    "behind the libraries, effects and model of the run."
-)
-
-
-def add_options(parser: CommandParser) -> None:
-    """State the command and its options."""
-    parser.state(cite, "fem-impact cite t5b --fidelity modal > impact.bib", about=ABOUT)
-    add_scene(parser)
-    parser.add_argument("--fidelity", choices=FIDELITIES, default="solid", help="of the run (default: solid)")
 
 
 def cite(options: Options) -> int:

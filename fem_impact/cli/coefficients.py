@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fem_impact.cli.parser import CommandParser, Options, add_text
-from fem_impact.cli.scene_options import ROD, add_changes, add_rod, angle_of, named_scene, rod_of
+from fem_impact.cli.parser import Options
+from fem_impact.cli.scene_options import angle_of, named_scene, rod_of
 from fem_impact.cli.terminal import print_answer
 from fem_impact.errors import SceneError, UsageError
 
@@ -16,23 +15,6 @@ if TYPE_CHECKING:
 
 TESTED = ("length", "diameter", "angle")
 """Options of a tested steel rod that must be given where no scene is."""
-
-
-def add_options(parser: CommandParser) -> None:
-    """State the command and its options."""
-    examples = f"fem-impact coefficients tests.csv {ROD}", "fem-impact coefficients tests.csv --scene tube"
-    parser.state(coefficients, *examples)
-    columns = "v_n_m_per_s, v_t_m_per_s, V_n_m_per_s, V_t_m_per_s, Omega_rad_per_s"
-    parser.add_argument("file", type=Path, metavar="FILE.csv", help=f"one test a row; columns {columns}")
-    rod = parser.add_argument_group("a solid steel rod")
-    add_rod(rod)
-    add_text(rod, "--angle", "ANGLE", 'rod axis to barrier normal, such as "45 deg"')
-    other = parser.add_argument_group("any other projectile, such as a tube, instead of that rod")
-    about = "scene whose projectile was tested at its inclination: id or path of a scene file"
-    add_text(other, "--scene", "SCENE", about)
-    add_changes(other)
-    add_text(parser, "--d-c", "LENGTH", "arm along the slope (default: of the tip's shape)")
-    add_text(parser, "--d-d", "LENGTH", "arm along the normal (default: of the tip's shape)")
 
 
 def coefficients(options: Options) -> int:

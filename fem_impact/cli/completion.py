@@ -1,19 +1,8 @@
 """The command ``completion``: a script by which the shell completes the command line."""
 
-from fem_impact.cli.parser import CommandParser, Options, build_parser
+from fem_impact.cli.parser import Options, build_parser
 from fem_impact.cli.terminal import print_answer
 from fem_impact.errors import MissingLibraryError
-
-ABOUT = (
-    "Print a script by which the shell completes commands and options when you press Tab. It needs the "
-    "package shtab: pip install 'fem-impact[completion]'."
-)
-
-
-def add_options(parser: CommandParser) -> None:
-    """State the command and its options."""
-    parser.state(completion, 'eval "$(fem-impact completion bash)"', about=ABOUT)
-    parser.add_argument("shell", choices=("bash", "zsh", "tcsh"), help="your shell")
 
 
 def completion(options: Options) -> int:

@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fem_impact.cli.page import asked_page, write_study_page
-from fem_impact.cli.parser import CommandParser, Options, add_out, add_page, add_text, stated_budget
+from fem_impact.cli.parser import Options, stated_budget
 from fem_impact.cli.paths import checked_out
-from fem_impact.cli.scene_options import add_scene, changed_scene, command_line
+from fem_impact.cli.scene_options import changed_scene, command_line
 from fem_impact.cli.terminal import chosen_meter, print_answer
 from fem_impact.errors import RunError, SceneError, UsageError
 from fem_impact.tables.text import wrapped
@@ -25,32 +25,6 @@ if TYPE_CHECKING:
 PAPER, PAGE = "paper", "report.html"
 STATED = ("target", "budget", "of", "finer")
 """Options that the page repeats."""
-
-
-def add_options(parser: CommandParser) -> None:
-    """State the command and its options."""
-    parser.state(cost, 'fem-impact cost t5b --target "5 %" --budget "30 s" --of e,mu')
-    add_scene(parser)
-    for option, metavar, text in (
-        ("--target", "SHARE", "name the cheapest setting within an error, such as '2 %%'"),
-        (
-            "--budget",
-            "TIME",
-            "begin no level that so much wall time, such as '30 s', would not hold, and name the best "
-            "setting within it; here one run at a time on one core, where `run` uses two",
-        ),
-        ("--of", "NAMES", "quantities that count, as --of e,mu (default: e,E_vib)"),
-    ):
-        add_text(parser, option, metavar, text)
-    parser.add_argument(
-        "--finer",
-        default="",
-        choices=("0", "1", "2", "3"),
-        help="levels beyond those of the default run (default: 1)",
-    )
-    parser.add_argument("--stored", action="store_true", help="judge what has run so far, and run nothing")
-    add_out(parser, "results/cost/SCENE")
-    add_page(parser, "with SCENE = paper, also")
 
 
 def cost(options: Options) -> int:

@@ -2,16 +2,9 @@
 
 from pathlib import Path
 
-from fem_impact.cli.parser import CommandParser, Options, add_out
+from fem_impact.cli.parser import Options
 from fem_impact.cli.terminal import print_answer
 from fem_impact.tables.text import wrapped
-
-
-def add_options(parser: CommandParser) -> None:
-    """State the command and its options."""
-    parser.state(figure, "fem-impact figure 7")
-    parser.add_argument("number", type=int, choices=(4, 5, 6, 7), help="of the paper")
-    add_out(parser, "results/paper")
 
 
 def figure(options: Options) -> int:

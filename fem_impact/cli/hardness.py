@@ -7,8 +7,8 @@ from dataclasses import asdict
 from math import inf
 from typing import TYPE_CHECKING
 
-from fem_impact.cli.parser import CommandParser, Options, add_text
-from fem_impact.cli.scene_options import add_scene, changed_scene
+from fem_impact.cli.parser import Options
+from fem_impact.cli.scene_options import changed_scene
 from fem_impact.cli.terminal import print_answer
 from fem_impact.errors import UsageError
 from fem_impact.tables.table import Table
@@ -16,20 +16,6 @@ from fem_impact.tables.text import wrapped
 
 if TYPE_CHECKING:
     from fem_impact.answers.hardness import Hardness, SkinPoint
-
-
-ABOUT = (
-    "Say what Vickers' number the flow curve of each material of a scene has by itself, and which hardened "
-    "layers, pairs of factor and depth, give the number that the material states."
-)
-
-
-def add_options(parser: CommandParser) -> None:
-    """State the command and its options."""
-    parser.state(hardness, "fem-impact hardness t5b --loads 10,30 --scatter 5", about=ABOUT)
-    add_scene(parser)
-    add_text(parser, "--loads", "KGF", "loads of the hardness test, such as 30 of HV 30 (default: 5,10,30)")
-    add_text(parser, "--scatter", "HV", "how far the stated number may be off (default: 0)")
 
 
 def hardness(options: Options) -> int:

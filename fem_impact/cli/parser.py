@@ -2,8 +2,11 @@
 
 import argparse
 import sys
-from collections.abc import Callable, Collection, Iterator, Sequence
+import tomllib
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from functools import cache
 from importlib import import_module
+from importlib.resources import files
 from pathlib import Path
 from textwrap import fill
 from typing import Any, NoReturn
@@ -55,7 +58,7 @@ class Options(argparse.Namespace):
     size: tuple[int, int] = (1280, 720)
     result: Path
     results: list[Path]
-    set_id: str | None = None
+    set_id: str = ""
     file: Path
     number: int
     shell: str = ""
@@ -72,39 +75,74 @@ class Options(argparse.Namespace):
     heat: bool = False
 
 
-def add_text(parser: argparse._ActionsContainer, option: str, metavar: str, meaning: str) -> None:
-    """Add an option that takes a text, empty where it is left out."""
-    parser.add_argument(option, default="", metavar=metavar, help=meaning)
-
-
-def add_out(parser: argparse.ArgumentParser, default: str) -> None:
-    """Add the directory to write to."""
-    parser.add_argument("--out", type=Path, metavar="DIR", help=f"where to write (default: {default})")
-
-
-def add_workers(
-    parser: argparse.ArgumentParser, meaning: str = "runs at a time (default: one a core)"
-) -> None:
-    """Add the number of processes."""
-    parser.add_argument("--workers", type=at_least_one, metavar="N", help=meaning)
-
-
-def add_cluster(parser: argparse.ArgumentParser) -> None:
-    """Add the address of a cluster."""
-    add_text(parser, "--scheduler", "ADDRESS", "run on this dask.distributed cluster instead")
-
-
-def add_page(parser: argparse.ArgumentParser, words: str) -> None:
-    """Add the page of evidence to write."""
-    text = f"{words} write the result as a page with date, machine and commit, such as docs/evidence/NAME.md"
-    add_text(parser, "--page", "FILE.md", text)
-
-
-def at_least_one(text: str) -> int:
+def processes(text: str) -> int:
     """Read a number of processes."""
     if not text.isdecimal() or not 1 <= int(text) <= 1024:
         raise argparse.ArgumentTypeError(f"{text!r} is not a number of processes (1 to 1024)")
     return int(text)
+
+
+def number(text: str) -> int:
+    """Read a number of scenes or a seed."""
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number, 1 or more")
+    return int(text)
+
+
+def seconds(text: str) -> float:
+    """Read a time in s."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = -1.0
+    if not 0 <= value < 1e6:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a time in seconds (0 to 1e6)")
+    return value
+
+
+def pixels(text: str) -> tuple[int, int]:
+    """Read width and height in pixels."""
+    width, by, height = text.partition("x")
+    if not (by and width.isdecimal() and height.isdecimal()):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a size such as 1280x720")
+    return int(width), int(height)
+
+
+TYPES: Mapping[str, Callable[[str], Any]] = {
+    one.__name__: one for one in (int, processes, number, seconds, pixels)
+} | {"path": Path}
+"""How the text of an option is read, by the name of its type in data/commands.toml."""
+
+
+@cache
+def stated() -> Mapping[str, Any]:
+    """Return what data/commands.toml states, by command; not read for the list of all commands."""
+    text = files("fem_impact.cli").joinpath("data/commands.toml").read_text(encoding="utf-8")
+    return tomllib.loads(text)
+
+
+def add_options(place: argparse._ActionsContainer, options: Iterable[str | Mapping[str, Any]]) -> None:
+    """Add options as data/commands.toml states them: by the name of a shared one, or by their settings.
+
+    ``like`` names a shared option whose other settings hold, ``group`` and ``exclusive`` hold options.
+    A text that is left out is empty, a list of texts too.
+    """
+    shared = stated()["shared"]
+    for one in options:
+        settings = dict(shared[one] if isinstance(one, str) else shared.get(one.get("like"), {}) | one)
+        if "exclusive" in settings:
+            add_options(place.add_mutually_exclusive_group(), settings["options"])
+        elif "group" in settings:
+            add_options(place.add_argument_group(settings["group"]), settings["options"])
+        else:
+            names = settings.pop("name")
+            settings.pop("like", None)
+            if "type" in settings:
+                settings["type"] = TYPES[settings["type"]]
+            elif settings.get("action") != "store_true":
+                several = settings.get("action") == "append" or settings.get("nargs") == "*"
+                settings.setdefault("default", [] if several else "")
+            place.add_argument(*([names] if isinstance(names, str) else names), **settings)
 
 
 def stated_budget(options: Options) -> float | None:
@@ -166,22 +204,24 @@ class CommandParser(argparse.ArgumentParser):
     def __init__(self, **settings: Any) -> None:
         super().__init__(formatter_class=HelpLines, **settings)
 
-    def state(self, handler: Callable[[Options], int], *examples: str, about: str = "") -> None:
-        """State what a command does, and add the options that all commands have.
+    def state(self, handler: Callable[[Options], int], stated: Mapping[str, Any]) -> None:
+        """State what a command does, and add its options and those that all commands have.
 
         Parameters
         ----------
         handler : function that carries it out and returns the exit code
-        examples : whole command lines that the help shows
-        about : what it does, where its line in `COMMANDS` is not enough; empty lines part paragraphs
+        stated : as a table of data/commands.toml. ``examples``: whole command lines that the help shows;
+            ``options``; ``about``: what it does, where its line in `COMMANDS` is not enough, with empty lines
+            between paragraphs
         """
-        about = about or f"{self.description}"
+        about, examples = stated.get("about", f"{self.description}"), stated["examples"]
         paragraphs = (fill(" ".join(part.split()), WIDTH) for part in about.split("\n\n"))
         self.description = "\n\n".join(paragraphs)
         self.epilog = "\n  ".join(["example:" if len(examples) == 1 else "examples:", *examples])
         self.add_argument("--json", action="store_true", help="print one JSON document on standard output")
         self.add_argument("--quiet", action="store_true", help="show no progress")
         self.set_defaults(handler=handler)
+        add_options(self, stated.get("options", ()))
 
     def error(self, message: str) -> NoReturn:
         """Raise a `UsageError` that names the command and its help."""
@@ -226,7 +266,7 @@ class CommandParser(argparse.ArgumentParser):
 
 
 def build_parser(words: Collection[str] = COMMANDS) -> CommandParser:
-    """Return the parser of all commands; the modules of those named in ``words`` add their options.
+    """Return the parser of all commands; those named in ``words`` have their options.
 
     No other module is imported, so that the list of commands and the help of one come at once.
     """
@@ -242,7 +282,10 @@ def build_parser(words: Collection[str] = COMMANDS) -> CommandParser:
     for name, summary in COMMANDS.items():
         command = commands.add_parser(name, help=summary, description=f"{summary[0].upper()}{summary[1:]}.")
         if name in words:
-            import_module(f"fem_impact.cli.{name}").add_options(command)
+            module = import_module(f"fem_impact.cli.{name}")
+            command.state(getattr(module, name), stated()[name])
+            if name == "study":
+                module.add_studies(command)
     return parser
 
 

@@ -1,46 +1,16 @@
 """The command ``render``: a film of the stress waves, or of the strikes of a body that is followed."""
 
-import argparse
 import sys
 from pathlib import Path
 
-from fem_impact.cli.parser import CommandParser, Options
+from fem_impact.cli.parser import Options
 from fem_impact.cli.paths import checked_file, checked_result
 from fem_impact.cli.terminal import print_answer
 from fem_impact.errors import MissingLibraryError, ResultError, UsageError
 from fem_impact.files.run_directory import FIELDS
 
 PATH = "path"  # the body from strike to strike, of any fidelity
-FILMED = ("strain", "stress", "velocity", "plastic", PATH)  # what a film can show, the default first
-
-
-def add_options(parser: CommandParser) -> None:
-    """State the command and its options."""
-    example = "fem-impact render results/quick"
-    parser.state(render, example, f"{example} --until '0.1 ms'")
-    several = "directory that a run or a study wrote; several make one film side by side"
-    film = "film: .mp4, .webp, .gif, .png for a folder, or .html to turn it (default: beside the fields)"
-    parser.add_argument("results", nargs="+", type=Path, metavar="RESULT", help=several)
-    parser.add_argument("--out", type=Path, metavar="FILE", help=film)
-    colours = "colours of the film (default: strain along the axis), or the body's path through its strikes"
-    parser.add_argument("--field", choices=FILMED, default=FILMED[0], help=colours)
-    parser.add_argument("--frames", type=int, metavar="N", help="number of frames (default: 144)")
-    for option, name, text in (
-        ("--from", "first", "first time, such as '20 us'"),
-        ("--until", "last", "last time, such as '0.3 ms'"),
-        ("--speed", "speed", "motion in one second of the film, such as '25 us'"),
-    ):
-        parser.add_argument(option, dest=name, default="", metavar="TIME", help=text)
-    pixels = "size of the film in pixels, multiples of 16 (default: 1280x720)"
-    parser.add_argument("--size", type=_size, default=(1280, 720), metavar="WxH", help=pixels)
-
-
-def _size(text: str) -> tuple[int, int]:
-    """Read width and height in pixels."""
-    width, by, height = text.partition("x")
-    if not (by and width.isdecimal() and height.isdecimal()):
-        raise argparse.ArgumentTypeError(f"{text!r} is not a size such as 1280x720")
-    return int(width), int(height)
+STRAIN = "strain"  # what several results show side by side
 
 
 def render(options: Options) -> int:
@@ -60,7 +30,7 @@ def render(options: Options) -> int:
         for text, key in ((options.first, "--from"), (options.last, "--until"), (options.speed, "--speed"))
     )
     span = Span(first, last, options.frames, speed)
-    if len(results) > 1 and options.field != FILMED[0]:
+    if len(results) > 1 and options.field != STRAIN:
         raise UsageError("shows the strain only, side by side.", key="--field", value=options.field)
     turning = out is not None and out.suffix == ".html"
     if len(results) > 1 and turning:

@@ -3,23 +3,11 @@
 import sys
 from pathlib import Path
 
-from fem_impact.cli.parser import CommandParser, Options, add_text
+from fem_impact.cli.parser import Options
 from fem_impact.cli.paths import checked_result
 from fem_impact.cli.terminal import print_answer
 from fem_impact.errors import MissingLibraryError, ResultError, UsageError
 from fem_impact.files.run_directory import FIELDS
-
-
-def add_options(parser: CommandParser) -> None:
-    """State the command and its options."""
-    signed = 'fem-impact report results/quick --sign --document "SC-17" --revision B'
-    parser.state(report, "fem-impact report results/quick", signed)
-    about = "directory that a run or a study wrote"
-    parser.add_argument("result", type=Path, metavar="RESULT", help=about)
-    sheet = "write sheet.html instead, a page of a run to print on A4 and sign"
-    parser.add_argument("--sign", action="store_true", help=sheet)
-    add_text(parser, "--document", "NUMBER", "number of the document, on the page to sign")
-    add_text(parser, "--revision", "REVISION", "its revision")
 
 
 def report(options: Options) -> int:

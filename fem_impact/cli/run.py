@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import argparse
 import shlex
 import sys
 from collections.abc import Callable
@@ -11,14 +10,14 @@ from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING
 
-from fem_impact.cli.parser import CommandParser, Options, add_out, add_text, stated_budget
+from fem_impact.cli.parser import Options, stated_budget
 from fem_impact.cli.paths import checked_out, shown_path, told_kept
-from fem_impact.cli.scene_options import add_scene, changed_scene, say_kept
+from fem_impact.cli.scene_options import changed_scene, say_kept
 from fem_impact.cli.terminal import chosen_meter, headed, limitation_lines, print_table, size_text
 from fem_impact.errors import RunError, UsageError
 from fem_impact.files.run_directory import is_resumable
 from fem_impact.jobs.executors import cores
-from fem_impact.options import CHECKPOINT_INTERVAL, FIDELITIES, RunOptions
+from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import Key, Num, Unknown, or_none, why_unknown
 from fem_impact.outcome.limitation import WRONG_NUMBERS, by_weight
 from fem_impact.outcome.record import KEY_TABLE, Outcome
@@ -51,44 +50,6 @@ if TYPE_CHECKING:
 
 LONG = 600.0
 """Expected computing time, s, above which `run` prints it before it starts."""
-
-
-def add_options(parser: CommandParser) -> None:
-    """State the command and its options."""
-    example = "fem-impact run t5b --fidelity modal --set impact.angle='30 deg'"
-    parser.state(run, "fem-impact run quick", example)
-    add_scene(parser)
-    parser.add_argument(
-        "--fidelity",
-        choices=FIDELITIES,
-        default="",
-        help="rigid: impulses (at once); modal: vibration modes and a contact law (a second); "
-        "solid: finite elements (default)",
-    )
-    until = 'how far the body is followed: first (default), "3 strikes", or rest; as --set impact.until'
-    add_text(parser, "--until", "STRIKES", until)
-    budget = "wall time: no level of meshes begins that would exceed it (default: 10 min)"
-    add_text(parser, "--budget", "TIME", budget)
-    add_out(parser, "results/SCENE")
-    parser.add_argument("--resume", action="store_true", help="go on from the checkpoint of a stopped run")
-    parser.add_argument(
-        "--checkpoint",
-        type=_seconds,
-        default=CHECKPOINT_INTERVAL,
-        metavar="SECONDS",
-        help="time between checkpoints (default: 30)",
-    )
-
-
-def _seconds(text: str) -> float:
-    """Read a time in s."""
-    try:
-        value = float(text)
-    except ValueError:
-        value = -1.0
-    if not 0 <= value < 1e6:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a time in seconds (0 to 1e6)")
-    return value
 
 
 def run(options: Options) -> int:

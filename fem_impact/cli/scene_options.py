@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import argparse
 import math
 import shlex
 import sys
@@ -11,7 +10,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fem_impact.cli.parser import Options, add_text
+from fem_impact.cli.parser import Options
 from fem_impact.errors import SceneError, UsageError, did_you_mean
 
 if TYPE_CHECKING:
@@ -25,42 +24,6 @@ SLOWED = 0.5
 """Share of the old speed of approach below which a fall along the axis is no other way to state it."""
 SHAPE = ("tip", "tip_radius")
 """Options of a steel rod that have a default."""
-ROD = '\\\n      --length "80 mm" --diameter "19 mm" --angle "45 deg"'
-"""A rod in the examples of the help."""
-
-
-def add_scene(parser: argparse.ArgumentParser, optional: bool = False) -> None:
-    """Add the scene and the changes of its values."""
-    about = "id of a shipped scene (see `fem-impact scenes`) or path of a scene file"
-    if optional:
-        parser.add_argument("scene", metavar="SCENE", nargs="?", default="", help=about)
-    else:
-        parser.add_argument("scene", metavar="SCENE", help=about)
-    add_changes(parser)
-
-
-def add_changes(parser: argparse._ActionsContainer) -> None:
-    """Add the changes of a scene's values."""
-    about = "change one value, such as --set accuracy.tip_size='0.5 mm'; may be repeated"
-    parser.add_argument("--set", dest="changes", action="append", default=[], metavar="KEY=VALUE", help=about)
-
-
-def add_uncertain(parser: argparse.ArgumentParser, then: str) -> None:
-    """Add the intervals of uncertain inputs; ``then`` says what they are for."""
-    about = (
-        "lowest and highest value of an uncertain input, as impact.angle=44,46deg, or how far it may lie "
-        f"from the scene's, as impact.angle=+-1deg or impact.v_n=+-2%%: {then}; may be repeated"
-    )
-    parser.add_argument("--uncertain", action="append", default=[], metavar="KEY=LOW,HIGH", help=about)
-
-
-def add_rod(parser: argparse._ActionsContainer) -> None:
-    """Add the options that describe a steel rod."""
-    add_text(parser, "--length", "LENGTH", 'of the rod, such as "240 mm"')
-    add_text(parser, "--diameter", "DIAMETER", 'such as "19 mm"')
-    tips = "A: round nose, B: rounded edge (default), plain: sharp edge, or one added to rigid.SHAPES"
-    add_text(parser, "--tip", "TIP", tips)
-    add_text(parser, "--tip-radius", "LENGTH", "default: 7 mm for A, 3 mm for B; an added tip needs it")
 
 
 def changed_scene(id_or_path: str, changes: Sequence[str]) -> Scene:

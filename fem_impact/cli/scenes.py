@@ -5,7 +5,7 @@ import sys
 from collections.abc import Iterator
 from typing import Any
 
-from fem_impact.cli.parser import CommandParser, Options
+from fem_impact.cli.parser import Options
 from fem_impact.cli.terminal import print_json, print_table
 from fem_impact.options import FIDELITIES
 from fem_impact.plugins import listed
@@ -14,24 +14,6 @@ from fem_impact.scene.shipped import load
 from fem_impact.scene.types import digest
 from fem_impact.tables.table import Table
 from fem_impact.tables.text import wrapped
-
-
-def add_options(parser: CommandParser) -> None:
-    """State the command and its options."""
-    kinds_listed = ("--materials", "--friction", "--added")
-    parser.state(scenes, "fem-impact scenes", *(f"fem-impact scenes {kind}" for kind in kinds_listed))
-    kinds = parser.add_mutually_exclusive_group()
-    kinds.add_argument(
-        "--materials", action="store_true", help="list the shipped materials instead, with every source"
-    )
-    kinds.add_argument(
-        "--friction", action="store_true", help="list the dry pairs of materials of which friction is known"
-    )
-    kinds.add_argument(
-        "--added",
-        action="store_true",
-        help="list what other installed packages add, with the fidelities that compute it",
-    )
 
 
 def scenes(options: Options) -> int:

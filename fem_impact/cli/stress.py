@@ -2,19 +2,10 @@
 
 from pathlib import Path
 
-from fem_impact.cli.parser import CommandParser, Options, add_out, add_page, add_text, add_workers
+from fem_impact.cli.parser import Options
 from fem_impact.cli.paths import checked_out
 from fem_impact.cli.study import carry_out
 from fem_impact.errors import UsageError, did_you_mean
-
-
-def add_options(parser: CommandParser) -> None:
-    """State the command and its options."""
-    parser.state(stress, "fem-impact stress --only angle-60")
-    add_text(parser, "--only", "NAME", "one case, such as angle-60 (default: all of them)")
-    add_out(parser, "results/stress")
-    add_workers(parser, "cases at a time (default: one a core)")
-    add_page(parser, "run all cases and")
 
 
 def stress(options: Options) -> int:

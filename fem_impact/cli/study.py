@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import argparse
 import sys
 from collections.abc import Sequence
 from concurrent.futures import Executor
@@ -12,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fem_impact.cli.page import asked_page, write_study_page
-from fem_impact.cli.parser import CommandParser, Options, add_cluster, add_out, add_page, add_workers
+from fem_impact.cli.parser import CommandParser, Options, stated
 from fem_impact.cli.paths import checked_out, told_kept
 from fem_impact.cli.terminal import chosen_meter, print_answer, print_json, print_markdown, print_notes
 from fem_impact.errors import RunError, UsageError, did_you_mean
@@ -54,16 +53,10 @@ STUDIES = {name: Study(**told) for name, told in read_stated("studies/data/studi
 OWN_TESTS = ("sets",)
 """Studies that take scene files with own tests."""
 REPORT = "one page over all studies beside it"
-_REPORT_ABOUT = (
-    "Read the studies in the directories beside --out, and write one HTML page over them: conclusions with "
-    "their figures, comparison with the tests, energy of every run, papers behind the methods. It computes "
-    "nothing and takes some ten seconds."
-)
 
 
-def add_options(parser: CommandParser) -> None:
-    """State the command and those of the studies."""
-    parser.state(study, "fem-impact study sets --quick")
+def add_studies(parser: CommandParser) -> None:
+    """Add the studies, each a command of its own, and the page over all of them."""
     studies = parser.add_subparsers(
         title="studies",
         dest="name",
@@ -72,41 +65,23 @@ def add_options(parser: CommandParser) -> None:
         description="fem-impact study NAME --help tells what a study does and how long it takes",
     )
     for name, one in STUDIES.items():
-        _add_study(studies.add_parser(name, help=one.summary), name, one)
-    report = studies.add_parser("report", help=REPORT)
-    report.state(study, "fem-impact study report", about=_REPORT_ABOUT)
-    add_out(report, "results/report")
-
-
-def _add_study(parser: CommandParser, name: str, one: Study) -> None:
-    """State one study, the sets it takes, and the options of many runs."""
-    first_look = f"With --quick, which is a first look and no result: {one.quick}."
-    about = f"{one.about}\n\nSize and processor time: {one.size}. {first_look}"
-    examples = f"fem-impact study {name} --quick", f"fem-impact study {name} --estimate"
-    parser.state(study, *examples, about=about)
-    if one.sets:
+        first_look = f"With --quick, which is a first look and no result: {one.quick}."
         files = " or scene files with own tests" if name in OWN_TESTS else ""
         taken = f"measured sets, such as t5b{files} (default: {one.sets})"
-        parser.add_argument("ids", nargs="*", default=[], metavar="ID", help=taken)
-    parser.add_argument("--quick", action="store_true", help="the small version, for a first look")
-    if one.draws:
-        part = "only the first N scenes of each family; a later call with more keeps their runs"
-        parser.add_argument("--first", type=_count, default=0, metavar="N", help=part)
-        other = "draw other scenes, none of which the told errors rest on (default: those they rest on)"
-        parser.add_argument("--seed", type=_count, default=0, metavar="N", help=other)
-    add_out(parser, f"results/{name}")
-    add_workers(parser)
-    add_cluster(parser)
-    estimate = "say how long it takes on 1 to 1000 workers, and stop"
-    parser.add_argument("--estimate", action="store_true", help=estimate)
-    add_page(parser, "also")
-
-
-def _count(text: str) -> int:
-    """Read a number of scenes or a seed."""
-    if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number, 1 or more")
-    return int(text)
+        options = [
+            *([{"like": "ids", "help": taken}] if one.sets else []),
+            "quick",
+            *(("first", "seed") if one.draws else ()),
+            {"like": "out", "help": f"where to write (default: results/{name})"},
+            *("workers", "scheduler", "estimate", "page"),
+        ]
+        told = {
+            "about": f"{one.about}\n\nSize and processor time: {one.size}. {first_look}",
+            "examples": [f"fem-impact study {name} {option}" for option in ("--quick", "--estimate")],
+            "options": options,
+        }
+        studies.add_parser(name, help=one.summary).state(study, told)
+    studies.add_parser("report", help=REPORT).state(study, stated()["study"]["report"])
 
 
 def study(options: Options) -> int:

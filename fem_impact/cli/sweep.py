@@ -9,39 +9,16 @@ from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fem_impact.cli.parser import CommandParser, Options, add_cluster, add_out, add_text, add_workers
+from fem_impact.cli.parser import Options
 from fem_impact.cli.paths import checked_out, told_kept
-from fem_impact.cli.scene_options import add_scene, changed_scene, command_line, read_changes
+from fem_impact.cli.scene_options import changed_scene, command_line, read_changes
 from fem_impact.cli.terminal import chosen_meter, print_json, print_markdown
 from fem_impact.errors import RunError, SceneError, UsageError
 from fem_impact.files.atomic import read_text
 from fem_impact.jobs.executors import cores, on_scheduler
-from fem_impact.options import FIDELITIES
 
 if TYPE_CHECKING:
     from fem_impact.answers.sweep_results import Results
-
-
-def add_options(parser: CommandParser) -> None:
-    """State the command and its options."""
-    examples = (
-        "fem-impact sweep t5b --vary impact.angle=15..60:5deg",
-        "fem-impact sweep t5b --vary impact.angle=30,45deg --vary impact.speed=1,2m/s",
-    )
-    parser.state(sweep, *examples)
-    add_scene(parser)
-    values = (
-        "values of one key, such as impact.angle=15..60:5deg or projectile.length=0.2,0.4m; may be repeated"
-    )
-    parser.add_argument(
-        "--vary", action="append", required=True, metavar="KEY=VALUES", default=[], help=values
-    )
-    parser.add_argument("--fidelity", choices=FIDELITIES, default="", help="of the runs (default: modal)")
-    columns = "numbers of the outcome to print and draw, such as e_edge,W_skin_over_E_0; sweep.csv holds all"
-    add_text(parser, "--columns", "NAMES", columns)
-    add_out(parser, "below results")
-    add_workers(parser)
-    add_cluster(parser)
 
 
 def sweep(options: Options) -> int:

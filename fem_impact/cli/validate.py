@@ -5,11 +5,11 @@ from __future__ import annotations
 from contextlib import closing
 from typing import TYPE_CHECKING, Any
 
-from fem_impact.cli.parser import CommandParser, Options
-from fem_impact.cli.scene_options import add_scene, add_uncertain, changed_scene, command_line
+from fem_impact.cli.parser import Options
+from fem_impact.cli.scene_options import changed_scene, command_line
 from fem_impact.cli.terminal import chosen_meter, print_answer
 from fem_impact.errors import UsageError
-from fem_impact.options import FIDELITIES, RunOptions
+from fem_impact.options import RunOptions
 from fem_impact.tables.table import Table
 from fem_impact.tables.text import wrapped
 
@@ -18,21 +18,6 @@ if TYPE_CHECKING:
 
 NUMBERS = ("S", "D", "E", "u_num", "u_input", "u_D")
 ERRORS = ("number", "model S", "tests D", "S - D", "u_num", "u_input", "u_D", "verdict")
-
-
-def add_options(parser: CommandParser) -> None:
-    """State the command and its options."""
-    parser.state(
-        validate, "fem-impact validate t5b", "fem-impact validate t5b --uncertain surface.friction=+-10%"
-    )
-    add_scene(parser)
-    add_uncertain(parser, "its part of the error is told")
-    fidelity = "of the compared run (default: modal)"
-    parser.add_argument("--fidelity", choices=FIDELITIES, default="modal", help=fidelity)
-    by = "fidelity in which the inputs are varied (default: rigid for --fidelity rigid, else modal)"
-    parser.add_argument("--inputs-by", choices=FIDELITIES, default="", help=by)
-    runs = "runs of each of the two samples of the inputs, a power of two (default: 64)"
-    parser.add_argument("--samples", type=int, default=64, metavar="N", help=runs)
 
 
 def validate(options: Options) -> int:

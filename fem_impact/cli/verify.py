@@ -3,7 +3,7 @@
 import sys
 
 from fem_impact.cli.page import checked_page, write_page
-from fem_impact.cli.parser import CommandParser, Options, add_page
+from fem_impact.cli.parser import Options
 from fem_impact.cli.terminal import print_json, print_table
 from fem_impact.errors import RunError, UsageError
 from fem_impact.evidence.problems.problem import PROBLEMS, Verification, page, problem
@@ -14,19 +14,6 @@ TITLE, ABOUT = (
     "Verification",
     "Each problem with a known answer, and of its checks the one nearest to its limit.",
 )
-
-
-def add_options(parser: CommandParser) -> None:
-    """State the command and its options."""
-    parser.state(verify, "fem-impact verify bar", 'fem-impact verify modes --set length="120 mm"')
-    name = "one problem, such as bar (default: all of them)"
-    parser.add_argument("problem", nargs="?", default="", metavar="NAME", help=name)
-    changed = "change one parameter, such as --set length='80 mm' (a bare number is SI); may be repeated"
-    parser.add_argument(
-        "--set", dest="changes", action="append", default=[], metavar="PARAMETER=VALUE", help=changed
-    )
-    parser.add_argument("--parameters", action="store_true", help="list the parameters of a problem")
-    add_page(parser, "run all problems and")
 
 
 def verify(options: Options) -> int:

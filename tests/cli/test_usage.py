@@ -8,8 +8,11 @@ from importlib import import_module
 import pytest
 
 from fem_impact.answers.report import Request
+from fem_impact.answers.verdict.criteria import LIMITED
 from fem_impact.cli.parser import build_parser, every_command, read_line
 from fem_impact.cli.study import STUDIES
+from fem_impact.films.motion import FIELDS
+from fem_impact.options import FIDELITIES
 
 ROD = ("--length", "80 mm", "--diameter", "19 mm", "--angle", "45 deg")
 DROP = (*ROD, "--height", "0.82 m", "--surface", "machined")
@@ -90,6 +93,19 @@ def test_the_help_of_every_command_shows_examples_that_are_understood(name):
         words = shlex.split(re.sub(r'^eval "\$\((.*)\)"$', r"\1", line).partition(" > ")[0])[1:]
         assert words[: len(name.split())] == name.split()
         assert read_line(words).handler
+
+
+def test_an_option_offers_what_the_program_knows():
+    offered = {
+        (name, action.dest): (*action.choices,)
+        for name, command in COMMANDS.items()
+        for action in command._actions
+        if action.choices and action.option_strings
+    }
+    fidelities = [of for (name, dest), of in offered.items() if dest == "fidelity" and name != "assess"]
+    assert {*fidelities, offered["validate", "inputs_by"]} == {FIDELITIES}
+    assert offered["assess", "question"] == ("rigid", *LIMITED)
+    assert {*FIELDS} <= {*offered["render", "field"]}
 
 
 @pytest.mark.parametrize("name", STUDIES)

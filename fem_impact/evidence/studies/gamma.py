@@ -330,9 +330,9 @@ def how_sure(points: DataFrame) -> str:
     residuals = points.residual_over_E_0.dropna().astype(float).abs()
     return (
         f"Levels give vibration of {close.sum()} of {len(points)} points within {dropped.CLOSE:.0%} of "
-        f"itself or {dropped.LEAST:g} of E_0; in {doubted.sum()} of the others its two counts, by modes and without "
-        f"them, differ by more. {(points.reason != '').sum()} points have no value or no band. The largest "
-        f"residual of their ledgers is {max(residuals, default=0.0):.1g} of E_0."
+        f"itself or {dropped.LEAST:g} of E_0; in {doubted.sum()} of the others its two counts, by modes and "
+        f"without them, differ by more. {(points.reason != '').sum()} points have no value or no band. "
+        f"The largest residual of their ledgers is {max(residuals, default=0.0):.1g} of E_0."
     )
 
 
