@@ -147,7 +147,7 @@ def render_side_by_side(
     Parameters
     ----------
     results : paths
-        Folders as `fem_impact.films.render` takes them.
+        Folders as `fem_impact.render` takes them.
     out : path, optional
         The film; without it ``film-side-by-side`` in the first folder.
     span : Span
@@ -158,7 +158,7 @@ def render_side_by_side(
     Raises
     ------
     ResultError, MissingLibraryError, OutputPathError
-        As `fem_impact.films.render`.
+        As `fem_impact.render`.
     """
     folders = [Path(result) for result in results]
     read = [read_movement(folder) for folder in folders]

@@ -41,7 +41,7 @@ class _Frame(NamedTuple):
 def render_path(
     result_dir: str | Path, out: str | Path | None = None, size: tuple[int, int] = (1280, 720)
 ) -> RenderResult:
-    """Draw a film of the strikes of a run of any fidelity; see `fem_impact.films.render` for what it raises.
+    """Draw a film of the strikes of a run of any fidelity; see `fem_impact.render` for what it raises.
 
     Each flight takes at most `FLIGHT` seconds, shorter ones less. Vibration and dents are not shown.
     """

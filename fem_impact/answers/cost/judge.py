@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 from math import inf
 from typing import Literal
 
-from fem_impact.answers.refine.budget import longest_s
 from fem_impact.answers.refine.extrapolate import MeshRuns, QuantityLimit, quantity_limits
+from fem_impact.answers.refine.forecast import longest_s
 from fem_impact.answers.refine.quantities import QUANTITIES, sum_of
 from fem_impact.outcome.keys import or_none
 from fem_impact.outcome.record import Outcome

@@ -5,7 +5,6 @@ from itertools import count
 import pytest
 
 from fem_impact.answers import simulate as simulate_module
-from fem_impact.answers.refine import chain as chain_module
 from fem_impact.answers.refine import forecast
 from fem_impact.answers.refine import level as level_module
 from fem_impact.answers.refine.chain import LevelChain
@@ -119,8 +118,7 @@ def test_a_level_whose_mesh_shows_that_it_takes_too_long_is_given_up_at_once():
 def test_modes_that_take_longer_than_the_budget_are_broken_off(monkeypatch):
     """Every look at the clock takes a second here; no step of the impact is computed."""
     clock, told = count(), []
-    for module in (forecast, chain_module):
-        monkeypatch.setattr(module, "now", lambda: next(clock))
+    monkeypatch.setattr(forecast, "now", lambda: next(clock))
     monkeypatch.setattr(eigen, "_LAST", {})
     chain = LevelChain(Case(load("quick")), RunOptions(progress=told.append), budget_s=20.0)
     with pytest.raises(OverBudgetError, match=r"given up after 2\d s, .* The coarsest level gave no number"):
@@ -132,7 +130,7 @@ def test_a_set_up_that_no_budget_holds_is_given_up_before_its_matrices(monkeypat
     chain = LevelChain(Case(load("quick")), budget_s=20.0)
     _ = chain.meshes.pilot.size  # planned as small: the mesh shows more
     monkeypatch.setattr(size, "SETUP", 0.1)
-    monkeypatch.setattr(chain_module, "require_pilot", lambda *_: None)
+    monkeypatch.setattr(forecast, "require_pilot", lambda *_: None)
     monkeypatch.setattr(body, "stiffness_of", None)
     with pytest.raises(OverBudgetError, match=r"given up after \d s, .*takes about \d\d+ s"):
         chain.run()

@@ -7,7 +7,7 @@ import cost_fakes
 import pytest
 from cost_fakes import pressed, run
 
-from fem_impact.answers.refine import chain, forecast
+from fem_impact.answers.refine import forecast
 from fem_impact.answers.refine import level as level_module
 from fem_impact.answers.refine.chain import LevelChain
 from fem_impact.answers.simulate import simulate
@@ -40,8 +40,7 @@ def ran(monkeypatch):
         return outcome, pressed(case.record) if len(seen) > 1 else case.record
 
     monkeypatch.setattr(level_module, "simulate_recorded", fake)
-    for module in (chain, forecast):
-        monkeypatch.setattr(module, "now", lambda: clock[0])
+    monkeypatch.setattr(forecast, "now", lambda: clock[0])
     return seen
 
 
@@ -128,8 +127,7 @@ def test_a_level_that_cannot_keep_the_budget_is_given_up(monkeypatch):
         return outcome, pressed(case.record)
 
     monkeypatch.setattr(level_module, "simulate_recorded", slow)
-    for module in (chain, forecast):
-        monkeypatch.setattr(module, "now", lambda: clock[0])
+    monkeypatch.setattr(forecast, "now", lambda: clock[0])
     levels = LevelChain(Case(replace(ASKED, "accuracy", FINEST)), budget_s=100.0)
     outcome = levels.run()
     assert len(levels.done) == 1

@@ -12,7 +12,7 @@ from cost_fakes import pressed
 from own_bodies import taper, write
 
 from fem_impact.answers.refine import level as level_module
-from fem_impact.answers.verdict import assess as assess_module
+from fem_impact.answers.verdict import vibration
 from fem_impact.answers.verdict.assess import assess
 from fem_impact.answers.verdict.dropped import dropped
 from fem_impact.answers.verdict.reliability import CHANGED, known_error, sentence, stored
@@ -404,13 +404,13 @@ def test_a_budget_that_allows_one_level_leaves_the_reduced_model_and_says_so(mon
 
 
 def test_inclinations_without_an_answer_are_named_and_leave_the_worst_open(monkeypatch):
-    real = assess_module.modal_pair
+    real = vibration.modal_pair
 
     def cut_off(scene):
         free, stiff = real(scene)
         return (cut_short(free) if math.degrees(scene.impact.angle) < 12 else free), stiff
 
-    monkeypatch.setattr(assess_module, "modal_pair", cut_off)
+    monkeypatch.setattr(vibration, "modal_pair", cut_off)
     found = assess(load("t5b"), "modal", tolerance=0.2)
     assert [round(math.degrees(angle)) for angle in found.not_known[0]] == [5, 10]
     assert found.not_known[1].endswith("the tail.")
