@@ -7,7 +7,7 @@ import cost_fakes
 import pytest
 from cost_fakes import pressed, run
 
-from fem_impact.answers.refine import forecast
+from fem_impact.answers.refine import chain, forecast
 from fem_impact.answers.refine import level as level_module
 from fem_impact.answers.refine.chain import LevelChain
 from fem_impact.answers.simulate import simulate
