@@ -24,8 +24,7 @@ from fem_impact.case.size import RunSize, require_memory, require_rest, run_size
 from fem_impact.case.zones import Zones, require_fine_zone, zones_of
 from fem_impact.errors import UsageError, did_you_mean
 from fem_impact.options import FIDELITIES
-from fem_impact.outcome.groups import EffectChoice
-from fem_impact.outcome.limitation import Limitation, limitations
+from fem_impact.outcome.groups import EffectChoice, Limitation, limitations
 from fem_impact.physics.contact import ContactEstimate, ContactPair
 from fem_impact.physics.plate import plate_waves
 from fem_impact.scene.types import Scene

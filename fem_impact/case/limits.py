@@ -9,7 +9,7 @@ from fem_impact.case.effects.slots import ModelSpec
 from fem_impact.case.plates import is_wider, thin_plate
 from fem_impact.case.shaft import coned, gives_elsewhere
 from fem_impact.errors import SceneError
-from fem_impact.outcome.limitation import Limitation, limitations
+from fem_impact.outcome.groups import Limitation, limitations
 from fem_impact.physics.contact import FLAT
 from fem_impact.scene import library
 from fem_impact.scene.barrier import Barrier

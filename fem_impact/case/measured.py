@@ -54,7 +54,7 @@ def vibration_pairs() -> tuple[dict[str, float], ...]:
     """Return a row a scene that ran by both models, with vibration and without it.
 
     It holds where the scene stands, and by how much changes by vibration of the reduced model differ, over
-    their scales (`fem_impact.answers.verdict.reliability`); nan where one model does not know a number.
+    their scales (`fem_impact.answers.verdict.vibration`); nan where one model does not know a number.
     ``fem-impact study coverage`` makes the table, of a seed and the measured sets: its sheet ``changes``.
     """
     return _rows("changes.csv")

@@ -75,7 +75,7 @@ def _rigid(options: Options, scene: Scene) -> tuple[dict[str, Any], Picture]:
         verdict, scene_options.command_line(options, "assess", *SHORT, *scene_options.SHAPE, "within")
     )
     if scene.impact.until != FIRST:
-        from fem_impact.answers.verdict.sequence import sequence_verdict
+        from fem_impact.answers.verdict.assess import sequence_verdict
 
         answer["sequence"] = sequence_verdict(scene, verdict.tolerance)
     if case is not None:
@@ -138,7 +138,7 @@ def _dropped_rod(options: Options) -> Scene:
 def _within(options: Options) -> tuple[str, float]:
     """Return of what a change may be neglected, and how large it may be."""
     from fem_impact.answers.verdict.assess import TOLERANCE
-    from fem_impact.answers.verdict.reliability import CHANGED
+    from fem_impact.answers.verdict.vibration import CHANGED
 
     if not options.within:
         return "e", TOLERANCE

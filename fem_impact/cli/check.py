@@ -13,7 +13,7 @@ from fem_impact.cli.scene_options import changed_scene, say_kept
 from fem_impact.cli.statement import statement_of
 from fem_impact.cli.terminal import headed, limitation_lines, print_json, size_text
 from fem_impact.errors import UsageError
-from fem_impact.outcome.limitation import texts
+from fem_impact.outcome.groups import texts
 from fem_impact.progress import clock_text
 from fem_impact.scene.inputs import STATED, inputs
 from fem_impact.scene.types import Scene, to_dict, to_toml

@@ -18,8 +18,8 @@ from fem_impact.errors import RunError, UsageError
 from fem_impact.files.run_directory import is_resumable
 from fem_impact.jobs.executors import cores
 from fem_impact.options import RunOptions
+from fem_impact.outcome.groups import WRONG_NUMBERS, by_weight
 from fem_impact.outcome.keys import Key, Num, Unknown, or_none, why_unknown
-from fem_impact.outcome.limitation import WRONG_NUMBERS, by_weight
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.outcome.shares import ABOVE, ADDED, IF_ON, EnergyShare, above_modes, shares
 from fem_impact.outcome.strikes import SHOWN, spread_table, strikes_table, told

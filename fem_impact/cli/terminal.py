@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from fem_impact.case.size import RunSize
     from fem_impact.cli.parser import Options
-    from fem_impact.outcome.limitation import Limitation
+    from fem_impact.outcome.groups import Limitation
     from fem_impact.tables.table import Table
 
 

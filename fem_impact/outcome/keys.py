@@ -146,7 +146,8 @@ def keys_of(cls: type, path: tuple[str, ...] = (), name: str = "", meaning: str 
     """Yield the keys of a group and of the groups in it."""
     hints, stated = get_type_hints(cls), STATED.get(cls.__name__, {})
     for one in fields(cls):
-        hint, place = hints[one.name], (*path, one.name)
+        hint: Any = hints[one.name]
+        place = (*path, one.name)
         if is_dataclass(hint):
             said = stated.get(one.name, {})
             yield from keys_of(hint, place, said.get("part", ""), said.get("meaning", ""))

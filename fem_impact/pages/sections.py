@@ -14,9 +14,8 @@ from fem_impact.figures.still import percent
 from fem_impact.files.atomic import make_directory
 from fem_impact.files.waves import read_waves
 from fem_impact.films.movement import FRAMES, QUICK_FRAMES, STUDY_FRAMES
-from fem_impact.outcome.groups import EffectChoice
+from fem_impact.outcome.groups import WRONG_NUMBERS, EffectChoice, LimitationKind, texts
 from fem_impact.outcome.keys import Key, Unknown, or_none
-from fem_impact.outcome.limitation import WRONG_NUMBERS, LimitationKind, texts
 from fem_impact.outcome.record import KEYS, Outcome
 from fem_impact.pages import html
 from fem_impact.run.tests import tests_of

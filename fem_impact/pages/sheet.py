@@ -10,8 +10,8 @@ from fem_impact.case.case import Case
 from fem_impact.errors import MissingLibraryError, ResultError
 from fem_impact.files.atomic import checksum, make_directory, read_signed, read_text, write_text
 from fem_impact.files.run_directory import FIELDS
+from fem_impact.outcome.groups import HEAVIEST_FIRST, WRONG_NUMBERS, texts
 from fem_impact.outcome.keys import Unknown, or_none, why_unknown
-from fem_impact.outcome.limitation import HEAVIEST_FIRST, WRONG_NUMBERS, texts
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.outcome.shares import IF_ON, shares
 from fem_impact.outcome.strikes import SHOWN, strikes_table, told

@@ -9,8 +9,8 @@ from fem_impact.arrays import Array
 from fem_impact.case.case import OTHER_END, Case
 from fem_impact.case.effects.registry import EFFECTS
 from fem_impact.outcome import groups
+from fem_impact.outcome.groups import Limitation, limitations
 from fem_impact.outcome.keys import Num, Unknown, unknown
-from fem_impact.outcome.limitation import Limitation, limitations
 from fem_impact.outcome.record import Outcome, installed_versions, utc_now
 from fem_impact.outcome.strikes import Strikes
 from fem_impact.physics.contact import between

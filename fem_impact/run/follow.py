@@ -6,8 +6,8 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from fem_impact.options import RunOptions
+from fem_impact.outcome.groups import Limitation, limitations
 from fem_impact.outcome.keys import Unknown, unknown
-from fem_impact.outcome.limitation import Limitation, limitations
 from fem_impact.outcome.strikes import StrikeRecord, Strikes
 from fem_impact.run.certain import with_spread
 from fem_impact.run.strikes import RULES, Followed

@@ -5,9 +5,8 @@ from dataclasses import replace
 
 from fem_impact.case.case import Case
 from fem_impact.modal.impact import Arrival, ModalResult, solve
-from fem_impact.outcome.groups import Energy, Heat, Markers, RunCost
+from fem_impact.outcome.groups import Energy, Heat, Markers, RunCost, limitations
 from fem_impact.outcome.keys import Num, Unknown, unknown
-from fem_impact.outcome.limitation import limitations
 from fem_impact.outcome.record import Outcome
 from fem_impact.progress import Progress
 from fem_impact.run.assemble import ImpactEnd, Reduction

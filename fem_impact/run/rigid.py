@@ -9,9 +9,8 @@ from typing import NamedTuple
 import rigid
 from fem_impact.case.case import Case
 from fem_impact.case.effects.heating import halves
-from fem_impact.outcome.groups import Energy, Heat, Markers, RodMotion, RunCost
+from fem_impact.outcome.groups import Energy, Heat, Markers, RodMotion, RunCost, limitations
 from fem_impact.outcome.keys import Unknown, known, unknown
-from fem_impact.outcome.limitation import limitations
 from fem_impact.outcome.record import Outcome
 from fem_impact.physics.contact import ContactPair
 from fem_impact.physics.contact_law import ContactLaw, contact_law

@@ -10,7 +10,7 @@ from fem_impact.errors import SceneError
 from fem_impact.files import run_directory
 from fem_impact.files.atomic import directory_lock, write_digests, write_text
 from fem_impact.options import RunOptions
-from fem_impact.outcome.limitation import texts
+from fem_impact.outcome.groups import texts
 from fem_impact.outcome.record import Outcome
 from fem_impact.run.program import stamp
 from fem_impact.run.tests import tests_of

@@ -11,9 +11,8 @@ import rigid
 from fem_impact.case.cells import advice
 from fem_impact.case.effects.heating import halves
 from fem_impact.errors import RunError
-from fem_impact.outcome.groups import ContactSite, Energy, Heat, Readings, RodMotion, RunCost
+from fem_impact.outcome.groups import ContactSite, Energy, Heat, Readings, RodMotion, RunCost, limitations
 from fem_impact.outcome.keys import Num, Unknown, known, or_none, unknown
-from fem_impact.outcome.limitation import limitations
 from fem_impact.physics.contact import fall
 from fem_impact.physics.flash import flash
 from fem_impact.run.assemble import ImpactEnd, Reduction

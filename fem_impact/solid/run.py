@@ -21,7 +21,7 @@ from fem_impact.fem.geometry import Geometry
 from fem_impact.fem.kernels import compiled_before
 from fem_impact.files.run_directory import CHECKPOINT
 from fem_impact.options import RunOptions
-from fem_impact.outcome.limitation import Limitation, limitations
+from fem_impact.outcome.groups import Limitation, limitations
 from fem_impact.progress import Notice, Progress, compiling, setting_up, standing
 from fem_impact.solid.build import build
 from fem_impact.solid.checkpoint import Checkpoint

@@ -12,7 +12,7 @@ from fem_impact.case.limits import not_reduced
 from fem_impact.case.plates import contact_width, half_space_error, widening
 from fem_impact.errors import SceneError
 from fem_impact.fem.geometry import build_geometry
-from fem_impact.outcome.limitation import texts
+from fem_impact.outcome.groups import texts
 from fem_impact.physics.plate import least_span
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace_all

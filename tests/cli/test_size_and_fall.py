@@ -6,7 +6,7 @@ import pytest
 
 from fem_impact.answers.verdict.sentences import case_sentence
 from fem_impact.case.case import Case
-from fem_impact.outcome.limitation import texts
+from fem_impact.outcome.groups import texts
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.types import to_toml
 

@@ -12,8 +12,8 @@ from invariants import HIGHEST_E, LOWEST_E, faults, is_resolved
 from fem_impact.case.case import Case
 from fem_impact.case.cells import ADVISED, FINEST, kind, size_for
 from fem_impact.errors import FemImpactError
+from fem_impact.outcome.groups import texts
 from fem_impact.outcome.keys import or_none
-from fem_impact.outcome.limitation import texts
 from fem_impact.outcome.record import Outcome
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.types import Scene

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from fem_impact.outcome.groups import texts
 from fem_impact.outcome.keys import Unknown, or_none
-from fem_impact.outcome.limitation import texts
 from fem_impact.outcome.record import Outcome
 
 LEDGER = 1e-4  # of E_0

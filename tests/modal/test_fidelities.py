@@ -11,8 +11,8 @@ from fem_impact.case.case import Case
 from fem_impact.errors import SceneError, UsageError
 from fem_impact.modal.impact import solve as modal_solve
 from fem_impact.options import RunOptions
+from fem_impact.outcome.groups import texts
 from fem_impact.outcome.keys import Unknown
-from fem_impact.outcome.limitation import texts
 from fem_impact.outcome.record import Outcome
 from fem_impact.run.common import NO_PUSH, barrier_motion, motion, restitution
 from fem_impact.run.simulate import simulate

@@ -7,7 +7,7 @@ import pytest
 
 from fem_impact.case.case import Case
 from fem_impact.modal.impact import solve
-from fem_impact.outcome.limitation import texts
+from fem_impact.outcome.groups import texts
 from fem_impact.physics.contact_law import flow_law
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace_all

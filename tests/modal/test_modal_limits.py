@@ -10,7 +10,7 @@ from fem_impact.case.case import Case
 from fem_impact.errors import SceneError
 from fem_impact.modal.impact import solve
 from fem_impact.modal.motion import ROW
-from fem_impact.outcome.limitation import texts
+from fem_impact.outcome.groups import texts
 from fem_impact.run.modal import reduce
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace_all

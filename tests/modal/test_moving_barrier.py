@@ -5,7 +5,7 @@ import pytest
 
 import rigid
 from fem_impact.case.case import Case
-from fem_impact.outcome.limitation import texts
+from fem_impact.outcome.groups import texts
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace_all
 from rigid.finite import solve_free

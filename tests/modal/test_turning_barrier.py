@@ -7,8 +7,8 @@ import pytest
 from light_barrier import DEPTH, OFFSET, TURNING, J, M
 
 from fem_impact.errors import SceneError
+from fem_impact.outcome.groups import texts
 from fem_impact.outcome.keys import Unknown, known
-from fem_impact.outcome.limitation import texts
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace_all
 

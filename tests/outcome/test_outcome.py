@@ -16,7 +16,7 @@ from result_maker import values
 
 import fem_impact
 from fem_impact.errors import ResultError, UsageError
-from fem_impact.outcome import groups, limitation, strikes
+from fem_impact.outcome import groups, strikes
 from fem_impact.outcome.check import SCHEMA_VERSION
 from fem_impact.outcome.groups import ARMS, Energy, Heat
 from fem_impact.outcome.keys import STATED, Unknown, known, markdown_table, or_none, unknown
@@ -59,7 +59,7 @@ def test_attributes_hold_the_flat_keys():
 
 def test_every_key_has_an_attribute_of_its_own():
     assert len({key.path for key in KEYS}) == len({key.name for key in KEYS}) == len(KEYS)
-    named = vars(groups) | vars(limitation) | vars(strikes)
+    named = vars(groups) | vars(strikes)
     for name, stated in STATED.items():
         assert {*stated} <= {one.name for one in fields(named[name])}, name
 

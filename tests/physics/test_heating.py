@@ -9,7 +9,7 @@ import solid_scenes
 
 from fem_impact.case.case import Case
 from fem_impact.case.effects.heating import halves
-from fem_impact.outcome.limitation import texts
+from fem_impact.outcome.groups import texts
 from fem_impact.physics.flash import (
     Half,
     expected_rise,

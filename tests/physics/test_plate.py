@@ -12,7 +12,7 @@ from fem_impact.errors import SceneError
 from fem_impact.evidence.references.hertz import zener_impact
 from fem_impact.modal.impact import drop_round
 from fem_impact.modal.motion import SUM, Bounds, Start
-from fem_impact.outcome.limitation import texts
+from fem_impact.outcome.groups import texts
 from fem_impact.physics.contact_law import contact_law, flow_law
 from fem_impact.physics.plate import contact_time, least_span, plate_impedance, zener_number
 from fem_impact.scene.shipped import load, replace_all

@@ -9,7 +9,7 @@ from own_bodies import box, write
 
 from fem_impact.answers.refine.chain import LevelChain
 from fem_impact.answers.simulate import simulate
-from fem_impact.answers.verdict.twins import inclined
+from fem_impact.answers.verdict.vibration import inclined
 from fem_impact.case.case import Case
 from fem_impact.case.zones import zones_of
 from fem_impact.errors import SceneError

@@ -10,8 +10,8 @@ from fem_impact.answers.refine.extrapolate import level_limit
 from fem_impact.answers.refine.strikes import open_by_levels
 from fem_impact.case.case import Case
 from fem_impact.errors import SceneError, UsageError
+from fem_impact.outcome.groups import texts
 from fem_impact.outcome.keys import Unknown
-from fem_impact.outcome.limitation import texts
 from fem_impact.outcome.record import Outcome
 from fem_impact.outcome.strikes import told as in_words
 from fem_impact.run import certain

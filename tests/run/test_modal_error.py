@@ -8,7 +8,7 @@ import pytest
 
 from fem_impact import load, replace, simulate
 from fem_impact.case.case import Case
-from fem_impact.outcome.limitation import texts
+from fem_impact.outcome.groups import texts
 from fem_impact.run import modal_error
 from fem_impact.run.modal_error import (
     CALLED,

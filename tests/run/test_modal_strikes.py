@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from fem_impact.case.case import Case
-from fem_impact.outcome.limitation import texts
+from fem_impact.outcome.groups import texts
 from fem_impact.run.certain import _agree
 from fem_impact.run.modal_strikes import ModalCourse, modal_loss
 from fem_impact.run.simulate import simulate

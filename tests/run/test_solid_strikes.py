@@ -10,7 +10,7 @@ from fem_impact.evidence.studies.strikes import scene_of
 from fem_impact.modal.rod import modal_rod
 from fem_impact.modal.sites import skin
 from fem_impact.options import RunOptions
-from fem_impact.outcome.limitation import texts
+from fem_impact.outcome.groups import texts
 from fem_impact.run.simulate import simulate
 from fem_impact.run.solid_strikes import SolidCourse
 from fem_impact.run.strikes import Followed

@@ -7,8 +7,8 @@ import pytest
 
 from fem_impact.case.case import Case
 from fem_impact.case.record import BodyRecord, ContactRecord
+from fem_impact.outcome.groups import texts
 from fem_impact.outcome.keys import Unknown
-from fem_impact.outcome.limitation import texts
 from fem_impact.run.common import strikes_again
 from fem_impact.run.simulate import simulate
 from fem_impact.run.unusual import pierced, unusual

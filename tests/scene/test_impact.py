@@ -6,7 +6,7 @@ import pytest
 
 from fem_impact.case.case import Case
 from fem_impact.errors import SceneError
-from fem_impact.outcome.limitation import texts
+from fem_impact.outcome.groups import texts
 from fem_impact.scene.impact import Impact
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load, replace, replace_all

@@ -9,7 +9,7 @@ from own_bodies import box, chamfered, taper, write
 
 from fem_impact.case.case import Case
 from fem_impact.errors import SceneError
-from fem_impact.outcome.limitation import texts
+from fem_impact.outcome.groups import texts
 from fem_impact.physics.beam import bending_period, stretching_period
 from fem_impact.scene.impact import Impact
 from fem_impact.scene.own_mesh import OwnMesh

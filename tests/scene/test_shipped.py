@@ -7,7 +7,7 @@ import pytest
 
 from fem_impact.case.case import Case
 from fem_impact.errors import SceneError, UsageError
-from fem_impact.outcome.limitation import texts
+from fem_impact.outcome.groups import texts
 from fem_impact.scene.fields import DEFAULTS
 from fem_impact.scene.impact import Following, Impact
 from fem_impact.scene.inputs import STATED, inputs, materials_of

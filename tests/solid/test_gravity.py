@@ -6,7 +6,7 @@ import pytest
 import solid_scenes as scenes
 
 from fem_impact.case.case import Case
-from fem_impact.outcome.limitation import texts
+from fem_impact.outcome.groups import texts
 from fem_impact.run.solid import reduce
 from fem_impact.solid.march import advance, evaluate
 from fem_impact.solid.run import solve

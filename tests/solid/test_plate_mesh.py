@@ -9,8 +9,8 @@ import meshes
 from fem_impact.case.case import Case
 from fem_impact.errors import SceneError
 from fem_impact.fem.boundary import plate_edges
+from fem_impact.outcome.groups import texts
 from fem_impact.outcome.keys import or_none
-from fem_impact.outcome.limitation import texts
 from fem_impact.physics.plate import zener_number
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace_all

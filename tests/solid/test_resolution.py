@@ -10,8 +10,8 @@ import solid_scenes as scenes
 from fem_impact.case.case import Case
 from fem_impact.cli.run import print_outcome
 from fem_impact.errors import SceneError
+from fem_impact.outcome.groups import texts
 from fem_impact.outcome.keys import Unknown
-from fem_impact.outcome.limitation import texts
 from fem_impact.outcome.record import Outcome
 from fem_impact.run.solid import reduce
 from fem_impact.scene import shipped

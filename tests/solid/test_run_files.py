@@ -9,8 +9,8 @@ import pytest
 from fem_impact.fem.elements import lame_constants
 from fem_impact.files.fields import read_fields
 from fem_impact.options import RunOptions
+from fem_impact.outcome.groups import texts
 from fem_impact.outcome.keys import Unknown
-from fem_impact.outcome.limitation import texts
 from fem_impact.outcome.record import Outcome
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace_all

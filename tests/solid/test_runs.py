@@ -14,8 +14,8 @@ from fem_impact.errors import RunError
 from fem_impact.fem import body
 from fem_impact.fem.flight import rigid_motion
 from fem_impact.fem.geometry import to_barrier_frame
+from fem_impact.outcome.groups import texts
 from fem_impact.outcome.keys import Unknown
-from fem_impact.outcome.limitation import texts
 from fem_impact.run.simulate import simulate
 from fem_impact.run.solid import reduce
 from fem_impact.scene.shipped import load

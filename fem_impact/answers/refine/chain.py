@@ -27,8 +27,8 @@ from fem_impact.errors import ResultError, RunError, SceneError
 from fem_impact.files.atomic import directory_lock, read_text, write_digests
 from fem_impact.files.run_directory import BESIDE, is_resumable
 from fem_impact.options import RunOptions
+from fem_impact.outcome.groups import limitations
 from fem_impact.outcome.keys import Unknown, known
-from fem_impact.outcome.limitation import limitations
 from fem_impact.outcome.record import Outcome
 from fem_impact.outcome.strikes import levels_told
 from fem_impact.progress import Notice

@@ -10,7 +10,7 @@ import numpy as np
 from fem_impact.answers.refine.extrapolate import level_limit, level_limits
 from fem_impact.answers.refine.level import LevelRun
 from fem_impact.answers.verdict import vibration
-from fem_impact.answers.verdict.twins import twins
+from fem_impact.answers.verdict.vibration import twins
 from fem_impact.case.case import Case
 from fem_impact.case.effects.heating import halves
 from fem_impact.case.effects.registry import NAMES
@@ -78,7 +78,7 @@ class Criterion(ABC):
 
 
 class Rigidity(Criterion):
-    """The change of a number of `fem_impact.answers.verdict.reliability.CHANGED` by vibration."""
+    """The change of a number of `fem_impact.answers.verdict.vibration.CHANGED` by vibration."""
 
     dimension, unit, per_unit = "", "", 1.0
 

@@ -23,8 +23,8 @@ from fem_impact.answers.verdict.vibration import Answer
 from fem_impact.case.case import Case
 from fem_impact.case.limits import not_reduced
 from fem_impact.errors import RunError, SceneError, UsageError
+from fem_impact.outcome.groups import texts
 from fem_impact.outcome.keys import Unknown
-from fem_impact.outcome.limitation import texts
 from fem_impact.outcome.record import installed_versions
 from fem_impact.progress import tell_cell
 from fem_impact.scene.types import Scene, digest

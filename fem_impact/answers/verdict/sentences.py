@@ -8,8 +8,8 @@ from fem_impact.answers.verdict.assess import Verdict
 from fem_impact.answers.verdict.levels import next_step
 from fem_impact.answers.verdict.screening import Screening
 from fem_impact.answers.verdict.vibration import CALLED, Answer, VibrationEffect
+from fem_impact.outcome.groups import texts
 from fem_impact.outcome.keys import Unknown, known, or_none
-from fem_impact.outcome.limitation import texts
 from fem_impact.outcome.record import Outcome, installed_versions
 from fem_impact.outcome.shares import SHARES
 from fem_impact.run.common import RESIDUAL_LIMIT

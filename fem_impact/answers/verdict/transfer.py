@@ -14,7 +14,7 @@ from fem_impact.answers.verdict.dropped import (
     unmeasured,
     weights_of,
 )
-from fem_impact.outcome.limitation import limitations
+from fem_impact.outcome.groups import limitations
 from rigid import (
     LIMIT,
     LIMIT_MM,

@@ -15,8 +15,8 @@ from fem_impact.case.case import Case
 from fem_impact.cli.run import print_outcome
 from fem_impact.errors import RunError, SceneError
 from fem_impact.options import RunOptions
+from fem_impact.outcome.groups import texts
 from fem_impact.outcome.keys import Unknown, known
-from fem_impact.outcome.limitation import texts
 from fem_impact.outcome.record import Outcome
 from fem_impact.progress import Notice, Progress
 from fem_impact.run.resolution import without_end

@@ -2,7 +2,7 @@
 
 import pytest
 
-from fem_impact.answers.verdict.sequence import sequence_verdict
+from fem_impact.answers.verdict.assess import sequence_verdict
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace_all
 

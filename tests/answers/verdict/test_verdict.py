@@ -15,11 +15,19 @@ from fem_impact.answers.refine import level as level_module
 from fem_impact.answers.verdict import vibration
 from fem_impact.answers.verdict.assess import assess
 from fem_impact.answers.verdict.dropped import dropped
-from fem_impact.answers.verdict.reliability import CHANGED, known_error, sentence, stored
 from fem_impact.answers.verdict.screening import screening
 from fem_impact.answers.verdict.sentences import basis, box, case_sentence, document, doubt
-from fem_impact.answers.verdict.twins import inclined, twins
-from fem_impact.answers.verdict.vibration import VibrationEffect, modal_effect, modal_pair
+from fem_impact.answers.verdict.vibration import (
+    CHANGED,
+    VibrationEffect,
+    inclined,
+    known_error,
+    modal_effect,
+    modal_pair,
+    off_sentence,
+    stored,
+    twins,
+)
 from fem_impact.case.case import Case
 from fem_impact.case.plates import half_space_error
 from fem_impact.errors import RunError, SceneError
@@ -208,7 +216,7 @@ def test_the_known_error_grows_with_the_change_and_tells_in_what_a_scene_is_unli
     assert far == ("what lands flat",) and half > small[0]
     half, far = known_error(Case(LONG), modal_pair(LONG)[0], "e", 0.001)
     assert far == ("bending period over time of contact",)
-    assert far[0] in sentence("e", half, far)
+    assert far[0] in off_sentence("e", half, far)
 
 
 def test_aluminium_is_not_answered_as_steel():

@@ -10,8 +10,14 @@ import pandas
 
 from fem_impact.answers.report import Sheet, StudyReport
 from fem_impact.answers.verdict.criteria import LIMITED
-from fem_impact.answers.verdict.reliability import CHANGED, scale_of_change
-from fem_impact.answers.verdict.vibration import Pair, difference, modal_pair, unfinished
+from fem_impact.answers.verdict.vibration import (
+    CHANGED,
+    Pair,
+    difference,
+    modal_pair,
+    scale_of_change,
+    unfinished,
+)
 from fem_impact.case.case import Case
 from fem_impact.case.measured import summary
 from fem_impact.evidence.studies.coverage import judge

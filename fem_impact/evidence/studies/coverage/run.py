@@ -14,9 +14,14 @@ from typing import Any, Literal
 import fem_impact
 from fem_impact.answers.refine.level import LevelRun
 from fem_impact.answers.verdict.levels import by_levels
-from fem_impact.answers.verdict.reliability import CHANGED
-from fem_impact.answers.verdict.twins import twins
-from fem_impact.answers.verdict.vibration import Answer, VibrationEffect, solid_effect, untargeted
+from fem_impact.answers.verdict.vibration import (
+    CHANGED,
+    Answer,
+    VibrationEffect,
+    solid_effect,
+    twins,
+    untargeted,
+)
 from fem_impact.errors import FemImpactError, ResultError, SceneError
 from fem_impact.evidence.studies.coverage.scenes import DrawnScene
 from fem_impact.jobs.job import JobKind
