@@ -1,21 +1,33 @@
 """The command ``assess``: the verdict on one scene, and measured tests carried over to it on demand."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from fem_impact.answers.verdict.assess import BUDGET, TOLERANCE, sequence_verdict
+from fem_impact.answers.verdict.assess import assess as assessed
+from fem_impact.answers.verdict.chart import chart
+from fem_impact.answers.verdict.criteria import LIMITED, Criterion, Rigidity
+from fem_impact.answers.verdict.dropped import RodDropInput, dropped, scene_of
+from fem_impact.answers.verdict.limit import judge, limit_document
+from fem_impact.answers.verdict.sentences import document, lines_of
+from fem_impact.answers.verdict.text import transfer_text
+from fem_impact.answers.verdict.transfer import transfer
+from fem_impact.answers.verdict.vibration import CHANGED
 from fem_impact.cli import scene_options
 from fem_impact.cli.parser import Options, stated_budget
 from fem_impact.cli.paths import checked_out
 from fem_impact.cli.terminal import print_answer
+from fem_impact.cli.values import read_values
 from fem_impact.errors import UsageError
+from fem_impact.figures.panels import Picture
+from fem_impact.files.run_directory import refuse_other_scene
+from fem_impact.jobs.executors import cores
+from fem_impact.pages.run_page import write_verdict
+from fem_impact.scene.impact import FIRST
+from fem_impact.scene.types import Scene, to_toml
+from fem_impact.scene.units import option_quantity
 from fem_impact.tables.text import wrapped
-
-if TYPE_CHECKING:
-    from fem_impact.figures.panels import Picture
-    from fem_impact.scene.types import Scene
 
 RIGID = "rigid"  # the question that is asked where no other is
 SHORT = ("length", "diameter", "height", "angle", "surface")
@@ -29,9 +41,6 @@ def assess(options: Options) -> int:
     out = checked_out(options.out) if options.out else None
     scene = scene_options.named_scene(options, SHORT) or _dropped_rod(options)
     if out is not None:
-        from fem_impact.files.run_directory import refuse_other_scene
-        from fem_impact.scene.types import to_toml
-
         refuse_other_scene(out / "scene.toml", to_toml(scene))
     try:
         answer, picture = (_limited if limited else _rigid)(options, scene)
@@ -39,8 +48,6 @@ def assess(options: Options) -> int:
         remedy = "--budget bounds the time of the next one, --fidelity modal takes seconds."
         raise KeyboardInterrupt(f"an assessment that is stopped keeps nothing: {remedy}") from None
     if out is not None:
-        from fem_impact.pages.run_page import write_verdict
-
         answer["page"] = str(write_verdict(scene, answer, out, picture))
     print_answer(options, answer, _text(answer))
     return 0
@@ -61,12 +68,6 @@ def _refuse(options: Options, limited: bool) -> None:
 
 def _rigid(options: Options, scene: Scene) -> tuple[dict[str, Any], Picture]:
     """Return the verdict on rigid theory as plain JSON, and the design chart with its point."""
-    from fem_impact.answers.verdict.assess import assess as assessed
-    from fem_impact.answers.verdict.chart import chart
-    from fem_impact.answers.verdict.dropped import dropped
-    from fem_impact.answers.verdict.sentences import document
-    from fem_impact.scene.impact import FIRST
-
     case = dropped(scene) if options.heat else None
     of, change = _within(options)
     verdict = assessed(scene, options.fidelity, change, *_means(options), tell=_telling(options), of=of)
@@ -75,21 +76,14 @@ def _rigid(options: Options, scene: Scene) -> tuple[dict[str, Any], Picture]:
         verdict, scene_options.command_line(options, "assess", *SHORT, *scene_options.SHAPE, "within")
     )
     if scene.impact.until != FIRST:
-        from fem_impact.answers.verdict.assess import sequence_verdict
-
         answer["sequence"] = sequence_verdict(scene, verdict.tolerance)
     if case is not None:
-        from fem_impact.answers.verdict.transfer import transfer
-
         answer["transfer"] = transfer(case)
     return answer, chart(verdict)
 
 
 def _means(options: Options) -> tuple[float, int]:
     """Return the budget of the finite elements, s, and how many runs go on at a time."""
-    from fem_impact.answers.verdict.assess import BUDGET
-    from fem_impact.jobs.executors import cores
-
     budget = stated_budget(options)
     return BUDGET if budget is None else budget, min(options.workers or cores(), 2)
 
@@ -102,11 +96,6 @@ def _telling(options: Options) -> Callable[[str], None]:
 
 def _limited(options: Options, scene: Scene) -> tuple[dict[str, Any], None]:
     """Return the verdict on a number and its limit, over the intervals that are stated, as plain JSON."""
-    from fem_impact.answers.verdict.criteria import LIMITED, Criterion, Rigidity
-    from fem_impact.answers.verdict.limit import document, judge
-    from fem_impact.cli.values import read_values
-    from fem_impact.scene.units import option_quantity
-
     criterion: Criterion
     if options.question == RIGID:
         of, limit = _within(options)
@@ -121,14 +110,11 @@ def _limited(options: Options, scene: Scene) -> tuple[dict[str, Any], None]:
     command = scene_options.command_line(options, "assess", *SHORT, *scene_options.SHAPE, *given).replace(
         "--question", "--for"
     )
-    return document(found, command), None
+    return limit_document(found, command), None
 
 
 def _dropped_rod(options: Options) -> Scene:
     """Return the scene of the dropped steel rod that the options state."""
-    from fem_impact.answers.verdict.dropped import RodDropInput, scene_of
-    from fem_impact.scene.units import option_quantity
-
     height = option_quantity(options.height, "length", "--height")
     return scene_of(
         RodDropInput(scene_options.rod_of(options), height, scene_options.angle_of(options), options.surface)
@@ -137,9 +123,6 @@ def _dropped_rod(options: Options) -> Scene:
 
 def _within(options: Options) -> tuple[str, float]:
     """Return of what a change may be neglected, and how large it may be."""
-    from fem_impact.answers.verdict.assess import TOLERANCE
-    from fem_impact.answers.verdict.vibration import CHANGED
-
     if not options.within:
         return "e", TOLERANCE
     of, _, text = options.within.strip().partition(" ")
@@ -154,7 +137,6 @@ def _within(options: Options) -> tuple[str, float]:
 
 
 def _text(answer: dict[str, Any]) -> str:
-    from fem_impact.answers.verdict.sentences import lines_of
 
     lines = [line for title, sentence in answer["box"] for line in wrapped(f"{title} {sentence}")]
     lines += wrapped(f"Missing: {answer['missing']}") if answer["missing"] else []
@@ -166,8 +148,6 @@ def _text(answer: dict[str, Any]) -> str:
     lines += ["", "What it does not cover"]
     lines += [line for sentence in answer["not_covered"] for line in wrapped(f"- {sentence}", "  ")]
     if "transfer" in answer:
-        from fem_impact.answers.verdict.text import transfer_text
-
         carried = transfer_text(answer["transfer"]).rstrip()
         lines += ["", "Measured tests carried over to this drop", "", carried]
     return "\n".join([*lines, *([f"page: {answer['page']}"] if "page" in answer else [])]) + "\n"

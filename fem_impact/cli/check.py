@@ -1,30 +1,30 @@
 """The command ``check``: all that a scene states and calls for, without computing it."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from fem_impact.answers.simulate import compiled
+from fem_impact.answers.verdict.screening import screening
+from fem_impact.case.case import Case
+from fem_impact.case.cells import ADVISED, ERROR, advice, contact_radius, expected_cells, kind
+from fem_impact.case.size import RunSize, about, time_class
 from fem_impact.cli.parser import Options
 from fem_impact.cli.paths import shown_path
 from fem_impact.cli.scene_options import changed_scene, say_kept
 from fem_impact.cli.statement import statement_of
 from fem_impact.cli.terminal import headed, limitation_lines, print_json, size_text
 from fem_impact.errors import UsageError
-from fem_impact.outcome.groups import texts
+from fem_impact.figures.outline import drawn
+from fem_impact.outcome.groups import EffectChoice, texts
+from fem_impact.pages.drawing import draw_projectile
 from fem_impact.progress import clock_text
+from fem_impact.run.tests import count, doubtful_tests, tests_of
 from fem_impact.scene.inputs import STATED, inputs
 from fem_impact.scene.types import Scene, to_dict, to_toml
 from fem_impact.tables.table import Table
 from fem_impact.tables.text import plain, wrapped
-
-if TYPE_CHECKING:
-    from fem_impact.case.case import Case
-    from fem_impact.case.size import RunSize
-    from fem_impact.outcome.groups import EffectChoice
-
 
 DRAWINGS = (".png", ".svg")
 INSIDE = "inside the measured range of speed, angle, rod, steels and surfaces"
@@ -46,8 +46,6 @@ def check(options: Options) -> int:
     SceneError, ResultError
         The scene is refused, or the file of its tests cannot be read.
     """
-    from fem_impact.answers.simulate import compiled
-
     drawing = options.drawing
     if drawing is not None and drawing.suffix not in DRAWINGS:
         problem, remedy = "is no picture that can be drawn.", "Name a file such as projectile.svg or .png."
@@ -56,8 +54,6 @@ def check(options: Options) -> int:
     tests = _tests_lines(case.scene)  # before the rest: a file of tests that cannot be read is refused
     say_kept(case.scene, options)
     if drawing:
-        from fem_impact.pages.drawing import draw_projectile
-
         draw_projectile(case, drawing)
     statement = statement_of(case)
     if options.json:
@@ -72,8 +68,6 @@ def check(options: Options) -> int:
 
 def _tests_lines(scene: Scene) -> list[str]:
     """Return how many tests a scene names, and what is doubtful about them."""
-    from fem_impact.run.tests import count, doubtful_tests, tests_of
-
     tests = tests_of(scene)
     if tests is None:
         return []
@@ -106,7 +100,6 @@ def _bends_as(case: Case) -> str:
 
 
 def _drawing(case: Case) -> list[str]:
-    from fem_impact.figures.outline import drawn
 
     joints = [part.to for part in case.scene.projectile.segments[:-1]]
     return drawn(case.bodies.body, case.contact.touch_point, joints)
@@ -181,8 +174,6 @@ def _short(case: Case, statement: dict[str, Any]) -> str:
 
 def _contact_lines(case: Case) -> Iterator[str]:
     """Return barrier, motion, friction and the estimated contact, and what they say of vibration."""
-    from fem_impact.answers.verdict.screening import screening
-
     scene, size = case.scene, case.estimate
     tables, layers = to_dict(scene), scene.barrier.layers
     stated = tables["barrier"].items()
@@ -214,8 +205,6 @@ def _contact_lines(case: Case) -> Iterator[str]:
 def _size_lines(case: Case) -> list[str]:
     if case.scene.accuracy.target:
         return []
-    from fem_impact.case.cells import contact_radius
-    from fem_impact.case.size import about, time_class
 
     size = case.size
     if case.scene.accuracy.levels > 1:
@@ -246,8 +235,6 @@ ELEMENT_BYTES = {"shown": 18.0, "all": 53.0}
 
 def _fields_line(scene: Scene, size: RunSize) -> str:
     """Return how large the file is that holds the pictures of a run, and the key that makes it smaller."""
-    from fem_impact.case.size import about
-
     frames = scene.save.frames
     if not frames:
         return "no pictures are kept (save.frames = 0): the run has no film"
@@ -265,8 +252,6 @@ WHICH_FLOWS = (
 
 def _cells_line(case: Case) -> str:
     """Return how fine the mesh is at the contact, and the tip size that the program advises."""
-    from fem_impact.case.cells import ADVISED, ERROR, advice, contact_radius, expected_cells, kind
-
     bodies = case.bodies
     cells, error, advised = expected_cells(bodies), ERROR[kind(bodies)], ADVISED[kind(bodies)]
     line = (

@@ -1,17 +1,16 @@
 """The command ``coefficients``: restitution, impulse ratio and moment coefficient of a user's own tests."""
 
-from __future__ import annotations
+import numpy as np
 
-from typing import TYPE_CHECKING
-
+from fem_impact.answers.verdict.text import own_text
 from fem_impact.cli.parser import Options
 from fem_impact.cli.scene_options import angle_of, named_scene, rod_of
 from fem_impact.cli.terminal import print_answer
 from fem_impact.errors import SceneError, UsageError
-
-if TYPE_CHECKING:
-    from fem_impact.scene.own_tests import Camera
-    from rigid import Arms, Body
+from fem_impact.evidence.paper.own_data import own_coefficients
+from fem_impact.scene.own_tests import Camera, read_camera
+from fem_impact.scene.units import option_quantity
+from rigid import Arms, Body, RigidError
 
 TESTED = ("length", "diameter", "angle")
 """Options of a tested steel rod that must be given where no scene is."""
@@ -19,11 +18,6 @@ TESTED = ("length", "diameter", "angle")
 
 def coefficients(options: Options) -> int:
     """Work out the coefficients of the user's own tests."""
-    from fem_impact.answers.verdict.text import own_text
-    from fem_impact.evidence.paper.own_data import own_coefficients
-    from fem_impact.scene.own_tests import read_camera
-    from rigid import RigidError
-
     if scene := named_scene(options, TESTED):
         rod, alpha = scene.projectile.rigid_body, scene.impact.angle
         tip = scene.projectile.tip, scene.projectile.tip_radius
@@ -44,11 +38,6 @@ def coefficients(options: Options) -> int:
 
 def _stated_arms(options: Options) -> Arms | None:
     """Return the arms, m, of ``--d-c`` and ``--d-d``, which are given both or neither."""
-    import numpy as np
-
-    from fem_impact.scene.units import option_quantity
-    from rigid import Arms
-
     given = options.d_c, options.d_d
     if not any(given):
         return None
@@ -59,10 +48,6 @@ def _stated_arms(options: Options) -> Arms | None:
 
 def _arms(stated: Arms | None, rod: Body, alpha: float, camera: Camera) -> tuple[Arms, str]:
     """Return the arms, m, and their source: options, the file, or the shape of the tip."""
-    import numpy as np
-
-    from rigid import Arms
-
     if stated is not None:
         return stated, "as stated"
     if camera.arms:

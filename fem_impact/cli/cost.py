@@ -1,26 +1,33 @@
 """The command ``cost``: what accuracy costs in time for a scene, or for all scenes of the paper."""
 
-from __future__ import annotations
-
 import json
 from contextlib import closing
 from math import inf
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+from fem_impact.answers.cost.measure import (
+    FINER,
+    CostStudy,
+    judge_stored,
+    measure,
+    summarise,
+    text_table,
+    write_cost,
+)
+from fem_impact.answers.refine.quantities import chosen
+from fem_impact.answers.report import Request, StudyReport, publish
 from fem_impact.cli.page import asked_page, write_study_page
 from fem_impact.cli.parser import Options, stated_budget
 from fem_impact.cli.paths import checked_out
 from fem_impact.cli.scene_options import changed_scene, command_line
 from fem_impact.cli.terminal import chosen_meter, print_answer
 from fem_impact.errors import RunError, SceneError, UsageError
+from fem_impact.evidence.studies.cost_report import answers, paper_report, scene_report
+from fem_impact.files.atomic import directory_lock, write_text
+from fem_impact.pages.write import page
+from fem_impact.scene.types import MEASURED_SETS, Scene
+from fem_impact.scene.units import parse_share
 from fem_impact.tables.text import wrapped
-
-if TYPE_CHECKING:
-    from fem_impact.answers.cost.measure import CostStudy
-    from fem_impact.answers.report import StudyReport
-    from fem_impact.scene.types import Scene
-
 
 PAPER, PAGE = "paper", "report.html"
 STATED = ("target", "budget", "of", "finer")
@@ -29,8 +36,6 @@ STATED = ("target", "budget", "of", "finer")
 
 def cost(options: Options) -> int:
     """Run a scene with all settings and report errors, costs and the cheapest sufficient setting."""
-    from fem_impact.answers.refine.quantities import chosen
-
     asked = [name.strip() for name in options.of.split(",") if name.strip()]
     target = _share(options.target) if options.target else None
     budget = stated_budget(options)
@@ -44,9 +49,6 @@ def cost(options: Options) -> int:
     if options.page:
         raise UsageError("shows all sets.", key="--page", remedy="Leave it out, or run `cost paper`.")
     out = checked_out(options.out or Path("results") / "cost" / scene.id)
-    from fem_impact.answers.cost.measure import text_table
-    from fem_impact.evidence.studies.cost_report import answers, scene_report
-    from fem_impact.files.atomic import directory_lock
 
     with directory_lock(out):
         study = _measured(scene, out, options, budget or inf)
@@ -61,10 +63,6 @@ def cost(options: Options) -> int:
 
 def _write(options: Options, study: CostStudy, report: StudyReport, out: Path, scene: str = "") -> list[str]:
     """Write the tables of a scene's costs and its page; return what could not be made."""
-    from fem_impact.answers.cost.measure import write_cost
-    from fem_impact.answers.report import Request, publish
-    from fem_impact.pages.write import page
-
     write_cost(study, out)
     publish(report, Request(out, line=command_line(options, "cost", *STATED, scene=scene)), study.runs)
     return page(out)
@@ -72,8 +70,6 @@ def _write(options: Options, study: CostStudy, report: StudyReport, out: Path, s
 
 def _share(text: str) -> float:
     """Read the error that ``--target`` allows."""
-    from fem_impact.scene.units import parse_share
-
     try:
         return parse_share(text, "--target")
     except SceneError as error:
@@ -82,8 +78,6 @@ def _share(text: str) -> float:
 
 def _measured(scene: Scene, out: Path, options: Options, budget: float = inf) -> CostStudy:
     """Run all settings, or with ``--stored`` read those that have run."""
-    from fem_impact.answers.cost.measure import FINER, judge_stored, measure
-
     finer = int(options.finer or FINER)
     with closing(chosen_meter(options)) as meter:
         if options.stored:
@@ -93,13 +87,6 @@ def _measured(scene: Scene, out: Path, options: Options, budget: float = inf) ->
 
 def _paper(options: Options, names: tuple[str, ...]) -> int:
     """Measure all sets of the paper, one store and page each; write summary.json and a page over all."""
-    from fem_impact.answers.cost.measure import summarise
-    from fem_impact.answers.report import Request, publish
-    from fem_impact.evidence.studies.cost_report import paper_report, scene_report
-    from fem_impact.files.atomic import directory_lock, write_text
-    from fem_impact.pages.write import page
-    from fem_impact.scene.types import MEASURED_SETS
-
     stated_page = asked_page(options)
     scenes = {name: changed_scene(name, options.changes) for name in MEASURED_SETS}
     out = checked_out(options.out or Path("results") / "cost" / PAPER)

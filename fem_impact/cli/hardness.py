@@ -1,12 +1,10 @@
 """The command ``hardness``: what the hardness of a scene's materials says of a hardened layer."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import asdict
 from math import inf
-from typing import TYPE_CHECKING
 
+from fem_impact.answers.hardness import Hardness, SkinPoint, hardnesses
 from fem_impact.cli.parser import Options
 from fem_impact.cli.scene_options import changed_scene
 from fem_impact.cli.terminal import print_answer
@@ -14,14 +12,9 @@ from fem_impact.errors import UsageError
 from fem_impact.tables.table import Table
 from fem_impact.tables.text import wrapped
 
-if TYPE_CHECKING:
-    from fem_impact.answers.hardness import Hardness, SkinPoint
-
 
 def hardness(options: Options) -> int:
     """Print the layers that meet the hardness of each material."""
-    from fem_impact.answers.hardness import hardnesses
-
     loads = [_number("--loads", text) for text in options.loads.split(",")] if options.loads else []
     scatter = _number("--scatter", options.scatter) if options.scatter else 0.0
     found = list(hardnesses(changed_scene(options.scene, options.changes), loads, scatter))

@@ -4,7 +4,7 @@ import argparse
 import sys
 import tomllib
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from functools import cache
+from functools import cache, partial
 from importlib import import_module
 from importlib.resources import files
 from pathlib import Path
@@ -265,6 +265,12 @@ class CommandParser(argparse.ArgumentParser):
             raise argparse.ArgumentError(action, f"there is no {str(value)!r}. {hint}")
 
 
+def carry_out(name: str, options: Options) -> int:
+    """Call the function of a command, whose module is imported only now; return the exit code."""
+    code: int = getattr(import_module(f"fem_impact.cli.{name}"), name)(options)
+    return code
+
+
 def build_parser(words: Collection[str] = COMMANDS) -> CommandParser:
     """Return the parser of all commands; those named in ``words`` have their options.
 
@@ -282,10 +288,9 @@ def build_parser(words: Collection[str] = COMMANDS) -> CommandParser:
     for name, summary in COMMANDS.items():
         command = commands.add_parser(name, help=summary, description=f"{summary[0].upper()}{summary[1:]}.")
         if name in words:
-            module = import_module(f"fem_impact.cli.{name}")
-            command.state(getattr(module, name), stated()[name])
+            command.state(partial(carry_out, name), stated()[name])
             if name == "study":
-                module.add_studies(command)
+                import_module("fem_impact.cli.study").add_studies(command)
     return parser
 
 

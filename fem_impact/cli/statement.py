@@ -1,31 +1,27 @@
 """What a scene states and calls for, as the document of which the command ``check`` makes its texts."""
 
-from __future__ import annotations
-
 from dataclasses import asdict
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from fem_impact.answers.simulate import compiled
+from fem_impact.case.bodies import Bodies
+from fem_impact.case.case import Case
+from fem_impact.case.metals import RATES, flow_stresses, laws
+from fem_impact.case.size import RunSize
 from fem_impact.cli.paths import shown_path
 from fem_impact.errors import SceneError
+from fem_impact.outcome.groups import EffectChoice
+from fem_impact.outcome.keys import keys_of
 from fem_impact.scene.fields import DEFAULTS
 from fem_impact.scene.inputs import STATED, inputs, materials_of
 from fem_impact.scene.library import intervals_of
 from fem_impact.scene.types import Scene, digest, to_dict
-
-if TYPE_CHECKING:
-    from fem_impact.case.bodies import Bodies
-    from fem_impact.case.case import Case
-    from fem_impact.case.size import RunSize
 
 __all__ = ["statement_of"]
 
 
 def statement_of(case: Case) -> dict[str, Any]:
     """Return the document of ``--json``, from which the texts are made; SI units."""
-    from fem_impact.case.metals import laws
-    from fem_impact.outcome.groups import EffectChoice
-    from fem_impact.outcome.keys import keys_of
-
     scene = case.scene
     return {
         "scene": to_dict(scene),
@@ -50,8 +46,6 @@ def statement_of(case: Case) -> dict[str, Any]:
 
 def _fidelities(scene: Scene) -> dict[str, str | None]:
     """Return why a fidelity refuses the scene, None where it answers it; finite elements do."""
-    from fem_impact.answers.simulate import compiled
-
     found: dict[str, str | None] = {"solid": None}
     for fidelity in ("modal", "rigid"):
         try:
@@ -113,8 +107,6 @@ def _size_entry(size: RunSize) -> dict[str, float]:
 
 def _flow_stresses(case: Case) -> dict[str, dict[str, float]]:
     """Return the flow stress, Pa, of each body that yields, at rest and at strain rates, 1/s."""
-    from fem_impact.case.metals import RATES, flow_stresses
-
     by_body = flow_stresses(case.bodies)
     rates = ["0", *(f"{rate:g}" for rate in RATES)]
     return {body: dict(zip(rates, stresses, strict=True)) for body, stresses in by_body.items()}

@@ -2,17 +2,16 @@
 
 from pathlib import Path
 
+from fem_impact.answers.report import Request
 from fem_impact.cli.parser import Options
 from fem_impact.cli.paths import checked_out
 from fem_impact.cli.study import carry_out
 from fem_impact.errors import UsageError, did_you_mean
+from fem_impact.evidence.hard_cases.study import CASES
 
 
 def stress(options: Options) -> int:
     """Run one hard case, or all of them; the exit code says whether all ended as they must."""
-    from fem_impact.answers.report import Request
-    from fem_impact.evidence.hard_cases.study import CASES
-
     if options.only and options.page:
         raise UsageError("runs all cases.", key="--page", remedy="Leave --only out.")
     if options.only and options.only not in CASES:

@@ -1,33 +1,30 @@
 """The command ``sweep``: one scene with values varied in all combinations."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Mapping
 from contextlib import closing, nullcontext
 from itertools import product
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from fem_impact.answers.sweep import FIDELITY, cases_digest
+from fem_impact.answers.sweep import sweep as swept
+from fem_impact.answers.sweep_results import Results, require_columns
+from fem_impact.answers.vary import cases
 from fem_impact.cli.parser import Options
 from fem_impact.cli.paths import checked_out, told_kept
 from fem_impact.cli.scene_options import changed_scene, command_line, read_changes
 from fem_impact.cli.terminal import chosen_meter, print_json, print_markdown
+from fem_impact.cli.values import read_values
 from fem_impact.errors import RunError, SceneError, UsageError
 from fem_impact.files.atomic import read_text
 from fem_impact.jobs.executors import cores, on_scheduler
-
-if TYPE_CHECKING:
-    from fem_impact.answers.sweep_results import Results
+from fem_impact.scene.impact import WAYS, the_way
+from fem_impact.scene.shipped import bare, moved
 
 
 def sweep(options: Options) -> int:
     """Compute all combinations, write table and figures, and print the findings."""
-    from fem_impact.answers.sweep import FIDELITY, cases_digest
-    from fem_impact.answers.sweep import sweep as swept
-    from fem_impact.answers.sweep_results import require_columns
-    from fem_impact.answers.vary import cases
-
     columns = [name.strip() for name in options.columns.split(",")] if options.columns else []
     require_columns(columns)
     vary = _vary(options)
@@ -50,7 +47,6 @@ def sweep(options: Options) -> int:
 
 
 def _vary(options: Options) -> dict[str, list[Any]]:
-    from fem_impact.cli.values import read_values
 
     pairs = [read_values(text) for text in options.vary]
     keys = [key for key, _ in pairs]
@@ -62,9 +58,6 @@ def _vary(options: Options) -> dict[str, list[Any]]:
 
 def _refuse_both(changes: Mapping[str, Any], vary: Mapping[str, Any]) -> None:
     """Refuse a value of ``--set`` that a varied one takes the place of, and an impact stated in two ways."""
-    from fem_impact.scene.impact import WAYS, the_way
-    from fem_impact.scene.shipped import bare, moved
-
     for key, other in product(changes, vary):
         if bare(key) == bare(other) or key.startswith(f"{other}."):
             remedy = "Leave out one of the two."

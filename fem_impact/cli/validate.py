@@ -1,20 +1,20 @@
 """The command ``validate``: a scene beside its own tests, and which input is worth measuring better."""
 
-from __future__ import annotations
-
 from contextlib import closing
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from fem_impact.answers.validate import Validation
+from fem_impact.answers.validate import validate as validated
+from fem_impact.case.case import Case
+from fem_impact.case.size import time_class
 from fem_impact.cli.parser import Options
 from fem_impact.cli.scene_options import changed_scene, command_line
 from fem_impact.cli.terminal import chosen_meter, print_answer
+from fem_impact.cli.values import read_values
 from fem_impact.errors import UsageError
 from fem_impact.options import RunOptions
 from fem_impact.tables.table import Table
 from fem_impact.tables.text import wrapped
-
-if TYPE_CHECKING:
-    from fem_impact.answers.validate import Validation
 
 NUMBERS = ("S", "D", "E", "u_num", "u_input", "u_D")
 ERRORS = ("number", "model S", "tests D", "S - D", "u_num", "u_input", "u_D", "verdict")
@@ -22,11 +22,6 @@ ERRORS = ("number", "model S", "tests D", "S - D", "u_num", "u_input", "u_D", "v
 
 def validate(options: Options) -> int:
     """Compare a scene with its tests and print errors, their uncertainties and what these are made of."""
-    from fem_impact.answers.validate import validate as validated
-    from fem_impact.case.case import Case
-    from fem_impact.case.size import time_class
-    from fem_impact.cli.values import read_values
-
     scene = changed_scene(options.scene, options.changes)
     pairs = [read_values(text) for text in options.uncertain]
     intervals: dict[str, Any] = dict(pairs)

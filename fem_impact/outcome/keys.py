@@ -146,13 +146,12 @@ def keys_of(cls: type, path: tuple[str, ...] = (), name: str = "", meaning: str 
     """Yield the keys of a group and of the groups in it."""
     hints, stated = get_type_hints(cls), STATED.get(cls.__name__, {})
     for one in fields(cls):
-        hint: Any = hints[one.name]
         place = (*path, one.name)
-        if is_dataclass(hint):
+        if is_dataclass(hints[one.name]):
             said = stated.get(one.name, {})
-            yield from keys_of(hint, place, said.get("part", ""), said.get("meaning", ""))
+            yield from keys_of(hints[one.name], place, said.get("part", ""), said.get("meaning", ""))
         else:
-            yield _key(stated[one.name], hint, place, name, meaning)
+            yield _key(stated[one.name], hints[one.name], place, name, meaning)
 
 
 def _own_keys(cls: type) -> Iterator[Key]:

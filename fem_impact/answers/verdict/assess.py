@@ -1,4 +1,4 @@
-"""One verdict on a scene or its strikes: may rigid theory be used, what does vibration take, and the rest?"""
+"""One verdict on a scene or its strikes: may rigid theory be used, where does the energy go."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

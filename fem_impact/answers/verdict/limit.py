@@ -291,7 +291,7 @@ def _plain(bound: Bound) -> dict[str, Any]:
     return {name: None if value == inf else value for name, value in asdict(bound).items()}
 
 
-def document(v: LimitVerdict, command: str) -> dict[str, Any]:
+def limit_document(v: LimitVerdict, command: str) -> dict[str, Any]:
     """Return the verdict as plain JSON, its sentences with it; ``command`` is that which gives it again."""
     of, bound = v.criterion, v.bound
     over = " and ".join(f"{key} from {ends}" for key, ends in v.intervals.items())

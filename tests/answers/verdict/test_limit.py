@@ -12,7 +12,7 @@ import pytest
 import fem_impact
 from fem_impact.answers.verdict import limit as module
 from fem_impact.answers.verdict.criteria import LIMITED, Bound, Force
-from fem_impact.answers.verdict.limit import document, judge
+from fem_impact.answers.verdict.limit import judge, limit_document
 from fem_impact.case.case import Case
 from fem_impact.case.effects.heating import halves
 from fem_impact.cli.main import main
@@ -148,7 +148,7 @@ def test_a_temperature_beyond_the_melting_point_is_at_least_that(scene):
     """Both bodies melt from 1700 K on: no larger limit can be judged, by the reduced model or by levels."""
     hot = fem_impact.replace_all(scene, {"impact.v_n": "-20 m/s", "impact.v_t": "-12 m/s"})
     found = judge(hot, LIMITED["heat"], 3000.0, {}, "modal")
-    told = document(found, "")
+    told = limit_document(found, "")
     assert found.answer == "undecided" and found.margin is None and told["next_step"] is None
     assert "plate-steel begins to melt at 1700 K" in told["missing"]
     assert "at least 1700 K = 1430 degC (" in str(told["box"])
@@ -221,13 +221,17 @@ def test_rigid_theory_is_judged_over_an_interval_too(capsys):
 def test_a_next_step_repeats_the_question(monkeypatch, scene):
     solids(monkeypatch, {60: 65.5})
     found = judge(scene, Sloped(), 65.0, ANGLE)
-    assert document(found, "fem-impact assess t5b")["next_step"] == "fem-impact assess t5b --budget '90 s'"
+    assert (
+        limit_document(found, "fem-impact assess t5b")["next_step"] == "fem-impact assess t5b --budget '90 s'"
+    )
 
 
 def test_an_undecided_limit_says_what_is_missing_and_what_comes_next(scene):
     found = judge(scene, Sloped(), 69.0, ANGLE, "modal")
     assert "or a limit of at least 0.07 kN" in found.missing
-    assert document(found, "fem-impact assess t5b")["next_step"].endswith("--fidelity solid --budget '60 s'")
+    assert limit_document(found, "fem-impact assess t5b")["next_step"].endswith(
+        "--fidelity solid --budget '60 s'"
+    )
     places = judge(scene, Sloped(missing=(40.0,)), 75.0, ANGLE, "modal")
     assert places.missing == "an answer: it slides on"
     assert judge(scene, Sloped(), 75.0, ANGLE, "modal").missing == ""
