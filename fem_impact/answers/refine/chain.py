@@ -207,10 +207,8 @@ class LevelChain:
         """Say that the budget does not hold the next level, and which does; empty where none is wanted."""
         if self.failed or self.following is None:
             return ""
-        used = (
-            f"{forecast.about_s(self.spent_s)} of the budget of {forecast.about_s(self.budget_s)} are used up"
-        )
-        return f"{used}. {self.advice[0]}"
+        used, budget = map(forecast.about_s, (self.spent_s, self.budget_s))
+        return f"{used} of the budget of {budget} are used up. {self.advice[0]}"
 
     @property
     def counted(self) -> int:
@@ -396,7 +394,5 @@ class LevelChain:
             return f"No finer level is tried: {self._finer}.", None
         more_s = self.forecast_s(then)
         enough = forecast.enough_s(self.spent_s, more_s)
-        return (
-            f"{name} takes about {forecast.about_s(more_s)} more: for it give a budget of {enough} s.",
-            enough,
-        )
+        more = forecast.about_s(more_s)
+        return f"{name} takes about {more} more: for it give a budget of {enough} s.", enough
