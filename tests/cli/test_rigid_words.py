@@ -79,4 +79,4 @@ def test_the_table_of_the_page_names_what_there_is():
 
 def test_options_of_one_command_do_not_leak_into_another():
     options = read_line(["audit"])
-    assert (options.set_id, options.out, options.json) == (None, None, False)
+    assert (options.set_id, options.out, options.json) == ("", None, False)
