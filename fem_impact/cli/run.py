@@ -29,18 +29,6 @@ from fem_impact.scene.types import OWN, Scene, digest
 from fem_impact.tables.table import Table
 from fem_impact.tables.text import plain, wrapped
 
-
-def print_strikes(outcome: Outcome, options: Options) -> None:
-    """Print what is told of a sequence, the strikes that are certain, and how later ones spread."""
-    sys.stdout.writelines(f"{line}\n" for sentence in told(outcome.strikes) for line in wrapped(sentence))
-    strikes = outcome.strikes
-    if isinstance(strikes.each, Unknown):
-        return
-    print_table(strikes_table(strikes, or_none(strikes.certain) or SHOWN), options, indent="  ")
-    if later := (or_none(strikes.spread) or ())[or_none(strikes.certain) or 0 :]:
-        print_table(spread_table(later), options, indent="  ")
-
-
 if TYPE_CHECKING:
     from fem_impact.answers.friction_spread import FrictionSpread
     from fem_impact.case.case import Case
@@ -310,3 +298,14 @@ def _value(value: Num) -> str:
 
 def _number(value: float) -> str:
     return f"{value:.4g}"
+
+
+def print_strikes(outcome: Outcome, options: Options) -> None:
+    """Print what is told of a sequence, the strikes that are certain, and how later ones spread."""
+    sys.stdout.writelines(f"{line}\n" for sentence in told(outcome.strikes) for line in wrapped(sentence))
+    strikes = outcome.strikes
+    if isinstance(strikes.each, Unknown):
+        return
+    print_table(strikes_table(strikes, or_none(strikes.certain) or SHOWN), options, indent="  ")
+    if later := (or_none(strikes.spread) or ())[or_none(strikes.certain) or 0 :]:
+        print_table(spread_table(later), options, indent="  ")

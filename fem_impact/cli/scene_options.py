@@ -164,7 +164,7 @@ def rod_of(options: Options) -> Projectile:
         No such rod can be turned.
     """
     from fem_impact.answers.verdict.dropped import DENSITY, TIP_RADII
-    from fem_impact.scene.shapes import tips
+    from fem_impact.scene.tips import tips
     from fem_impact.scene.units import option_quantity
     from rigid import Projectile, RigidError
 

@@ -220,7 +220,7 @@ class ProjectileSpec:
         if self.shape is None:
             # the published tips need no import of the rigid package, which would slow every command
             if self.tip not in ("A", "B", "plain"):
-                from fem_impact.scene.shapes import tips
+                from fem_impact.scene.tips import tips
 
                 fields.check_choice(self.tip, tuple(tips()), "tip")
             if self.tip_radius > self.diameter / 2:

@@ -2,28 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
-from functools import cache, lru_cache
+from functools import lru_cache
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fem_impact.errors import ResultError, SceneError
-from fem_impact.plugins import added
 from fem_impact.scene import fields
 from fem_impact.scene.fields import Parameter
 from fem_impact.scene.units import DIMENSIONS, Unit, parse_quantity
 from fem_impact.scene.user_table import UserTable, in_si, read_user_table
-from rigid import SHAPES, Nose
-
-
-@cache
-def tips() -> Mapping[str, Callable[[float, float], Nose]]:
-    """Return what makes the meridian of each tip; what packages add is entered into ``rigid.SHAPES``."""
-    SHAPES.update(added("shapes", SHAPES))
-    return SHAPES
-
 
 if TYPE_CHECKING:
     from fem_impact.arrays import Array
@@ -86,6 +76,8 @@ def refuse_tip(stated: Mapping[str, Any]) -> None:
 
 def refuse_as_tip(tip: object) -> None:
     """Refuse the name of a shape as that of a tip (SceneError), and say how a shape is written."""
+    from fem_impact.scene.tips import tips
+
     if isinstance(tip, str) and tip in NEEDS and tip not in tips():
         raise SceneError(
             "is a shape, not one of the published tips.",
