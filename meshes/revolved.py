@@ -9,7 +9,7 @@ from meshes.common import BoolArray, FloatArray, MeshError
 from meshes.rims import without_roundings
 from meshes.section import Section, bored_section, section
 from meshes.shoulders import eased
-from meshes.surface import CORNER, Surface
+from meshes.surface import CORNER, TurnedSurface
 
 SAME = 1e-9  # relative difference of radii and heights of slices that count as equal
 # Of a stack: most cells over the diameter that its thickness asks for; by how much the surface may stand out
@@ -109,14 +109,14 @@ class Revolved:
         return np.asarray((middle > first) & (middle < last))
 
     @property
-    def surface(self) -> Surface:
+    def surface(self) -> TurnedSurface:
         """All of the surface, the flat face at the tail included."""
         first, last = self.bored_from_to
         start = self.bore[:1] if first <= 0.0 else self.line[:1]  # a face begins beside the hole
         end = self.bore[-1:] if last >= self.length else np.array([[0.0, self.length]])
         line = self.exact[1:] if self.line[-1, 0] > 0.0 else self.exact[1:-1]
         outer = np.concatenate([start, line, end])
-        return Surface((outer, self.hollow) if len(self.bore) else (outer,))
+        return TurnedSurface((outer, self.hollow) if len(self.bore) else (outer,))
 
 
 def revolved(line: FloatArray, bore: FloatArray | None, across: int) -> Revolved:

@@ -12,7 +12,7 @@ from meshes.nose import NoseMesh, inner_corner, lay_nose
 from meshes.quality import require_positive
 from meshes.refine import reach, refine
 from meshes.section import Section, section
-from meshes.surface import Surface
+from meshes.surface import TurnedSurface
 from meshes.zone import Cloud, Zone
 
 
@@ -133,7 +133,7 @@ def rod(
     require_positive(mesh)
     if zones:
         frozen = np.arange(len(cells)) < body_cells.size
-        surface = Surface((shape.extended(length).line,))
+        surface = TurnedSurface((shape.extended(length).line,))
         mesh = refine(mesh, zones, surface.snap, buffer=buffer, frozen=frozen)
         require_positive(mesh)
     rest = np.arange(body_cells.size)

@@ -13,7 +13,7 @@ SAME = 1e-7  # of the largest radius: within it a node lies on an edge
 
 
 @dataclass(frozen=True)
-class Surface:
+class TurnedSurface:
     """Polylines turned about the axis.
 
     Attributes

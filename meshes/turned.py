@@ -17,7 +17,7 @@ from meshes.refine import reach, refine
 from meshes.revolved import SAME, Revolved, revolved
 from meshes.rod import RodMesh, nose_cells
 from meshes.shoulders import STEEPEST
-from meshes.surface import CORNER, Surface, closest_on
+from meshes.surface import CORNER, TurnedSurface, closest_on
 from meshes.zone import Cloud, Zone
 
 WORST = 0.12  # least scaled Jacobian of a cell
@@ -267,7 +267,7 @@ def _refined(
     except MeshError:
         if not len(body.bore):
             raise
-        kept = Surface(surface.lines[:1], faceted=surface.lines[1:])
+        kept = TurnedSurface(surface.lines[:1], faceted=surface.lines[1:])
         fine = refine(mesh, zones, kept.snap, buffer=buffer, frozen=frozen)
         require_positive(fine)
     return fine

@@ -19,7 +19,7 @@ from fem_impact.outcome.record import Outcome
 from fem_impact.outcome.shares import ABOVE, ACCOUNTS, OF_SOME, EnergyShare, above_modes, shares
 from fem_impact.outcome.strikes import StrikeRecord
 from fem_impact.tables.table import COMPARISON, Table
-from rigid.strikes import Outline, State
+from rigid.strikes import FlightState, Outline
 
 SHOWN = 3
 """Strikes that the path shows at most: later ones lie on each other."""
@@ -99,13 +99,13 @@ def accounts_picture(each: Sequence[StrikeRecord]) -> Picture:
     return Picture("strikes", caption, (panel,), 1)
 
 
-def state_at(one: StrikeRecord, shape: Outline) -> State:
+def state_at(one: StrikeRecord, shape: Outline) -> FlightState:
     """Return the body at a strike; ways count from the first place of contact."""
     d_c, d_d = shape.corners[shape.lowest(one.alpha, one.omega)].arms(one.alpha)
-    return State(one.time, d_d, one.along + d_c, one.alpha, one.v_n, one.v_t, one.omega)
+    return FlightState(one.time, d_d, one.along + d_c, one.alpha, one.v_n, one.v_t, one.omega)
 
 
-def flies(before: State, after: State, gravity: tuple[float, float], shape: Outline) -> bool:
+def flies(before: FlightState, after: FlightState, gravity: tuple[float, float], shape: Outline) -> bool:
     """Return whether a body flew freely from one strike to the next, rather than pivot or slide."""
     end = before.flown(after.time - before.time, *gravity)
     near = FREE * shape.widest
@@ -126,13 +126,13 @@ def body_line(shape: Outline) -> Array:
     return np.array([*places, places[0]])
 
 
-def placed(line: Array, state: State) -> Array:
+def placed(line: Array, state: FlightState) -> Array:
     """Return an outline (k, 2), (x, z), m, about the mass centre as it lies along and over the barrier, m."""
     c, s = np.cos(state.alpha), np.sin(state.alpha)
     return np.column_stack([state.along + line @ (c, s), state.height + line @ (-s, c)])
 
 
-def _bodies(line: Array, states: Sequence[State]) -> tuple[Array, Array]:
+def _bodies(line: Array, states: Sequence[FlightState]) -> tuple[Array, Array]:
     """Return all bodies as one line with gaps, along and over the barrier, mm."""
     gap = np.full((1, 2), np.nan)
     rows = [part for state in states for part in (1e3 * placed(line, state), gap)]

@@ -19,7 +19,7 @@ from fem_impact.outcome.record import Outcome
 from fem_impact.outcome.strikes import StrikeRecord
 from fem_impact.run.strikes import gravity_of
 from fem_impact.scene.read import read_toml
-from rigid.strikes import Outline, State, outline
+from rigid.strikes import FlightState, Outline, outline
 
 FLIGHT, HELD = 1.0, 0.4
 """Seconds of film for the longest flight, and for which a strike stands."""
@@ -33,7 +33,7 @@ TURNED = "between strikes the body pivots, rolls or slides here: its turn is int
 class _Frame(NamedTuple):
     """A body, the number of strikes before it, and what is told."""
 
-    state: State
+    state: FlightState
     struck: int
     words: str
 
@@ -79,9 +79,9 @@ def _course(each: Sequence[StrikeRecord], shape: Outline, pull: tuple[float, flo
             yield _Frame(now._replace(height=height), number, "" if free else TURNED)
 
 
-def _between(begin: State, end: State, share: float) -> State:
+def _between(begin: FlightState, end: FlightState, share: float) -> FlightState:
     """Return a body a share of the way from one state to another."""
-    return State(*((1.0 - share) * one + share * other for one, other in zip(begin, end, strict=True)))
+    return FlightState(*((1.0 - share) * one + share * other for one, other in zip(begin, end, strict=True)))
 
 
 def _drawn(

@@ -21,7 +21,7 @@ from fem_impact.run.modal_error import FACTORS, HELD, LEAST_VIBRATION, TOLD, VIB
 from fem_impact.run.strikes import Followed
 from fem_impact.scene.types import Scene
 from rigid import critical_ratio
-from rigid.strikes import State, Strike
+from rigid.strikes import FlightState, Strike
 
 RUNS = 64
 """Sequences over what is not known."""
@@ -164,7 +164,7 @@ def _apart(finer: Known, of: StrikeRecord) -> Doubt:
     )
 
 
-def _by_stored(case: Case, body: Followed, begin: State, one: StrikeRecord) -> Doubt:
+def _by_stored(case: Case, body: Followed, begin: FlightState, one: StrikeRecord) -> Doubt:
     """Return the half-widths of the reduced model for a strike, by the stored scenes that are like it."""
     pair = body.later(begin).contact
     stops = float(

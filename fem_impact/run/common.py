@@ -43,11 +43,11 @@ def strikes_again(case: Case, V_n: float, Omega: float) -> str:
     body = case.contact.body
     if abs(Omega) * hypot(body.length, body.diameter) < V_n:  # no part of it comes down
         return ""
-    from rigid.strikes import State, next_touch, outline
+    from rigid.strikes import FlightState, next_touch, outline
 
     shape, alpha = outline(body), case.scene.relative.angle
     height = shape.corners[shape.lowest(alpha, Omega)].arms(alpha)[1]
-    touch = next_touch(shape, State(0.0, height, 0.0, alpha, V_n, 0.0, Omega), 0.0)
+    touch = next_touch(shape, FlightState(0.0, height, 0.0, alpha, V_n, 0.0, Omega), 0.0)
     if touch is None:
         return ""
     when = f"about {plain(1e3 * touch[0])} ms later" if touch[0] > 0.0 else "at once"

@@ -11,7 +11,7 @@ from fem_impact.outcome.keys import Unknown, unknown
 from fem_impact.outcome.strikes import StrikeRecord, Strikes
 from fem_impact.run.certain import with_spread
 from fem_impact.run.strikes import RULES, Followed
-from rigid.strikes import Finish, State
+from rigid.strikes import Finish, FlightState
 
 if TYPE_CHECKING:
     from fem_impact.case.case import Case
@@ -50,7 +50,7 @@ def _strikes_of(
     # where a finished run has none, its contact is not resolved, which is told of the strike
     ended = outcome.validity.finished
     lost = "" if ended else next((v.reason for v in after if isinstance(v, Unknown)), "")
-    course = _Course.of(case, end, options)
+    course = _FollowedCourse.of(case, end, options)
     if end is None or not lost:
         course.follow()
     if not course.body.each:
@@ -62,7 +62,7 @@ def _strikes_of(
 
 
 @dataclass(eq=False)
-class _Course:
+class _FollowedCourse:
     """A sequence of strikes as it grows, stage by stage.
 
     Attributes
@@ -80,14 +80,14 @@ class _Course:
     end: SolidResult | None
     options: RunOptions
     body: Followed
-    state: State
+    state: FlightState
     finish: Finish = Finish.COUNTED
     solid: SolidCourse | None = None
     modal: ModalCourse | None = None
     told: list[str] = field(default_factory=list)
 
     @classmethod
-    def of(cls, case: Case, end: SolidResult | None, options: RunOptions) -> _Course:
+    def of(cls, case: Case, end: SolidResult | None, options: RunOptions) -> _FollowedCourse:
         """Return the course before the first strike."""
         body = Followed.of(case)
         return cls(case, end, options, body, body.coming)

@@ -19,7 +19,7 @@ from fem_impact.outcome.strikes import PHASED, StrikeRecord
 from fem_impact.run.certain import SEEN
 from fem_impact.run.modal import closed
 from fem_impact.run.strikes import LEAST_BY_LAW, Followed
-from rigid.strikes import Finish, State, next_touch
+from rigid.strikes import Finish, FlightState, next_touch
 
 MOST = 40
 """Strikes that modes compute at most."""
@@ -72,7 +72,7 @@ class ModalCourse:
     case: Case
     followed: Followed
     rod: ModalRod
-    state: State
+    state: FlightState
     q: Array
     rate: Array
     loss: float
@@ -90,7 +90,7 @@ class ModalCourse:
         return course
 
     @classmethod
-    def going_on(cls, case: Case, followed: Followed, state: State) -> "ModalCourse":
+    def going_on(cls, case: Case, followed: Followed, state: FlightState) -> "ModalCourse":
         """Return the course of a rod at rest in itself that moves on from a ``state``."""
         rod = modal_rod(case.bodies, case.slots.vibrating)
         rest = np.zeros(len(rod.omega))
@@ -125,14 +125,14 @@ class ModalCourse:
         self.swing_on(end)
         return finish
 
-    def swing_on(self, state: State) -> None:
+    def swing_on(self, state: FlightState) -> None:
         """Take over a later state of the rigid body; what the modes lose meanwhile is damping."""
         held = self.vibration
         self.q, self.rate = self._swung(state.time - self.state.time)
         self.damped += held - self.vibration
         self.state = state
 
-    def strike(self, before: State) -> None:
+    def strike(self, before: FlightState) -> None:
         """Strike at a later state in flight."""
         self.followed.gravity += self.followed.work(self.state, before)
         self.swing_on(before)
@@ -148,7 +148,7 @@ class ModalCourse:
         own, *moved = (closed(self.case, arrival=one, alone=False) for one in (here, *others))
         self._enter(before, own, taken, moved)
 
-    def _touch(self) -> State | None:
+    def _touch(self) -> FlightState | None:
         """Return the rigid motion in which the vibrating rod touches next.
 
         It is looked for about the touch of the rigid rod, as long as that takes to come by the amplitudes. A
@@ -184,7 +184,9 @@ class ModalCourse:
         """Return amplitudes and rates of the modes ``dt``, s, from now: exact damped oscillators."""
         return swung(self.rod.omega, self.loss, dt, self.q, self.rate)
 
-    def _enter(self, before: State, result: ModalResult, taken: float, moved: list[ModalResult]) -> None:
+    def _enter(
+        self, before: FlightState, result: ModalResult, taken: float, moved: list[ModalResult]
+    ) -> None:
         """Enter a strike that began with a vibration ``taken``, J, and go on from the state after it.
 
         ``moved`` is the same with vibration of other phases.
@@ -206,7 +208,7 @@ class ModalCourse:
         self.rod, self.q, self.rate = result.rod, last.q, last.rate
         self.strikes, self.finished, self.damped = self.strikes + 1, result.finished, 0.0
 
-    def _after(self, before: State, result: ModalResult) -> State:
+    def _after(self, before: FlightState, result: ModalResult) -> FlightState:
         """Return the motion after a strike."""
         last = result.last
         V_n, V_t, Omega = (float(v) for v in last.rigid[:3])
@@ -220,7 +222,7 @@ class ModalCourse:
             Omega=Omega,
         )
 
-    def _record(self, before: State, result: ModalResult, taken: float) -> StrikeRecord:
+    def _record(self, before: FlightState, result: ModalResult, taken: float) -> StrikeRecord:
         """Return the record of a strike that began with a vibration ``taken``, J."""
         followed, after = self.followed, self._after(before, result)
         corner = followed.shape.corners[followed.shape.lowest(before.alpha, before.Omega)]

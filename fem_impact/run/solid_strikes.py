@@ -31,7 +31,7 @@ from fem_impact.run.strikes import LEAST_BY_LAW, Followed
 from fem_impact.solid.build import START_GAP, build
 from fem_impact.solid.carry import carry, dented, later_view, lowered, turned
 from fem_impact.solid.run import SolidResult, solve
-from rigid.strikes import Finish, State, next_touch
+from rigid.strikes import Finish, FlightState, next_touch
 
 TOLD = (
     "{} strikes are computed with finite elements of one rod, which keeps its dents, hardening and residual "
@@ -82,7 +82,7 @@ def _expected(case: Case, count: int) -> list[LaterStrike]:
         ModalCourse.at_first(modal.case, modal).to_the_end()
         courses.append(modal)
     return [
-        course.later(State(one.time, 0.0, one.along, one.alpha, one.v_n, one.v_t, one.omega))
+        course.later(FlightState(one.time, 0.0, one.along, one.alpha, one.v_n, one.v_t, one.omega))
         for course in courses
         for one in course.each[1:]
     ]
@@ -96,7 +96,7 @@ def _by_modes(case: Case) -> Case | str:
         return refused.problem
 
 
-class Dent(NamedTuple):
+class StruckDent(NamedTuple):
     """A block of the barrier that was struck.
 
     ``along``, m, is where its frame begins on the barrier, ``pressed`` (k, 3), m, what of its skin has been
@@ -132,11 +132,11 @@ class SolidCourse:
     body: Followed
     last: SolidResult
     begun: float
-    state: State
+    state: FlightState
     flight: FreeVibration
     loss: float
     damped: float = 0.0
-    dents: list[Dent] = field(default_factory=list)
+    dents: list[StruckDent] = field(default_factory=list)
     told: list[str] = field(default_factory=list)
 
     @classmethod
@@ -218,7 +218,7 @@ class SolidCourse:
                 q[j], rate[j] = size * self.flight.a[i] / rod.omega[j], size * self.flight.b[i]
         return q, rate
 
-    def swing_on(self, state: State) -> None:
+    def swing_on(self, state: FlightState) -> None:
         """Take over a later state of the rigid body; what the modes lose meanwhile is damping."""
         held, modes = self.vibration, self.flight.modes
         dt, rates = state.time - self.state.time, self.flight.b * modes.omega
@@ -227,7 +227,7 @@ class SolidCourse:
         self.damped += held - self.vibration
         self.state = state
 
-    def _touch(self) -> State | None:
+    def _touch(self) -> FlightState | None:
         """Return the rigid motion in which the rod touches next."""
         found = next_touch(self.body.shape, self.state, self.body.pull.g_n)
         return None if found is None else self.state.flown(found[0], self.body.pull.g_n, self.body.pull.g_t)
@@ -240,7 +240,7 @@ class SolidCourse:
         away = np.hypot(mesh.points[touching, 0] - x, mesh.points[touching, 2] - z)
         return float(away.min()) - WITHIN * g.tip_size
 
-    def _strike(self, before: State, later: LaterStrike, options: RunOptions) -> bool:
+    def _strike(self, before: FlightState, later: LaterStrike, options: RunOptions) -> bool:
         """Strike at a later state in flight; return whether the bodies part again."""
         turn = before.alpha - self.state.alpha
         self.body.gravity += self.body.work(self.state, before)
@@ -273,7 +273,7 @@ class SolidCourse:
         self._keep_dent(before, case, dent)
         return True
 
-    def _dent(self, before: State, here: ContactRecord) -> Dent | None:
+    def _dent(self, before: FlightState, here: ContactRecord) -> StruckDent | None:
         """Return the dent on which a strike lands that may touch ``here``; None: the surface is undented."""
         if here.barrier is None:
             return None
@@ -291,7 +291,7 @@ class SolidCourse:
             self.told.append(BEYOND.format(number, dent.strike))
         return None
 
-    def _keep_dent(self, before: State, case: Case, dent: Dent | None) -> None:
+    def _keep_dent(self, before: FlightState, case: Case, dent: StruckDent | None) -> None:
         """Keep the block that was struck last, in place of the ``dent`` on which that strike landed."""
         touched, number = self.last.record.barrier, len(self.body.each)
         if touched is None or not any(zone.body == "barrier" for zone in self.last.model.zones):
@@ -302,9 +302,9 @@ class SolidCourse:
         else:
             along, pressed = dent.along, np.concatenate([dent.pressed, touched.touched])
             self.dents.remove(dent)
-        self.dents.append(Dent(along, pressed, number, case, self.last))
+        self.dents.append(StruckDent(along, pressed, number, case, self.last))
 
-    def _enter(self, before: State, end: SolidResult, taken: float) -> None:
+    def _enter(self, before: FlightState, end: SolidResult, taken: float) -> None:
         """Enter a strike, and go on from the state after it."""
         motion, begin = end.motion, end.view.rigid(end.model.initial_state())
         after = before._replace(
@@ -323,7 +323,9 @@ class SolidCourse:
         self.state = after._replace(height=max(after.height, outside))
         self.last, self.flight, self.damped = end, end.flight, 0.0
 
-    def _recorded(self, before: State, after: State, end: SolidResult, taken: float) -> StrikeRecord:
+    def _recorded(
+        self, before: FlightState, after: FlightState, end: SolidResult, taken: float
+    ) -> StrikeRecord:
         """Return the record of a strike that began with a vibration ``taken``, J."""
         body, accounts = self.body, end.accounts
         corner = body.shape.corners[body.shape.lowest(before.alpha, before.Omega)]

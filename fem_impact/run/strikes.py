@@ -21,11 +21,11 @@ from rigid.strikes import (
     RUNAWAY,
     Approach,
     Finish,
+    FlightState,
     Moved,
     Outline,
     Pull,
     Round,
-    State,
     Strike,
     as_it_is,
     outline,
@@ -96,7 +96,7 @@ class Followed:
     shape: Outline
     pull: Pull
     each: list[StrikeRecord] = field(default_factory=list)
-    losses: dict[State, NormalLoss] = field(default_factory=dict)
+    losses: dict[FlightState, NormalLoss] = field(default_factory=dict)
     gravity: float = 0.0
     settled: float = 0.0
     heat: float = 0.0
@@ -119,7 +119,7 @@ class Followed:
         ends = [end for end in (self.case.scene.impact.most_strikes, self.upto) if end is not None]
         return min(ends) - len(self.each) if ends else None
 
-    def go_on(self, begin: State, strong: float = inf) -> tuple[State, Finish]:
+    def go_on(self, begin: FlightState, strong: float = inf) -> tuple[FlightState, Finish]:
         """Follow the rigid body and book it, to the end or to a ``strong`` strike; see `sequence`."""
         mass = self.case.contact.body.mass
         if self.missing == 0:
@@ -169,23 +169,23 @@ class Followed:
             dents.append((one, self.later(begin).contact.estimate.a_t))
         return count
 
-    def kinetic(self, state: State) -> float:
+    def kinetic(self, state: FlightState) -> float:
         """Return the kinetic energy of the rigid motion, J."""
         mass, k2 = self.case.contact.body.mass, self.pull.k2
         return float(kinetic_energy(state.V_n, state.V_t, state.Omega, mass=mass, k2=k2))
 
-    def tumbles(self, state: State) -> bool:
+    def tumbles(self, state: FlightState) -> bool:
         """Return whether the body has become far faster than at first, down a slope; see `sequence`."""
         g = hypot(self.pull.g_n, self.pull.g_t)
         fall = 2.0 * self.case.contact.body.mass * g * self.shape.widest
         return self.kinetic(state) > RUNAWAY * (self.each[0].before + fall)
 
-    def comes(self, state: State) -> tuple[float, float]:
+    def comes(self, state: FlightState) -> tuple[float, float]:
         """Return the speed, m/s, at which the body comes down on what is lowest, and its arm d_c, m."""
         d_c = self.shape.corners[self.shape.lowest(state.alpha, state.Omega)].arms(state.alpha)[0]
         return max(SLOWEST, -state.V_n - d_c * state.Omega), d_c
 
-    def hard(self, state: State) -> bool:
+    def hard(self, state: FlightState) -> bool:
         """Return whether a strike is hard enough for a model that is finer than a rigid body."""
         comes, d_c = self.comes(state)
         brings = 0.5 * self.case.contact.body.mass * comes**2 / (1.0 + d_c**2 / self.pull.k2)
@@ -196,7 +196,7 @@ class Followed:
         """The most kinetic energy, J, before a strike so far."""
         return max((one.before for one in self.each), default=0.0)
 
-    def later(self, state: State) -> LaterStrike:
+    def later(self, state: FlightState) -> LaterStrike:
         """Return how the body touches in a state, for a mesh that has it so."""
         number = self.shape.lowest(state.alpha, state.Omega)
         corner, body = self.shape.corners[number], self.case.contact.body
@@ -204,18 +204,18 @@ class Followed:
         pair = self._pair(Approach(state, number, place, *corner.arms(state.alpha), 0.0))
         return LaterStrike(pair, state.alpha, (x + body.x_c, z + body.z_c))
 
-    def work(self, start: State, end: State) -> float:
+    def work(self, start: FlightState, end: FlightState) -> float:
         """Return the work of gravity, J, on the way from one state to another."""
         fell = self.pull.g_n * (start.height - end.height) + self.pull.g_t * (start.along - end.along)
         return self.case.contact.body.mass * fell
 
-    def touching(self, alpha: float, v_n: float, v_t: float, omega: float) -> State:
+    def touching(self, alpha: float, v_n: float, v_t: float, omega: float) -> FlightState:
         """Return a body that touches at an inclination."""
         height = self.shape.corners[self.shape.lowest(alpha, omega)].arms(alpha)[1]
-        return State(0.0, height, 0.0, alpha, v_n, v_t, omega)
+        return FlightState(0.0, height, 0.0, alpha, v_n, v_t, omega)
 
     @property
-    def coming(self) -> State:
+    def coming(self) -> FlightState:
         """Return the body as it touches first, with the motion that the scene states."""
         seen = self.case.scene.relative
         return self.touching(seen.angle, seen.v_n, seen.v_t, seen.omega)
@@ -249,7 +249,7 @@ class Followed:
             rod_yields=yields,
         )
 
-    def strikes(self, end: State, finish: Finish, vibration: float, damped: float) -> Strikes:
+    def strikes(self, end: FlightState, finish: Finish, vibration: float, damped: float) -> Strikes:
         """Return all strikes; ``vibration``, J, is in the modes, ``damped``, J, lost since the last one."""
         each, case, names = tuple(self.each), self.case, ("friction", "plastic", "damping", "other")
         sums = {name: sum(getattr(one, name) for one in each) for name in names}
@@ -304,8 +304,8 @@ class Followed:
     def record(
         self,
         fidelity: str,
-        before: State,
-        after: State,
+        before: FlightState,
+        after: FlightState,
         place: tuple[float, float],
         arms: tuple[float, float],
         impulse: tuple[float, float],

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from meshes.common import FloatArray, MeshError
-from meshes.reading.abaqus_part import Part, count_of, place
+from meshes.reading.abaqus_part import AbaqusPart, count_of, place
 from meshes.reading.stored import Elements, PointMass, StoredMesh, keep
 from meshes.reading.text import lines_of, number_of, numbers_between, place_of, whole_number
 
@@ -43,7 +43,7 @@ class _Instance:
     """A part that stands in the assembly: turned after it was moved."""
 
     part: str
-    own: Part
+    own: AbaqusPart
     moves: list[list[str]]
 
 
@@ -88,8 +88,8 @@ class _Deck:
     """A deck while its keywords are taken, one after the other."""
 
     def __init__(self) -> None:
-        self.plain, self.assembly = Part(), Part()
-        self.parts: dict[str, Part] = {}
+        self.plain, self.assembly = AbaqusPart(), AbaqusPart()
+        self.parts: dict[str, AbaqusPart] = {}
         self.instances: dict[str, _Instance] = {}
         self.here = self.plain
         self.system: tuple[FloatArray, FloatArray] | None = None
@@ -127,7 +127,7 @@ class _Deck:
             taken(card)
 
     def _part(self, card: _Card) -> None:
-        self.here = self.parts.setdefault(card.options.get("NAME", "").upper(), Part())
+        self.here = self.parts.setdefault(card.options.get("NAME", "").upper(), AbaqusPart())
         self.level, self.system = "part", None
 
     def _end(self, _: _Card) -> None:
@@ -141,7 +141,7 @@ class _Deck:
             raise MeshError(
                 "takes an instance from the results of another job. Write the deck with its mesh."
             )
-        own = Part()
+        own = AbaqusPart()
         name, part = card.options.get("NAME", ""), card.options.get("PART", "").upper()
         self.instances[name.upper()] = _Instance(part, own, card.lines)
         self.here, self.level, self.system = own, "instance", None
@@ -234,7 +234,7 @@ class _Deck:
     def stored(self) -> StoredMesh:
         """Return the cells of all instances, or those of the deck that has none."""
         found = Elements(masses=self.spread)
-        bodies: list[tuple[str, Part, list[list[str]]]] = [
+        bodies: list[tuple[str, AbaqusPart, list[list[str]]]] = [
             ("", body, []) for body in (self.plain, self.assembly)
         ]
         for name, one in self.instances.items():

@@ -31,7 +31,7 @@ SHELL_SIDES = ("SPOS", "SNEG", "")
 
 
 @dataclass(slots=True)
-class Part:
+class AbaqusPart:
     """What a part or an instance holds.
 
     Attributes
@@ -59,9 +59,9 @@ class Part:
         found = _numbers([text for text, _ in rows], sets)
         sets.setdefault(name, []).extend(found)
 
-    def numbered_as(self, other: "Part") -> "Part":
+    def numbered_as(self, other: "AbaqusPart") -> "AbaqusPart":
         """Return the part with the sets and surfaces of another that numbers the same nodes and cells."""
-        return Part(
+        return AbaqusPart(
             self.nodes,
             self.cells,
             {name: list(cells) for name, cells in (other.sets | self.sets).items()},
@@ -71,7 +71,7 @@ class Part:
         )
 
 
-def place(body: Part, moves: list[list[str]], found: Elements, name: str) -> None:
+def place(body: AbaqusPart, moves: list[list[str]], found: Elements, name: str) -> None:
     """Add a body to the elements ``found``, where the moves of its instance put it."""
     first = len(found.place)
     number = {own: first + k for k, own in enumerate(body.nodes)}  # all instances count their nodes from 1

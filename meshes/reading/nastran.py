@@ -59,7 +59,7 @@ REFUSED = {
 
 
 @dataclass(frozen=True, slots=True)
-class _System:
+class _CoordinateSystem:
     """A system of coordinates: R, C or S, its origin (3,) and axes, rows of (3, 3), in the basic one."""
 
     kind: str
@@ -77,7 +77,7 @@ class _System:
         return np.asarray(self.origin + place @ self.axes)
 
 
-BASIC = _System("R", np.zeros(3), np.eye(3))
+BASIC = _CoordinateSystem("R", np.zeros(3), np.eye(3))
 
 
 def nastran(path: Path) -> StoredMesh:
@@ -193,7 +193,7 @@ class _Systems:
         system, place = self.grids[node]
         return self.system(system).basic(np.array(place))
 
-    def system(self, number: int, asked: tuple[int, ...] = ()) -> _System:
+    def system(self, number: int, asked: tuple[int, ...] = ()) -> _CoordinateSystem:
         """Return a system by its number."""
         if number in self.known:
             return self.known[number]
@@ -209,7 +209,7 @@ class _Systems:
         z = (b - a) / np.linalg.norm(b - a)  # b lies on the third axis, c in the plane of the first and third
         y = np.cross(z, c - a)
         y /= np.linalg.norm(y)
-        self.known[number] = _System(kind, a, np.array([np.cross(y, z), y, z]))
+        self.known[number] = _CoordinateSystem(kind, a, np.array([np.cross(y, z), y, z]))
         return self.known[number]
 
 

@@ -2,7 +2,7 @@
 
 from ..rounds import Round
 from .course import LEAST, MOST, RUNAWAY, Moved, as_it_is, sequence
-from .flight import State, next_touch
+from .flight import FlightState, next_touch
 from .held import Ending, Held, Pull, hold
 from .outline import Outline, outline
 from .record import Approach, Finish, Phase, Sequence, Strike
@@ -14,6 +14,7 @@ __all__ = [
     "Approach",
     "Ending",
     "Finish",
+    "FlightState",
     "Held",
     "Moved",
     "Outline",
@@ -21,7 +22,6 @@ __all__ = [
     "Pull",
     "Round",
     "Sequence",
-    "State",
     "Strike",
     "as_it_is",
     "hold",

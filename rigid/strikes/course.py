@@ -18,7 +18,7 @@ from dataclasses import dataclass, field
 
 from ..path.resolve import sliding_path
 from ..rounds import TURN
-from .flight import State, next_touch
+from .flight import FlightState, next_touch
 from .held import Ending, Held, Pull, hold
 from .outline import LEVEL_ANGLE, Outline
 from .record import Approach, Finish, Phase, Sequence, Strike
@@ -58,7 +58,7 @@ def as_it_is(strike: Strike) -> Strike:
 
 def sequence(
     outline: Outline,
-    start: State,
+    start: FlightState,
     pull: Pull,
     restitution: Restitution,
     *,
@@ -97,7 +97,7 @@ def sequence(
     >>> from rigid.strikes import outline
     >>> rod = Projectile(0.24, 0.019, "B", 0.003, 7850.0)
     >>> body = outline(rod)
-    >>> start = State(0.0, rod.arms(1.4).d_d, 0.0, 1.4, -2.0, 0.0, 0.0)
+    >>> start = FlightState(0.0, rod.arms(1.4).d_d, 0.0, 1.4, -2.0, 0.0, 0.0)
     >>> found = sequence(body, start, Pull(9.81, 0.0, rod.k2, 0.3), lambda strike: 0.5)
     >>> found.finish.value
     'rests'
@@ -123,7 +123,7 @@ class _Course:
     until: int | None
     least: float
     most: int
-    state: State
+    state: FlightState
     energy: float | None
     most_energy: float
     strong: float
@@ -194,7 +194,7 @@ class _Course:
             self.finish = Finish.SLIDES if held.slid else Finish.ROLLS
         return corner
 
-    def result(self, start: State) -> Sequence:
+    def result(self, start: FlightState) -> Sequence:
         """Return what was found; a body that neither rests nor leaves after all its strikes bounces on."""
         lost = sum(one.normal + one.friction for one in (*self.strikes, *self.small))
         lost += self.settled + sum(phase.heat for phase in self.phases)
@@ -210,7 +210,7 @@ class _Course:
             self._energy(start) - self._energy(self.state) - lost,
         )
 
-    def _energy(self, state: State) -> float:
+    def _energy(self, state: FlightState) -> float:
         """Return kinetic and potential energy, per unit mass, m2/s2."""
         pull = self.pull
         moving = 0.5 * (state.V_n**2 + state.V_t**2 + pull.k2 * state.Omega**2)
@@ -346,7 +346,7 @@ class _Course:
         self._settle(self.state._replace(V_n=-d_c * self.state.Omega, height=d_d))
         return following
 
-    def _settle(self, state: State) -> None:
+    def _settle(self, state: FlightState) -> None:
         """Go on with a state at the same time and book what that loses."""
         was, (p, q, moment) = self.state, self.settling
         turned = self.pull.k2 * (state.Omega - was.Omega)

@@ -13,7 +13,7 @@ from .outline import Outline
 EXACT, SOON = 1e-15, 1e-20  # relative and absolute error, s, of a root
 
 
-class State(NamedTuple):
+class FlightState(NamedTuple):
     """A body in the plane of motion.
 
     Attributes
@@ -32,9 +32,9 @@ class State(NamedTuple):
     V_t: float
     Omega: float
 
-    def flown(self, dt: float, g_n: float, g_t: float) -> "State":
+    def flown(self, dt: float, g_n: float, g_t: float) -> "FlightState":
         """Return the state after a flight of ``dt``, s, under accelerations g_n, g_t, m/s2, out of -n, -t."""
-        return State(
+        return FlightState(
             self.time + dt,
             self.height + dt * (self.V_n - 0.5 * dt * g_n),
             self.along + dt * (self.V_t - 0.5 * dt * g_t),
@@ -45,7 +45,9 @@ class State(NamedTuple):
         )
 
 
-def next_touch(outline: Outline, state: State, g_n: float, lifting: float = 0.0) -> tuple[float, int] | None:
+def next_touch(
+    outline: Outline, state: FlightState, g_n: float, lifting: float = 0.0
+) -> tuple[float, int] | None:
     """Return when, s from now, a body in flight touches the barrier next, and with which corner.
 
     None of a body that never does. The corner that is lowest changes at known times, so that the gap under
@@ -65,7 +67,7 @@ def next_touch(outline: Outline, state: State, g_n: float, lifting: float = 0.0)
     return None
 
 
-def _latest(outline: Outline, state: State, g_n: float) -> float | None:
+def _latest(outline: Outline, state: FlightState, g_n: float) -> float | None:
     """Return a time, s, by which the body has touched if it ever does, None where it cannot."""
     fall = max(state.height - outline.least, 0.0)
     if g_n > 0.0:
@@ -77,7 +79,9 @@ def _latest(outline: Outline, state: State, g_n: float) -> float | None:
     return min(turn, rise / state.V_n) if state.V_n > 0.0 else turn or None
 
 
-def _turns(outline: Outline, state: State, g_n: float, end: float) -> Iterator[tuple[float, float, int]]:
+def _turns(
+    outline: Outline, state: FlightState, g_n: float, end: float
+) -> Iterator[tuple[float, float, int]]:
     """Yield start and end, s, of each time in which one corner is lowest, and its number.
 
     Those in which the body is too high to touch are left out.
@@ -107,7 +111,7 @@ def _turns(outline: Outline, state: State, g_n: float, end: float) -> Iterator[t
         bound += step * (outline.corners[number].high - outline.corners[number].low)
 
 
-def _low_again(state: State, g_n: float, widest: float) -> tuple[float, float]:
+def _low_again(state: FlightState, g_n: float, widest: float) -> tuple[float, float]:
     """Return the times, s, between which the mass centre is higher than ``widest``, m; inf if it never is."""
     over = state.V_n**2 - 2.0 * g_n * (widest - state.height)
     if g_n <= 0.0 or over <= 0.0:
@@ -115,7 +119,7 @@ def _low_again(state: State, g_n: float, widest: float) -> tuple[float, float]:
     return (state.V_n - math.sqrt(over)) / g_n, (state.V_n + math.sqrt(over)) / g_n
 
 
-def _first_root(one: Round, state: State, g_n: float, start: float, stop: float) -> float | None:
+def _first_root(one: Round, state: FlightState, g_n: float, start: float, stop: float) -> float | None:
     """Return the first time between two, s, at which the gap under a corner closes."""
     spin = state.Omega
 
@@ -135,7 +139,7 @@ def _first_root(one: Round, state: State, g_n: float, start: float, stop: float)
     return None
 
 
-def _pieces(one: Round, state: State, g_n: float, start: float, stop: float) -> list[float]:
+def _pieces(one: Round, state: FlightState, g_n: float, start: float, stop: float) -> list[float]:
     """Return times, s, between which the second derivative of a gap does not change sign.
 
     It is -g_n - Omega^2 n, where n = rho cos(alpha + phi) is the height of the corner's centre over the mass

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..inputs import Floats
 from ..rounds import Round
-from .flight import State
+from .flight import FlightState
 from .outline import LEVEL_ANGLE
 
 TOLERANCE = 1e-12
@@ -45,7 +45,7 @@ class Held:
     slid : whether it slid
     """
 
-    states: tuple[State, ...]
+    states: tuple[FlightState, ...]
     heat: float
     impulse: tuple[float, float, float]
     ending: Ending
@@ -62,7 +62,7 @@ class Pull:
     f: float
 
 
-def hold(one: Round, state: State, pull: Pull, longest: float, slips: bool = False) -> Held:
+def hold(one: Round, state: FlightState, pull: Pull, longest: float, slips: bool = False) -> Held:
     """Follow a contact with one corner that does not rebound, for a time, s, at most.
 
     With the normal and tangential acceleration a_n, a_t by the contact, the mass centre's height over the
@@ -79,7 +79,7 @@ def hold(one: Round, state: State, pull: Pull, longest: float, slips: bool = Fal
     return _integrated(one, state, pull, sliding, longest)
 
 
-def _sliding(one: Round, state: State, pull: Pull, slips: bool) -> float:
+def _sliding(one: Round, state: FlightState, pull: Pull, slips: bool) -> float:
     """Return 1 or -1 for a contact that slides up or down the slope, 0 for one that sticks."""
     d_c, d_d = one.arms(state.alpha)
     w = state.V_t - d_d * state.Omega
@@ -111,7 +111,7 @@ def _forces(one: Round, pull: Pull, sliding: float, alpha: float, spin: float) -
     return a_n, a_t, (a_n * d_c - a_t * d_d) / k2
 
 
-def _integrated(one: Round, state: State, pull: Pull, sliding: float, longest: float) -> Held:
+def _integrated(one: Round, state: FlightState, pull: Pull, sliding: float, longest: float) -> Held:
     """Integrate alpha, spin, V_t, way along the barrier, heat and the three impulses of the contact."""
     from scipy.integrate import solve_ivp
 
@@ -178,8 +178,8 @@ def _event(function: Callable[[float, Floats], float], way: float) -> Callable[[
     return event
 
 
-def _state(one: Round, time: float, y: Floats, sliding: float) -> State:
+def _state(one: Round, time: float, y: Floats, sliding: float) -> FlightState:
     """Return a state on the corner, whose velocities keep the contact."""
     alpha, spin, V_t, along = (float(v) for v in y[:4])
     d_c, d_d = one.arms(alpha)
-    return State(time, d_d, along, alpha, -d_c * spin, V_t if sliding else d_d * spin, spin)
+    return FlightState(time, d_d, along, alpha, -d_c * spin, V_t if sliding else d_d * spin, spin)

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from enum import Enum
 
-from .flight import State
+from .flight import FlightState
 
 
 class Finish(Enum):
@@ -34,7 +34,7 @@ class Approach:
     line : length, m, of a straight part that comes down level and without spin, struck in its middle; else 0
     """
 
-    state: State
+    state: FlightState
     corner: int
     place: tuple[float, float]
     d_c: float
@@ -79,7 +79,7 @@ class Strike:
     friction: float
 
     @property
-    def after(self) -> State:
+    def after(self) -> FlightState:
         """The motion just after it."""
         return self.before.state._replace(V_n=self.V_n, V_t=self.V_t, Omega=self.Omega)
 
@@ -108,7 +108,7 @@ class Phase:
     """
 
     flies: bool
-    states: tuple[State, ...]
+    states: tuple[FlightState, ...]
     impulse: tuple[float, float, float] = (0.0, 0.0, 0.0)
     heat: float = 0.0
 
@@ -128,8 +128,8 @@ class Sequence:
     residual : what the balance of energy, gravity's potential included, misses
     """
 
-    start: State
-    end: State
+    start: FlightState
+    end: FlightState
     strikes: tuple[Strike, ...]
     small: tuple[Strike, ...]
     phases: tuple[Phase, ...]

@@ -5,7 +5,7 @@ import pytest
 from mesh_shapes import RADIUS, edge_radius, plain, sphere_and_cone
 
 from meshes.meridian import Meridian
-from meshes.surface import Surface, closest_on
+from meshes.surface import TurnedSurface, closest_on
 
 
 def test_shoulder_is_the_middle_of_the_arc_and_looks_inwards_at_half_angle():
@@ -56,7 +56,7 @@ def test_closest_points_agree_with_a_dense_sampling():
 def test_snap_keeps_the_azimuth_and_the_symmetry_plane():
     meridian = Meridian(edge_radius()).extended(0.03)
     points = np.array([[9.3e-3, 0.0, 0.8e-3], [6.0e-3, 6.6e-3, 1e-3], [0.0, 0.0, 1e-4]])
-    moved = Surface((meridian.line,)).snap(points, np.stack([points - 1e-5, points + 1e-5], axis=1))
+    moved = TurnedSurface((meridian.line,)).snap(points, np.stack([points - 1e-5, points + 1e-5], axis=1))
     assert moved[0, 1] == 0.0
     assert np.arctan2(moved[1, 1], moved[1, 0]) == pytest.approx(np.arctan2(6.6, 6.0), rel=1e-14)
     assert moved[2] == pytest.approx(np.zeros(3), abs=1e-18)

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 
 from rigid import Faceted, Projectile, Turned, shapes
-from rigid.strikes import Finish, Outline, Pull, Round, State, next_touch, outline, sequence
+from rigid.strikes import Finish, FlightState, Outline, Pull, Round, next_touch, outline, sequence
 
 G = 9.81
 
@@ -30,7 +30,7 @@ def start(shape, degrees, v_n, v_t=0.0, spin=0.0):
     """A body that touches at an inclination."""
     alpha = math.radians(degrees)
     corner = shape.corners[shape.lowest(alpha, spin)]
-    return State(0.0, corner.arms(alpha)[1], 0.0, alpha, v_n, v_t, spin)
+    return FlightState(0.0, corner.arms(alpha)[1], 0.0, alpha, v_n, v_t, spin)
 
 
 def follow(shape, begin, k2, e, f, g_n=G, g_t=0.0, **options):
@@ -89,7 +89,7 @@ def test_a_flight_ends_where_a_fine_search_finds_it():
     for _ in range(60):
         alpha, spin = rng.uniform(-math.pi, math.pi), rng.uniform(-300, 300)
         height = shape.corners[shape.lowest(alpha)].arms(alpha)[1] + rng.uniform(1e-4, 0.2)
-        state = State(0.0, height, 0.0, alpha, rng.uniform(-3, 3), 0.0, spin)
+        state = FlightState(0.0, height, 0.0, alpha, rng.uniform(-3, 3), 0.0, spin)
         dt, corner = next_touch(shape, state, G)
         t = np.linspace(0.0, dt, 20001)[:-1]
         turned, heights = alpha + spin * t, height + state.V_n * t - G * t**2 / 2
@@ -103,10 +103,10 @@ def test_a_flight_ends_where_a_fine_search_finds_it():
 
 def test_without_gravity_a_body_that_rises_leaves_unless_it_turns_into_the_barrier():
     shape = thin(1.0)
-    rises = State(0.0, 0.5, 0.0, 0.0, 1.0, 0.0, 0.0)
+    rises = FlightState(0.0, 0.5, 0.0, 0.0, 1.0, 0.0, 0.0)
     assert next_touch(shape, rises, 0.0) is None
     assert next_touch(shape, rises._replace(V_n=0.0), 0.0) is None
-    dt, corner = next_touch(shape, State(0.0, 0.3, 0.0, math.pi / 2, 0.01, 0.0, 1.0), 0.0)
+    dt, corner = next_touch(shape, FlightState(0.0, 0.3, 0.0, math.pi / 2, 0.01, 0.0, 1.0), 0.0)
     assert corner == 1
     assert 0.3 + 0.01 * dt == pytest.approx(0.5 * math.sin(dt), rel=1e-12)
 

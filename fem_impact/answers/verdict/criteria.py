@@ -153,7 +153,7 @@ def _about(value: float, band: float, alike: bool = True) -> Bound:
     return Bound(value, value - band, value + band, alike)
 
 
-class Heat(Limited):
+class HeatCriterion(Limited):
     """The highest mean temperature of the patch."""
 
     called, column = "the flash temperature of the contact", "flash_rise_K"
@@ -226,7 +226,7 @@ def _solid_metal(scene: Scene, bound: Bound) -> Bound:
     return Bound(min(bound.value, ceiling), min(bound.low, ceiling), inf, bound.alike, ceiling, beyond)
 
 
-class Force(Limited):
+class ForceCriterion(Limited):
     """The largest normal force."""
 
     called, column = "the peak force", "peak_force_N"
@@ -241,7 +241,7 @@ class Force(Limited):
         return outcome.contact.peak_force
 
 
-class Dent(Limited):
+class DentCriterion(Limited):
     """The largest indentation of the barrier."""
 
     called, column = "the deepest indentation of the barrier", "dent_m"
@@ -257,5 +257,5 @@ class Dent(Limited):
         return sites if isinstance(sites, Unknown) else max(site.depth for site in sites)
 
 
-LIMITED: Mapping[str, Limited] = {"heat": Heat(), "force": Force(), "dent": Dent()}
+LIMITED: Mapping[str, Limited] = {"heat": HeatCriterion(), "force": ForceCriterion(), "dent": DentCriterion()}
 """Criteria that need a limit, by the word that asks for them."""

@@ -11,7 +11,7 @@ import pytest
 
 import fem_impact
 from fem_impact.answers.verdict import limit as module
-from fem_impact.answers.verdict.criteria import LIMITED, Bound, Force
+from fem_impact.answers.verdict.criteria import LIMITED, Bound, ForceCriterion
 from fem_impact.answers.verdict.limit import judge, limit_document
 from fem_impact.case.case import Case
 from fem_impact.case.effects.heating import halves
@@ -30,7 +30,7 @@ def scene():
     return fem_impact.replace(fem_impact.load("t5b"), "surface.friction", 0.57)
 
 
-class Sloped(Force):
+class Sloped(ForceCriterion):
     """A force of as many N as the angle has degrees, told within 10 N."""
 
     def __init__(self, missing=()):

@@ -14,7 +14,7 @@ Values = Mapping[str, float]
 
 
 @dataclass(frozen=True, slots=True)
-class Projectile:
+class DrawnProjectile:
     """A projectile without its material.
 
     Attributes
@@ -49,33 +49,33 @@ def _sized(values: Values, least: float, most: float) -> tuple[float, float]:
     return diameter * between(values["slenderness"], least, most), diameter
 
 
-def _turned(length: float, width: float, filled: float, /, **shape: Any) -> Projectile:
-    return Projectile(length, width, filled, {"length": metres(length), **shape})
+def _turned(length: float, width: float, filled: float, /, **shape: Any) -> DrawnProjectile:
+    return DrawnProjectile(length, width, filled, {"length": metres(length), **shape})
 
 
-def _tip(length: float, diameter: float, tip: str, radius: float) -> Projectile:
+def _tip(length: float, diameter: float, tip: str, radius: float) -> DrawnProjectile:
     return _turned(length, diameter, 1.0, diameter=metres(diameter), tip=tip, tip_radius=metres(radius))
 
 
-def _rounded_edge(values: Values) -> Projectile:
+def _rounded_edge(values: Values) -> DrawnProjectile:
     length, diameter = _sized(values, 2.0, 8.0)
     return _tip(length, diameter, "B", between(values["first"], 0.05, 0.9) * diameter / 2)
 
 
-def _round_nose(values: Values) -> Projectile:
+def _round_nose(values: Values) -> DrawnProjectile:
     length, diameter = _sized(values, 2.0, 8.0)
     return _tip(length, diameter, "A", between(values["first"], 0.3, 1.0) * diameter / 2)
 
 
-def _sharp(values: Values) -> Projectile:
+def _sharp(values: Values) -> DrawnProjectile:
     return _tip(*_sized(values, 2.0, 8.0), "plain", 0.0)
 
 
-def _flat_pin(values: Values) -> Projectile:
+def _flat_pin(values: Values) -> DrawnProjectile:
     return _tip(*_sized(values, 0.5, 2.0), "plain", 0.0)
 
 
-def _tube(values: Values) -> Projectile:
+def _tube(values: Values) -> DrawnProjectile:
     length, diameter = _sized(values, 1.5, 6.0)
     wall = between(values["first"], 0.12, 0.3) * diameter
     edge = between(values["second"], 0.1, 0.4) * wall
@@ -91,13 +91,13 @@ def _tube(values: Values) -> Projectile:
     )
 
 
-def _profile(diameter: float, filled: float, *points: tuple[float, float]) -> Projectile:
+def _profile(diameter: float, filled: float, *points: tuple[float, float]) -> DrawnProjectile:
     """Return a turned body with straight lines between points (z, r), m."""
     profile = [[metres(z), metres(r)] for z, r in points]
-    return Projectile(points[-1][0], diameter, filled, {"profile": profile})
+    return DrawnProjectile(points[-1][0], diameter, filled, {"profile": profile})
 
 
-def _stepped(values: Values) -> Projectile:
+def _stepped(values: Values) -> DrawnProjectile:
     length, diameter = _sized(values, 2.0, 6.0)
     thin, step = between(values["first"], 0.4, 0.8), between(values["second"], 0.2, 0.6) * length
     r = diameter / 2
@@ -105,13 +105,13 @@ def _stepped(values: Values) -> Projectile:
     return _profile(diameter, 0.8, *points)
 
 
-def _tapered(values: Values) -> Projectile:
+def _tapered(values: Values) -> DrawnProjectile:
     length, diameter = _sized(values, 1.5, 6.0)
     tip = between(values["first"], 0.3, 0.9)
     return _profile(diameter, (1 + tip + tip**2) / 3, (0.0, tip * diameter / 2), (length, diameter / 2))
 
 
-def _nosed(values: Values) -> Projectile:
+def _nosed(values: Values) -> DrawnProjectile:
     """Return an ogive or a blunt cone."""
     length, diameter = _sized(values, 2.5, 6.0)
     sphere = between(values["second"] * 2 % 1.0, 0.15, 0.6) * diameter / 2
@@ -124,7 +124,7 @@ def _nosed(values: Values) -> Projectile:
     return _turned(length, diameter, 0.8, shape="sphere-cone", cone_angle=angle, **sizes)
 
 
-def _disc(values: Values) -> Projectile:
+def _disc(values: Values) -> DrawnProjectile:
     """Return a disc, or a ring where the first share is above a half; twice as wide as other projectiles."""
     length, diameter = (2.0 * size for size in _sized(values, 0.1, 0.35))
     hole = between(values["first"] * 2 % 1.0, 0.3, 0.7) if values["first"] > 0.5 else 0.0
@@ -132,7 +132,7 @@ def _disc(values: Values) -> Projectile:
     return _turned(length, diameter, 1.0 - hole**2, diameter=metres(diameter), tip="plain", **bore)
 
 
-def _own_mesh(values: Values) -> Projectile:
+def _own_mesh(values: Values) -> DrawnProjectile:
     """Return one of `BODIES`, as the first share says."""
     length, width = _sized(values, 1.5, 6.0)
     sizes = {
@@ -143,10 +143,10 @@ def _own_mesh(values: Values) -> Projectile:
         "share": between(values["second"], 0.4, 0.8),
     }
     body = [*BODIES][int(values["first"] * len(BODIES))]
-    return Projectile(length, width, 0.8, body=body, sizes=sizes)
+    return DrawnProjectile(length, width, 0.8, body=body, sizes=sizes)
 
 
-FAMILIES: Mapping[str, Callable[[Values], Projectile]] = {
+FAMILIES: Mapping[str, Callable[[Values], DrawnProjectile]] = {
     "rounded edge": _rounded_edge,
     "round nose": _round_nose,
     "sharp edge": _sharp,
@@ -166,15 +166,15 @@ def _points(points: Sequence[Sequence[float]]) -> list[list[str]]:
     return [[metres(1e-3 * z), metres(1e-3 * r)] for z, r in points]
 
 
-def _body(stated: dict[str, Any]) -> Projectile:
+def _body(stated: dict[str, Any]) -> DrawnProjectile:
     """Return a body from its table of data/twelve.toml."""
     if "mesh" in stated:
         sizes = {name: 1e-3 * size for name, size in stated["sizes"].items()}
-        return Projectile(sizes["length"], sizes["width"], 0.8, body=stated["mesh"], sizes=sizes)
+        return DrawnProjectile(sizes["length"], sizes["width"], 0.8, body=stated["mesh"], sizes=sizes)
     keys = stated.get("keys") or {"profile": _points(stated["profile"])}
     if hole := stated.get("hole"):
         keys["bore"] = _points([(0.0, hole), (stated["length"], hole)])
-    return Projectile(1e-3 * stated["length"], 1e-3 * stated["diameter"], stated["filled"], keys)
+    return DrawnProjectile(1e-3 * stated["length"], 1e-3 * stated["diameter"], stated["filled"], keys)
 
 
 TWELVE = {

@@ -177,7 +177,7 @@ def _turns(names: Sequence[str], count: int, rng: np.random.Generator) -> list[s
 
 
 def _barrier(
-    kind: str, metal: str, projectile: families.Projectile, rod: str, share: float
+    kind: str, metal: str, projectile: families.DrawnProjectile, rod: str, share: float
 ) -> families.Tables:
     """Return the table of a barrier whose size follows that of the projectile."""
     table: families.Tables = {"material": metal}
@@ -201,7 +201,7 @@ def _barrier(
 def _stated(
     name: str,
     family: str,
-    projectile: families.Projectile,
+    projectile: families.DrawnProjectile,
     rod: str,
     barrier: families.Tables,
     values: families.Values,
