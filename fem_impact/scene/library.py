@@ -9,7 +9,7 @@ from typing import Any
 
 from fem_impact.errors import SceneError, did_you_mean
 from fem_impact.plugins import added, wrong
-from fem_impact.scene import fields
+from fem_impact.scene import curve, fields
 from fem_impact.scene.material import (
     FLOWS,
     RATES,
@@ -24,7 +24,7 @@ from fem_impact.scene.material import (
 from fem_impact.scene.sliding import SlidingLaw, law_of
 from fem_impact.scene.tables import Table, check_keys, needed, numbers_of, values_of, within
 from fem_impact.scene.types import MEASURED_SETS
-from fem_impact.scene.units import parse_number, parse_quantity
+from fem_impact.scene.units import parse_quantity
 
 NO_VALUES = ("law", "family")
 
@@ -43,7 +43,8 @@ def material_of(name: Any, table: Table, others: Iterable[str] = ()) -> Material
         f.key: f.checked(numbers[f.key]) for f in fields.MATERIAL if numbers[f.key] is not None
     }
     stated |= {key: table[key] for key in ("law", "family") if key in table}
-    for key, read in (("rate", _rate), ("flow", _flow), ("skin", _skin)):
+    readers = {"rate": _rate, "flow": lambda flow: _flow(flow, stated["E"]), "skin": _skin}
+    for key, read in readers.items():
         if key in table:
             stated[key] = within(table, key, read)
     if isinstance(stated.get("flow"), TableFlow):
@@ -75,26 +76,12 @@ def _skin(table: Table) -> SkinSpec:
     return SkinSpec(**values_of(table, fields.SKIN, ("shape",)))
 
 
-def _flow(table: Table) -> Flow:
+def _flow(table: Table, E: float) -> Flow:
     law = fields.check_choice(needed(table, "law"), tuple(FLOWS), "law")
     if law != TableFlow.law:
         return FLOWS[law](**numbers_of(table, fields.FLOWS[law], ("law",)))
-    check_keys(table, ("law", "points"))
-    return TableFlow(_points(needed(table, "points", _EXAMPLE)))
-
-
-_EXAMPLE = '[[0, "350 MPa"], [0.02, "360 MPa"], [0.15, "480 MPa"]], plastic strain and true stress'
-
-
-def _points(rows: Any) -> tuple[tuple[float, float], ...]:
-    if not isinstance(rows, (list, tuple)) or not all(
-        isinstance(row, (list, tuple)) and len(row) == 2 for row in rows
-    ):
-        raise SceneError("must be a list of pairs.", key="points", remedy=f"Write points = {_EXAMPLE}.")
-    return tuple(
-        (parse_number(strain, f"points[{at}]"), parse_quantity(stress, "stress", f"points[{at}]"))
-        for at, (strain, stress) in enumerate(rows, 1)
-    )
+    check_keys(table, ("law", "points", "strain"))
+    return TableFlow(curve.curve(needed(table, "points", curve.EXAMPLE), table.get("strain", "plastic"), E))
 
 
 CHANGED = " (changed)"

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from fem_impact.errors import ResultError, SceneError, UsageError
-from fem_impact.scene import fields, library, own_mesh, shapes, tables, types
+from fem_impact.scene import curve, fields, library, own_mesh, shapes, tables, types
 from fem_impact.scene.barrier import Barrier, Layer
 from fem_impact.scene.impact import WAYS, Following, Impact, the_way
 from fem_impact.scene.material import Material, Surface
@@ -46,7 +46,8 @@ def read_tables(path: Path) -> dict[str, Any]:
 
 
 def _beside(data: dict[str, Any], path: Path) -> dict[str, Any]:
-    """Return the tables with the files of own tests and mesh found from the place of the scene's file."""
+    """Return the tables with the files of own tests, curves and mesh from the place of its file."""
+    data = curve.beside(data, path.parent)
     name, rod = data.get("measured"), data.get("projectile")
     if isinstance(name, str) and name.endswith(types.OWN):
         data = data | {"measured": str((path.parent / name).resolve())}
@@ -305,8 +306,10 @@ def _layer(table: tables.Table) -> Layer:
 
 
 def _rod(table: tables.Table, own: dict[str, Any]) -> ProjectileSpec:
-    shapes.refuse_as_tip(table.get("tip"))
-    plain = {"tip_radius": 0.0} if table.get("tip") == "plain" else {}
+    stated = table.get("tip")
+    shapes.refuse_as_tip(stated)
+    # a tip that is missing or none is told before the radius that it would need
+    plain = {} if _is_rounded(stated) else {"tip_radius": 0.0}
     numbers = tables.numbers_of(table, fields.PROJECTILE, ("tip", "material"), plain)
     tip = tables.needed(table, "tip", '"A", "B" or "plain"')
     return ProjectileSpec(
@@ -314,8 +317,18 @@ def _rod(table: tables.Table, own: dict[str, Any]) -> ProjectileSpec:
     )
 
 
+def _is_rounded(tip: object) -> bool:
+    if tip in ("A", "B", "plain"):  # the published tips need no import of the rigid package
+        return tip != "plain"
+    if not isinstance(tip, str):
+        return False
+    from fem_impact.scene.tips import tips
+
+    return tip in tips()
+
+
 def _barrier(table: tables.Table) -> Barrier:
-    given = tables.values_of(table, fields.BARRIER, ("boundary", "support"), ("material", "layers"))
+    given = values_of(table, fields.BARRIER, ("boundary", "support"), ("material", "layers"))
     if "layers" in table:
         example = '{thickness = "2 mm", material = "rod-steel"}'
         given["layers"] = tables.listed(table["layers"], "layers", _layer, example)

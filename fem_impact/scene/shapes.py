@@ -40,16 +40,38 @@ NEEDS = {
 }
 
 
+_TURNED, _MESHED = (
+    "Give the outline from the tip as profile = [[place, radius], ...].",
+    "It is no body of revolution: mesh it, and name the file as mesh.",
+)
+_FLAT = 'Write shape = "flat" with length and diameter'
+WORDS = {
+    **dict.fromkeys(("sphere", "globe"), 'Write shape = "ball" with diameter.'),
+    **dict.fromkeys(("cylinder", "rod", "bar", "disc", "disk", "coin", "pin", "blunt"), f"{_FLAT}."),
+    **dict.fromkeys(("tube", "pipe", "ring", "washer"), f"{_FLAT}, and inner_diameter."),
+    **dict.fromkeys(("capsule", "chamfered", "chamfer", "stepped", "bottle", "dumbbell"), _TURNED),
+    **dict.fromkeys(("cube", "box", "block", "plate", "prism", "hexagon"), _MESHED),
+}
+"""What to write for shapes by other words."""
+
+
+def _check_shape(shape: object) -> None:
+    if isinstance(shape, str) and shape.lower() in WORDS:
+        remedy = WORDS[shape.lower()]
+        raise SceneError("is not a choice.", key="shape", value=shape, remedy=remedy)
+    fields.check_choice(shape, tuple(NEEDS), "shape")
+
+
 def sizes_of(shape: str, by_length: bool = False) -> tuple[Parameter, ...]:
     """Return the sizes that a named shape needs, with the length of the nose for its form or without."""
-    fields.check_choice(shape, tuple(NEEDS), "shape")
+    _check_shape(shape)
     keys = (BY_LENGTH if by_length and key in REPLACED else key for key in NEEDS[shape])
     return tuple(next(size for size in SIZES if size.key == key) for key in keys)
 
 
 def stated_by_length(shape: str, stated: Collection[str]) -> bool:
     """Return whether the form of a nose is stated by its length; refuse both ways, or none (SceneError)."""
-    fields.check_choice(shape, tuple(NEEDS), "shape")
+    _check_shape(shape)
     form = next((key for key in NEEDS[shape] if key in REPLACED), "")
     # a size counts by its key and by that with its SI unit
     names = {size.key: (size.key, size.si_key or size.key) for size in SIZES}

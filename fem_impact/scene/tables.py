@@ -19,6 +19,15 @@ OTHER_NAMES = {
     "yield_strength": "yield_stress",
 }
 """Keys by other words for the same."""
+_RUBBER = (
+    "Of a rubber by Mooney and Rivlin give E = 6 (C10 + C01), its stiffness at small strains, and nu = 0.49."
+)
+_JOHNSON_COOK = (
+    'Johnson and Cook\'s A is yield_stress; B and n stand in flow = { law = "johnson-cook", ... }, C in '
+    'rate = { law = "johnson-cook", ... }.'
+)
+INSTEAD = dict.fromkeys(("C10", "C01"), _RUBBER) | dict.fromkeys(("A", "B", "C", "n"), _JOHNSON_COOK)
+"""What to write for keys of laws in other programs, in the table of a material."""
 PLACES = {
     f.key: place
     for place, wanted in (
@@ -122,7 +131,8 @@ def check_keys(table: Table, known: Iterable[str], shown: Iterable[str] = ()) ->
             near = next(
                 (name for word, name in OTHER_NAMES.items() if word in str(key) and name in known), str(key)
             )
-            remedy = (
+            told = INSTEAD.get(str(key)) if "rho" in known else None
+            remedy = told or (
                 f"It is a key of {PLACES[near]}."
                 if near in PLACES and near not in known
                 else did_you_mean(near, known, f"Known here: {', '.join(shown or known)}.")

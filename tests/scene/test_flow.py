@@ -124,6 +124,27 @@ def test_a_table_is_its_points():
     assert metal(**LAWS["table"]).yield_stress == 200e6
 
 
+def test_measured_curves_become_plastic_strain_and_true_stress(tmp_path):
+    """Of a power law, computed back: whole true strain, and engineering strain and stress, from a file."""
+    plastic = np.array([0.0, 0.01, 0.05, 0.15])
+    stress = 200e6 + 400e6 * plastic**0.5
+    true = plastic + stress / 117e9
+    engineering, force = np.expm1(true), stress / np.exp(true)
+    rows = "\n".join(
+        f"{e:.9f};{s / 1e6:.9f}".replace(".", ",") for e, s in zip(engineering, force, strict=True)
+    )
+    (tmp_path / "curve.csv").write_text(f"strain;stress_MPa\n0;0\n{rows}\n")
+    points = [
+        [0, "0 MPa"],
+        *([e, f"{s / 1e6!r} MPa"] for e, s in zip(true.tolist(), stress.tolist(), strict=True)),
+    ]
+    for stated, strain in ((str(tmp_path / "curve.csv"), "engineering"), (points, "true")):
+        law = metal(flow={"law": "table", "points": stated, "strain": strain})
+        assert np.array(law.flow.points) == pytest.approx(
+            np.column_stack([plastic, stress]), abs=2e-8, rel=1e-6
+        )
+
+
 def test_the_reduced_model_takes_the_nearest_power_law():
     power = Hardening(300e6, 640.0, 0.1)
     strain = np.concatenate([[0.0], np.geomspace(1e-5, 1.0, 400)])
@@ -177,6 +198,23 @@ MISTAKES = [
     ({"flow": {"law": "table", "points": [[0, "200 mm"], [0.2, "190 MPa"]]}}, r"points\[1\]"),
     ({"flow": {"law": "table", "points": [0, 1]}}, "must be a list of pairs"),
     ({"flow": {"law": "table"}}, "flow.points: is missing"),
+    ({"flow": TABLE | {"strain": "nominal"}}, "flow.strain.*is not a choice"),
+    (
+        {"flow": {**TABLE, "strain": "engineering", "points": [[0.004, "200 MPa"], [0.1, "300 MPa"]]}},
+        "elastic line",
+    ),
+    (
+        {
+            "flow": {
+                **TABLE,
+                "strain": "engineering",
+                "points": [[0, "200 MPa"], [0.1, "300 MPa"], [0.2, "290 MPa"]],
+            }
+        },
+        "falls from 300 to 290 MPa at a strain of 0.2: the bar necks",
+    ),
+    ({"flow": {"law": "table", "points": "none.csv"}}, "flow.points: none.csv: cannot be read"),
+    ({"yield_stress": "90 MPa", "A": "90 MPa"}, "A is yield_stress; B and n stand in flow"),
     ({"flow": "table"}, "must be a table"),
 ]
 

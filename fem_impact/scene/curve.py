@@ -1,0 +1,104 @@
+"""Points of a flow curve as stated: in the scene or a CSV file, with plastic, true or engineering strain."""
+
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
+from math import log
+from pathlib import Path
+from typing import Any
+
+from fem_impact.errors import ResultError, SceneError
+from fem_impact.scene.fields import check_choice
+from fem_impact.scene.units import parse_number, parse_quantity
+from fem_impact.scene.user_table import finite, in_si, read_user_table
+
+Points = tuple[tuple[float, float], ...]
+STRAINS = ("plastic", "true", "engineering")
+ELASTIC = 5e-4  # plastic strain up to which a point of a measured curve counts as one of the elastic line
+EXAMPLE = '[[0, "350 MPa"], [0.02, "360 MPa"], [0.15, "480 MPa"]], plastic strain and true stress'
+HEADER = "strain,stress_MPa"
+
+
+def beside(data: Any, folder: Path) -> Any:
+    """Return tables in which the files of curves are named from the ``folder`` of their own file."""
+    if isinstance(data, list):
+        return [beside(one, folder) for one in data]
+    if not isinstance(data, Mapping):
+        return data
+    points = data.get("points")
+    named = {"points": str((folder / points).resolve())} if isinstance(points, str) else {}
+    return {key: beside(value, folder) for key, value in data.items()} | named
+
+
+def curve(stated: Any, strain: Any, E: float) -> Points:
+    """Return points (plastic strain, true stress in Pa) of a curve.
+
+    Parameters
+    ----------
+    stated : list of pairs, or path of a CSV file
+    strain : "plastic", beside true stress; "true", the whole strain, beside true stress; or "engineering",
+        beside engineering stress: change of length over the first length, force over the first section
+    E : float, Pa
+        Young's modulus; the whole strain less stress over E is the plastic one.
+
+    Raises
+    ------
+    SceneError
+        If it cannot be read, or is no curve of that kind.
+    """
+    kind = check_choice(strain, STRAINS, "strain")
+    points = _of_file(stated) if isinstance(stated, str) else _of_rows(stated)
+    if kind == "plastic":
+        return points
+    if kind == "engineering":
+        _refuse_necked(points)
+        points = tuple((log(1 + e), s * (1 + e)) for e, s in points if e > -1)
+    plastic = [(e - s / E, s) for e, s in points]
+    elastic = [k for k, (p, _) in enumerate(plastic) if p <= ELASTIC]
+    first = max(elastic, default=0)
+    if not elastic or plastic[first][0] < -ELASTIC:
+        e, s = points[first]
+        raise SceneError(
+            f"begins beside the elastic line of E = {E / 1e9:.4g} GPa: at a true strain of {e:.4g} it has "
+            f"{s / 1e6:.4g} MPa, of which stress over E is a strain of {s / E:.4g}.",
+            key="points",
+            remedy="Give the point at which the body yields, with strain = stress / E.",
+        )
+    return ((0.0, plastic[first][1]), *plastic[first + 1 :])
+
+
+def _refuse_necked(points: Points) -> None:
+    """Refuse a bar that necks: behind the largest force its strain is not that of the neck."""
+    for (_, before), (strain, stress) in pairwise(points):
+        if stress < before:
+            raise SceneError(
+                f"falls from {before / 1e6:.4g} to {stress / 1e6:.4g} MPa at a strain of {strain:.4g}: the "
+                "bar necks, and its strain is no longer that of the metal.",
+                key="points",
+                remedy="Leave out what follows the largest stress, or give true strains and stresses.",
+            )
+
+
+def _of_rows(rows: Any) -> Points:
+    if not isinstance(rows, Sequence) or not all(
+        isinstance(row, (list, tuple)) and len(row) == 2 for row in rows
+    ):
+        raise SceneError("must be a list of pairs.", key="points", remedy=f"Write points = {EXAMPLE}.")
+    return tuple(
+        (parse_number(strain, f"points[{at}]"), parse_quantity(stress, "stress", f"points[{at}]"))
+        for at, (strain, stress) in enumerate(rows, 1)
+    )
+
+
+def _of_file(path: str) -> Points:
+    try:
+        table = read_user_table(path, HEADER)
+        column = table.quantity("stress", "stress")
+        if column is None or "strain" not in table.names:
+            raise ResultError(f"{path}: has no columns strain and stress. Its header is such as {HEADER}.")
+        name, unit = column
+        strains = [finite(place, text) for place, text in table.column("strain")]
+        return tuple(
+            zip(strains, (in_si(place, text, unit) for place, text in table.column(name)), strict=True)
+        )
+    except ResultError as error:
+        raise SceneError(str(error), key="points") from None
