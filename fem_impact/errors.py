@@ -67,6 +67,12 @@ class SceneError(StatementError):
             self.problem, key=key, value=self.value, remedy=self.remedy, source=source or self.source
         )
 
+    def worded(self, say: Callable[[str], str]) -> "SceneError":
+        """Return the same complaint with its problem and remedy as ``say`` words them."""
+        return SceneError(
+            say(self.problem), key=self.key, value=self.value, remedy=say(self.remedy), source=self.source
+        )
+
 
 class OutputPathError(FemImpactError):
     """Results cannot be written where the user asked for them."""

@@ -22,7 +22,7 @@ from fem_impact.case.record import ContactRecord
 from fem_impact.case.recorded import AnyZones, recorded_zones, unresolved_skins
 from fem_impact.case.size import RunSize, require_memory, require_rest, run_size
 from fem_impact.case.zones import Zones, require_fine_zone, zones_of
-from fem_impact.errors import UsageError, did_you_mean
+from fem_impact.errors import SceneError, UsageError, did_you_mean
 from fem_impact.options import FIDELITIES
 from fem_impact.outcome.groups import EffectChoice, Limitation, limitations
 from fem_impact.physics.contact import ContactEstimate, ContactPair
@@ -83,24 +83,32 @@ class Case:
             hint = did_you_mean(fidelity, FIDELITIES, f"Use one of {', '.join(FIDELITIES)}.")
             raise UsageError("is not a fidelity.", key="fidelity=", value=fidelity, remedy=hint)
         case = cls(scene, fidelity, record)
+        try:
+            case._require_held()
+        except SceneError as error:
+            raise error.worded(scene.projectile.named) from None
+        return case
+
+    def _require_held(self) -> None:
+        """Refuse a scene that the fidelity cannot hold (SceneError)."""
+        scene, fidelity = self.scene, self.fidelity
         require_crushing_named(scene)
         limits.require_still(scene.barrier, fidelity)
         limits.require_followed(scene)
-        limits.require_own_mesh(case.bodies, fidelity)
-        require_plate(case.bodies, case.meshed_through)
-        limits.require_first_part(case.bodies)
-        if record is None:
-            limits.require_point(case.bodies, fidelity)
-        slots = case.slots
-        require_layers(case.bodies, fidelity)
-        require_skins(case.bodies, fidelity)
-        require_closed_form(case.bodies, slots, fidelity)
+        limits.require_own_mesh(self.bodies, fidelity)
+        require_plate(self.bodies, self.meshed_through)
+        limits.require_first_part(self.bodies)
+        if self.record is None:
+            limits.require_point(self.bodies, fidelity)
+        slots = self.slots
+        require_layers(self.bodies, fidelity)
+        require_skins(self.bodies, fidelity)
+        require_closed_form(self.bodies, slots, fidelity)
         if fidelity == "solid":
             limits.require_carried(scene, slots)
-            case._require_mesh(slots)
+            self._require_mesh(slots)
         if fidelity == "solid" and "modal" in dict(scene.strikes.stated):
-            cls.of(scene, "modal")  # which computes later strikes
-        return case
+            Case.of(scene, "modal")  # which computes later strikes
 
     def _require_mesh(self, slots: ModelSpec) -> None:
         """Refuse what cannot be meshed, or needs more memory than there is (SceneError)."""

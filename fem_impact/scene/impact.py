@@ -15,8 +15,8 @@ BESIDE = radians(2.0)  # rad between velocity and axis of a dropped rod at most;
 FIRST, REST = "first", "rest"
 STRIKES = re.compile(r"([1-9][0-9]{0,2}) strikes?")
 WAYS = (("height",), ("speed",), ("v_n", "v_t"))
-"""The keys of each way to state how fast the rod comes."""
-_KEEP = "Give a height, or a speed along the rod's axis, or v_n and v_t, and keep one of them."
+"""The keys of each way to state how fast the body comes."""
+_KEEP = "Give a height, or a speed along the body's axis, or v_n and v_t, and keep one of them."
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,7 +116,7 @@ def the_way(keys: Collection[str]) -> tuple[str, ...]:
     if len(given) == 1:
         return given[0]
     names = " and by ".join(" and ".join(key for key in way if key in keys) for way in given)
-    problem = f"states the velocity twice, by {names}." if given else "does not say how fast the rod comes."
+    problem = f"states the velocity twice, by {names}." if given else "does not say how fast the body comes."
     raise SceneError(problem, remedy=_KEEP)
 
 
@@ -128,7 +128,7 @@ def _refuse_one_of_two(old: Impact, new: Collection[str]) -> None:
     (key,), (way,) = velocities, old.stated
     (other,) = set(WAYS[2]) - velocities
     raise SceneError(
-        f"is one of two velocities, but the scene states its impact by {way} along the rod's axis.",
+        f"is one of two velocities, but the scene states its impact by {way} along the body's axis.",
         key=f"impact.{key}",
         remedy=f"Change impact.{way}, or state both velocities: add impact.{other}.",
     )

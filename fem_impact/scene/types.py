@@ -158,12 +158,15 @@ class Scene:
             fields.check_choice(self.measured, MEASURED_SETS, "measured", other)
         if self.restitution is not None:
             fields.check_numbers(self, fields.TOP)
-        _check_approach(self)
-        largest = self.projectile.diameter / 4
-        size = self.accuracy.tip_size
+        try:
+            _check_approach(self)
+        except SceneError as error:
+            raise error.worded(self.projectile.named) from None
+        size, rod = self.accuracy.tip_size, self.projectile
+        largest = rod.diameter / 4
         if size is not None and size > largest:
             raise SceneError(
-                f"is too coarse for a rod of {self.projectile.diameter * 1e3:g} mm diameter.",
+                f"is too coarse for a {rod.called} of {rod.diameter * 1e3:g} mm diameter.",
                 key="accuracy.tip_size",
                 value=f"{size * 1e3:.3g} mm",
                 remedy=f"Give at most {largest * 1e3:g} mm.",

@@ -40,7 +40,7 @@ def test_a_speed_goes_along_the_axis():
         ({"height": "1 m", "speed": "2 m/s"}, "impact: states the velocity twice, by height and by speed"),
         ({"speed_m_per_s": 2.0, "v_n": "-1 m/s"}, "twice, by speed and by v_n"),
         ({"height": "1 m", "v_n": "-1 m/s", "v_t": "0 m/s"}, "twice, by height and by v_n and v_t"),
-        ({}, "does not say how fast the rod comes. Give a height"),
+        ({}, "does not say how fast the body comes. Give a height"),
         ({"v_n": "-1 m/s"}, "impact.v_t: is missing"),
         ({"height": "-1 m"}, "impact.height = -1 m"),
         ({"height": "13 km/s"}, "impact.height"),

@@ -92,8 +92,8 @@ def test_a_body_that_flows_loses_by_both_in_the_rigid_theory():
     ("key", "value", "reason"),
     [
         ("barrier.material", "soft", "a barrier of finite elements"),
-        ("projectile.segments", "two", "a rod of several materials"),
-        ("projectile.material", "yields", "a rod of finite elements that yields"),
+        ("projectile.segments", "two", "a body of several materials"),
+        ("projectile.material", "yields", "a ball of finite elements that yields"),
     ],
 )
 def test_finite_elements_say_what_they_do_not_hold_and_each_remedy_works(key, value, reason):
