@@ -53,6 +53,10 @@ def assess(options: Options) -> int:
     return 0
 
 
+EXAMPLES = {"temperature": "430 degC", "force": "5 kN", "length": "0.2 mm"}
+"""Limits by their dimensions, for messages."""
+
+
 def _refuse(options: Options, limited: bool) -> None:
     """Refuse options that the question has no use for (UsageError)."""
     of_limits = options.question != RIGID
@@ -102,6 +106,9 @@ def _limited(options: Options, scene: Scene) -> tuple[dict[str, Any], None]:
         criterion = Rigidity(of)
     else:
         criterion = LIMITED[options.question]
+        if not options.limit:
+            remedy = f'Give what it must stay below, such as --limit "{EXAMPLES[criterion.dimension]}".'
+            raise UsageError(f"is missing beside --for {options.question}.", key="--limit", remedy=remedy)
         limit = option_quantity(options.limit, criterion.dimension, "--limit")
     uncertain: dict[str, Any] = dict(read_values(text) for text in options.uncertain)
     means = options.fidelity, *_means(options)

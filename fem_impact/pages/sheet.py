@@ -37,7 +37,7 @@ NUMBERS = (
     ("peak force", "peak_force_N", "N"),
     ("dent that stays in the barrier", "dent_depth_m", "mm"),
     ("flash temperature", "flash_temperature_K", "K"),
-    ("ignition temperature stated", "ignition_temperature_K", "K"),
+    ("ignition temperature, stated or 430 degC", "ignition_temperature_K", "K"),
     ("temperature that no spot exceeds", "flash_bound_K", "K"),
     ("friction + top 0.1 mm of both, of E_0", "W_skin_over_E_0", "%"),
 )

@@ -328,7 +328,7 @@ def _is_rounded(tip: object) -> bool:
 
 
 def _barrier(table: tables.Table) -> Barrier:
-    given = values_of(table, fields.BARRIER, ("boundary", "support"), ("material", "layers"))
+    given = tables.values_of(table, fields.BARRIER, ("boundary", "support"), ("material", "layers"))
     if "layers" in table:
         example = '{thickness = "2 mm", material = "rod-steel"}'
         given["layers"] = tables.listed(table["layers"], "layers", _layer, example)
