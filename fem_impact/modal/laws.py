@@ -185,7 +185,8 @@ def shape(sites: Sites, held: Touched, s: int, turn: float, longest: float) -> N
             held.site[other, SITE.known] = LAID
         held.tip[s, 1 + 3 * side : 4 + 3 * side] = flank
         longer = max(longer, half_length(float(held.tip[s, 0]), flank, deepest))
-    held.size[s] = min(max(held.size[s], longer / LONGEST), longer / ACROSS)
+    if longer > 0.0:  # a ball has no straight part
+        held.size[s] = min(max(held.size[s], longer / LONGEST), longer / ACROSS)
 
 
 def _flank(lean: float, t: float, n: float, turn: float) -> Flank:
