@@ -47,7 +47,7 @@ FINISHED = {
     Finish.JAMS: "Friction drives it into the barrier as it slides, which rigid theory does not follow.",
 }
 RATTLE = 4.73
-"""Largest factor between the times to the rest by rigid theory and by modes, of ten rods (study strikes)."""
+"""Largest factor between the times to the rest by rigid theory and by modes, of 19 bodies (study strikes)."""
 SLOWEST = 1e-9  # m/s, of a body that comes down
 LEAST_BY_LAW = 1e-3
 """As `LEAST` where restitutions follow from the contact law, which knows no loss of slow strikes."""
