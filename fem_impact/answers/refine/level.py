@@ -71,7 +71,7 @@ class LevelRun:
             return ""
         return (
             f"The contact is {rows} node{'s' * (rows > 1)} wide across its narrow side, and {ROWS} resolve "
-            f"it: half-widths are {NARROW:g} times the largest change from level to level"
+            f"it: half-widths are {NARROW:g} times the larger of the last changes by halved cells"
         )
 
     @property
@@ -112,7 +112,9 @@ class LevelRun:
         """What its limits follow from."""
         resolved = self.record.resolved
         wide = resolved and self.record.rows >= ROWS
-        return MeshRuns(self.size, list(self.outcomes), resolved, wide, self.repeats, self.earlier)
+        return MeshRuns(
+            self.size, list(self.outcomes), resolved, wide, self.record.rows, self.repeats, self.earlier
+        )
 
 
 def simulate_level(case: Case, options: RunOptions) -> tuple[Outcome, ContactRecord]:

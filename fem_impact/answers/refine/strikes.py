@@ -35,10 +35,11 @@ def _open_of(number: int, each: Sequence[Sequence[StrikeRecord]], levels: Sequen
 
 def _open(levels: Sequence[LevelRun], struck: Sequence[StrikeRecord]) -> Doubt:
     """Return the half-widths of a strike on levels from coarse to fine."""
-    sizes, wide = [level.size for level in levels], [level.runs.wide for level in levels]
+    runs = [level.runs for level in levels]
+    sizes, wide, rows = zip(*((one.size, one.wide, one.rows) for one in runs), strict=True)
 
     def half(values: Sequence[float]) -> float:
-        limit, band = level_limit(sizes, [[value] for value in values], wide)
+        limit, band = level_limit(sizes, [[value] for value in values], wide, rows)
         return band + abs(limit - values[-1])
 
     return Doubt(

@@ -122,5 +122,5 @@ class LevelsJob:
         return sum(level.cpu_s for level in result.meshes)
 
 
-PLAIN = ("size", "resolved", "wide", "repeats", "earlier")
+PLAIN = ("size", "resolved", "wide", "rows", "repeats", "earlier")
 """What is stored of a level beside its outcomes."""

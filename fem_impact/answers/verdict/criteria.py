@@ -145,7 +145,8 @@ class Limited(Criterion):
         if isinstance(level_limits(used)[0], Unknown):
             return None
         values = [[value] for _, value in known][-3:]
-        value, band = level_limit([one.size for one in used], values, [one.wide for one in used])
+        sizes, wide, rows = zip(*((one.size, one.wide, one.rows) for one in used), strict=True)
+        value, band = level_limit(sizes, values, wide, rows)
         return _about(value + self.base(known[-1][0].cases[0].scene), band)
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from fem_impact.answers.refine import level as level_module
 from fem_impact.answers.refine.chain import LevelChain
-from fem_impact.answers.refine.extrapolate import MeshRuns, level_limits
+from fem_impact.answers.refine.extrapolate import MeshRuns, level_limit, level_limits
 from fem_impact.answers.refine.level_meshes import LevelMeshes
 from fem_impact.answers.simulate import compiled, simulate
 from fem_impact.case.case import Case
@@ -173,6 +173,22 @@ def test_no_band_is_narrower_than_the_changes_from_level_to_level():
     assert band(falling, False, True, True) == known(level_limits(falling[-2:])[1])["e_edge"] > 0.05
 
 
+@pytest.mark.parametrize(
+    ("rows", "half"),
+    [
+        ((2, 2, 2, 2), 0.3),
+        ((1, 1, 2, 3), 0.15),
+        ((1, 2, 1, 3), 0.3),
+        ((1, 1, 1, 1), 0.3),
+        ((1, 1, 1, 3), 0.3),
+    ],
+)
+def test_levels_before_the_first_that_touched_along_two_rows_do_not_count_beside_others(rows, half):
+    """Else a pilot on four times larger cells would tell the error of the last ones."""
+    found = level_limit([8.0, 4.0, 1.0, 0.5], [[0.9], [0.5], [0.3], [0.35]], [False] * 4, rows)
+    assert found == (0.35, pytest.approx(half))
+
+
 def limits_of(*levels):
     return level_limits([level.runs for level in levels])
 
@@ -188,7 +204,7 @@ def test_shares_that_flow_and_friction_take_have_half_of_the_widest_band_at_leas
     assert bands["W_friction_over_E_0"] == bands["E_plastic_barrier_over_E_0"] / 2
 
 
-def test_a_contact_a_few_nodes_wide_has_three_times_the_largest_change_as_its_band(quick):
+def test_a_contact_a_few_nodes_wide_has_three_times_the_last_changes_by_halved_cells_as_its_band(quick):
     """A line of contact one cell wide is pressed as hard as its cells are large, and agrees with itself."""
     pilot, before, last = quick[0].done
     assert last.record.rows >= 4
@@ -200,7 +216,8 @@ def test_a_contact_a_few_nodes_wide_has_three_times_the_largest_change_as_its_ba
     limits, bands = map(known, limits_of(pilot, before, narrow))
     values = [known(level.outcome.restitution.mu) for level in (pilot, before, last)]
     assert limits["mu"] == values[-1]
-    assert bands["mu"] == pytest.approx(3 * max(abs(np.diff(values))))
+    by_halving = abs(np.diff(values)) / abs(np.diff(np.log2([pilot.size, before.size, last.size])))
+    assert bands["mu"] == pytest.approx(3 * max(by_halving))
     levels = LevelChain(Case(QUICK), done=[pilot, before, narrow])
     told = [one.text for one in levels._stated().validity.limitations]
     assert any("is 2 nodes wide across its narrow side" in text for text in told)
