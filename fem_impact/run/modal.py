@@ -100,7 +100,7 @@ def reduce(case: Case, result: ModalResult) -> Outcome:
     place = place_of(case, outcome)
     said = replace(
         said,
-        model_band=half_widths(place, outcome),
+        model_band=half_widths(place, outcome, case.contact.approach),
         limitations=(*said.limitations, *limitations("model", sentence(place, outcome))),
     )
     return replace(outcome, validity=said)

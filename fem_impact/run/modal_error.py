@@ -196,11 +196,12 @@ def scale_of(key: str, outcome: Outcome) -> float:
     return max(or_none(outcome.energy.vibration) or 0.0, LEAST_VIBRATION)
 
 
-def half_widths(place: Place, outcome: Outcome) -> dict[str, float]:
+def half_widths(place: Place, outcome: Outcome, approach: float) -> dict[str, float]:
     """Return half-widths, by key, of those numbers of `TOLD` that an outcome of the reduced model knows.
 
     Where the form of a dent gives more impulse along the barrier than any stored scene shows, all that is
-    beyond friction may be wrong.
+    beyond friction may be wrong, and with it what that impulse gives the motion. ``approach``, m/s, is
+    that of the contact point.
     """
     at, table, far = np.array(place), stored(), farness(place, outcome)
     halves = {
@@ -212,14 +213,27 @@ def half_widths(place: Place, outcome: Outcome) -> dict[str, float]:
         if key in halves:
             share = known(KEY_TABLE[key].of(outcome))
             halves[key] = min(halves[key], max(share, 1.0 - share))
-    beyond, motion = _beyond_friction(outcome), outcome.motion
-    if beyond > PLOUGHS:
+    if (beyond := _beyond_friction(outcome)) > PLOUGHS:
         halves["mu"] = max(halves["mu"], beyond)
-        V_t = halves["V_t_m_per_s"], beyond * abs(known(motion.V_n) - motion.v_n)
-        halves["V_t_m_per_s"] = max(V_t)
+        for key, change in _by_impulse(beyond, outcome, approach).items():
+            halves[key] = hypot(halves[key], change)  # beside what is open at a known impulse
     if or_none(outcome.restitution.paper.e) is not None:
         halves["e_paper"] = halves["e_edge"]  # arms a little apart take nearly the same approach
     return halves
+
+
+def _by_impulse(ratio: float, outcome: Outcome, approach: float) -> dict[str, float]:
+    """Return by how much an impulse ratio more changes numbers of the motion, by key, at one normal impulse.
+
+    An impulse along the barrier at the arm d_d turns the body, and the contact point beside the mass centre
+    then leaves faster or slower by d_c of that spin (the rigid equations of motion).
+    """
+    motion, arms = outcome.motion, outcome.restitution.edge
+    d_c, d_d = known(arms.d_c), known(arms.d_d)
+    slid = ratio * abs(known(motion.V_n) - motion.v_n)
+    turned = slid * abs(d_d) / motion.k_squared
+    left = turned * abs(d_c)
+    return {"V_t_m_per_s": slid, "Omega_rad_per_s": turned, "e_edge": left / approach}
 
 
 def factor_of(place: Place, name: str, far: float) -> float:
