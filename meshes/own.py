@@ -96,6 +96,8 @@ def read_own(path: str | Path, unit: float = 1.0, stated: Stated | None = None) 
     """
     stated = stated or Stated()
     stored = stored_mesh(path)
+    if len(stored.surfaces.corners):
+        _require_numbered(stored.points, stored.surfaces.corners, -1)
     if not stored.blocks:
         other = (*stored.surfaces.counts(np.ones(len(stored.surfaces.kinds), bool)), *stored.ignored)
         left = f": {', '.join(other)} alone" if other else ""
@@ -299,7 +301,7 @@ def _require_joined(mesh: HexMesh) -> None:
         a, _ = min(pairs)
         raise MeshError(
             f"has {len(pairs)} pairs of nodes in one place, the first at {place_text(mesh.points[a])}: "
-            "the cells there are not joined. Merge equal nodes."
+            "the cells there are not joined. Merge equal nodes, in ParaView by Clean to Grid for example."
         )
     corners = mesh.points[mesh.faces]
     middles = np.concatenate(

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fem_impact.errors import UsageError
 from fem_impact.fem.forms import hex_mesh
 from fem_impact.files.fields import FieldFile
 from meshes import HexMesh
@@ -14,6 +15,13 @@ if TYPE_CHECKING:
     import meshio
     import pyvista
     from skfem import MeshHex
+
+
+def _require_cells(mesh: object) -> None:
+    """Refuse what is no mesh, such as a scene (UsageError)."""
+    if not (hasattr(mesh, "cells") and hasattr(mesh, "points")):
+        remedy = 'Give read_fields("results/ID/fields.vtkhdf") of a run, or a mesh of the package meshes.'
+        raise UsageError("has no cells.", key="mesh=", value=type(mesh).__name__, remedy=remedy)
 
 
 def to_skfem(mesh: HexMesh | FieldFile) -> MeshHex:
@@ -30,6 +38,7 @@ def to_skfem(mesh: HexMesh | FieldFile) -> MeshHex:
     >>> round(float(Basis(mesh, ElementHex1()).dx.sum()), 12)
     6.0
     """
+    _require_cells(mesh)
     return hex_mesh(np.asarray(mesh.points, np.float64), np.asarray(mesh.cells, np.int64))
 
 
@@ -46,6 +55,7 @@ def to_meshio(mesh: HexMesh | FieldFile, frame: int | None = None) -> meshio.Mes
     """
     import meshio
 
+    _require_cells(mesh)
     points, at_points, in_cells = mesh.points, {}, {}
     if isinstance(mesh, FieldFile) and frame is not None:
         at_points = {name: mesh.point_data(name, frame) for name in mesh.point_names}
@@ -65,6 +75,7 @@ def to_pyvista(mesh: HexMesh | FieldFile, frame: int | None = None) -> pyvista.U
     """
     import pyvista
 
+    _require_cells(mesh)
     if isinstance(mesh, FieldFile) and frame is not None:
         return mesh.grid(frame)
     return pyvista.UnstructuredGrid({pyvista.CellType.HEXAHEDRON: mesh.cells}, mesh.points)

@@ -69,6 +69,10 @@ class FreeModes(NamedTuple):
     shape: Array
     omega: Array
 
+    def __repr__(self) -> str:
+        low, high = self.frequency[[0, -1]]
+        return f"FreeModes({len(self.omega)} from {low:.4g} Hz to {high:.4g} Hz, at {len(self.points)} nodes)"
+
     @property
     def frequency(self) -> Array:
         """Frequencies (k,), Hz."""

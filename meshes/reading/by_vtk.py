@@ -14,6 +14,8 @@ ENDINGS = (".cgns", ".case", *PIECES, *SURFACES)
 def by_vtk(path: Path) -> StoredMesh:
     """Read a file by VTK; blocks are joined at nodes only if they share them in the file.
 
+    Pieces of one mesh, which parallel programs write apart, are joined where their nodes are equal.
+
     Raises
     ------
     MeshError
@@ -25,6 +27,8 @@ def by_vtk(path: Path) -> StoredMesh:
         found = pyvista.read(path)
         if isinstance(found, pyvista.MultiBlock):
             found = found.combine(merge_points=False)
+        if path.suffix.lower().startswith(".pvt") and isinstance(found, pyvista.UnstructuredGrid):
+            found = found.clean(tolerance=0.0, remove_unused_points=False)
     if not isinstance(found, pyvista.DataSet):
         raise MeshError(f"holds a {type(found).__name__}, which is no mesh of cells.")
     return as_stored(pyvista.to_meshio(found))

@@ -27,7 +27,10 @@ ENDINGS = {
 }
 INCLUDE = re.compile(r"\W*INCLUDE\b", re.I)
 INPUT = re.compile(r",[ \t]*INPUT[ \t]*=[^,\n]*", re.I)
-XDMF = re.compile(r">\s*([^<>:]+\.h5):")
+# files that another holds the names of, by the beginning of its ending
+HOLDS = {".xdmf": re.compile(r">\s*([^<>:]+\.h5):")}
+HOLDS[".xmf"] = HOLDS[".xdmf"]
+HOLDS |= dict.fromkeys((".pvt", ".vtm"), re.compile(r"\b(?:Source|file)=\"([^\"]+)\""))
 MOST = 10**7  # numbers in a range
 # a number, of which Fortran may leave the E of the exponent out
 NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+))(?:E([+-]?\d+)|(?<=[\d.])([+-]\d+))?")
@@ -87,8 +90,8 @@ def included(path: Path, within: tuple[Path, ...] = ()) -> list[Path]:
     """Return the files that a mesh file takes parts from, those that are there; see `lines_of`."""
     ending = path.suffix.lower()
     programs = [program for program, endings in ENDINGS.items() if ending in endings]
-    if ending in (".xdmf", ".xmf"):
-        names = sorted(set(XDMF.findall(decoded(path.read_bytes()))))
+    if kind := next((one for one in HOLDS if ending.startswith(one)), ""):
+        names = sorted(set(HOLDS[kind].findall(decoded(path.read_bytes()))))
         return [path.parent / name.strip() for name in names if (path.parent / name.strip()).is_file()]
     if not programs or path.resolve() in within:
         return []

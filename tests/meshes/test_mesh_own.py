@@ -154,10 +154,30 @@ def test_of_surfaces_alone_it_is_told_whether_they_are_closed(tmp_path, ending):
     told = f"no volume cells: {len(triangles)} cells of type triangle alone. The surface is closed: fill it"
     with pytest.raises(MeshError, match=told):
         read_own(path)
+    with pytest.raises(MeshError, match="cells that name points that are not there"):
+        read_own(write(tmp_path / "cut.vtu", half.points[:9], triangles, "triangle"))
     write(path, half.points, triangles[1:], "triangle")
     told = f"The surface is open: 3 of {len(triangles) * 3 // 2} edges bound one face, 0 more than two"
     with pytest.raises(MeshError, match=told):
         read_own(path)
+
+
+GRID = "PUnstructuredGrid"
+XML = f'<VTKFile type="{GRID}"><{GRID}><PPoints>{{}}</PPoints>{{}}</{GRID}></VTKFile>'
+
+
+def test_pieces_of_one_mesh_are_joined_and_are_its_content(tmp_path):
+    points, cells = taper()
+    for name, part in (("a", cells[:40]), ("b", cells[40:])):
+        used, new = np.unique(part, return_inverse=True)
+        write(tmp_path / f"{name}.vtu", points[used], new.reshape(-1, 8))
+    pieces = '<Piece Source="a.vtu"/><Piece Source="b.vtu"/>'
+    array = '<PDataArray type="Float64" NumberOfComponents="3"/>'
+    (tmp_path / "all.pvtu").write_text(XML.format(array, pieces))
+    assert meshes.volume(read_own(tmp_path / "all.pvtu").half) == pytest.approx(
+        meshes.volume(own_body(points, cells).half)
+    )
+    assert [one.name for one in meshes.included(tmp_path / "all.pvtu")] == ["a.vtu", "b.vtu"]
 
 
 @pytest.mark.parametrize("ending", [".msh", ".inp", ".vtu", ".vtk", ".bdf", ".med"])

@@ -208,7 +208,7 @@ class LevelChain:
         if self.failed or self.following is None:
             return ""
         used, budget = map(forecast.about_s, (self.spent_s, self.budget_s))
-        return f"{used} of the budget of {budget} are used up. {self.advice[0]}"
+        return f"{used} of the budget of {budget} are used up. {self.advice()[0]}"
 
     @property
     def counted(self) -> int:
@@ -340,7 +340,7 @@ class LevelChain:
             errors = self._errors
             reached = [f"{name} is known to {plain(100 * error, 2)} %" for name, error in errors.items()]
             told, wanted = " and ".join(reached) or why.reason, 100 * self.scene.accuracy.target
-            missed = f"The wanted {wanted:.3g} % is not reached: {told}. {self.advice[0]}"
+            missed = f"The wanted {wanted:.3g} % is not reached: {told}. {self.advice()[0]}"
             missed = "" if self._reached(errors) else missed
             said = replace(
                 said,
@@ -383,9 +383,11 @@ class LevelChain:
         levels = f"accuracy.levels = {self.scene.accuracy.levels + 1}"
         return f"{'a smaller accuracy.tip_size' if self.meshes.is_sized else levels} adds a finer level"
 
-    @property
-    def advice(self) -> tuple[str, int | None]:
-        """What another level would take, or why none is made; the budget for it, s, None where none is."""
+    def advice(self, before_s: float = 0.0) -> tuple[str, int | None]:
+        """Return what another level would take, or why none is made; the budget for it, s, or None.
+
+        ``before_s`` of the budget, s, went by before this chain.
+        """
         name = f"Level {len(self.done) + 1}, finer,"
         if self.failed:
             return f"{name} gave no result: {self.failed}", None
@@ -393,6 +395,6 @@ class LevelChain:
         if then is None:
             return f"No finer level is tried: {self._finer}.", None
         more_s = self.forecast_s(then)
-        enough = forecast.enough_s(self.spent_s, more_s)
+        enough = forecast.enough_s(before_s + self.spent_s, more_s)
         more = forecast.about_s(more_s)
         return f"{name} takes about {more} more: for it give a budget of {enough} s.", enough

@@ -40,6 +40,7 @@ def by_levels(
     means: tuple[float, int],
     tell: Tell,
     steps: list[str],
+    before_s: float = 0.0,
 ) -> tuple[Number | None, list[str], Means]:
     """Return what finite elements say, None where they tell nothing; notes; the means for another level.
 
@@ -51,6 +52,7 @@ def by_levels(
     means : budget, s, and runs at a time
     tell : called with a sentence as a level begins, and after each
     steps : a sentence on each level is added
+    before_s : of the whole budget, s, what went by before
 
     Raises
     ------
@@ -81,7 +83,7 @@ def by_levels(
         tell(steps[-1])
     if decides(levels.done):
         return found, [], {}
-    note, enough = levels.advice
+    note, enough = levels.advice(before_s)
     more = {} if enough is None else {"budget_s": enough}
     if found is not None:
         return found, [note], more

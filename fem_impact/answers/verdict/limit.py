@@ -246,10 +246,11 @@ def _by_solids(
     solids, notes, told = dict[Place, Bound](), list[str](), partial(_told, criterion)
     more: Means = {}
     for place, scene in scenes.items():
-        left = max(begun + budget_s - perf_counter(), 1.0), workers
+        before = perf_counter() - begun
+        left = max(budget_s - before, 1.0), workers
         try:
             pair = criterion.meshed(scene)
-            found, said, more = by_levels(pair, criterion.solid, told, limit, left, tell, steps)
+            found, said, more = by_levels(pair, criterion.solid, told, limit, left, tell, steps, before)
         except (SceneError, RunError) as refused:
             found, said, more = None, [f"Finite elements have no answer here: {refused}"], {}
         notes += said

@@ -69,7 +69,7 @@ def solids(monkeypatch, values):
     """Let finite elements tell a bound by the angle in degrees; return the angles at which they ran."""
     ran = []
 
-    def of(pair, estimate, told, limit, means, tell, steps):
+    def of(pair, estimate, told, limit, means, tell, steps, before_s):
         ran.append(round(np.degrees(pair[0].impact.angle)))
         value = values[ran[-1]]
         return value and Bound(value, value - 1.0, value + 1.0), [], {"budget_s": 90}
