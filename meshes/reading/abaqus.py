@@ -9,22 +9,13 @@ from pathlib import Path
 import numpy as np
 
 from meshes.common import FloatArray, MeshError
+from meshes.reading import abaqus_rules
 from meshes.reading.abaqus_part import AbaqusPart, count_of, place
 from meshes.reading.stored import Elements, PointMass, StoredMesh, keep
 from meshes.reading.text import lines_of, number_of, numbers_between, place_of, whole_number
 
 # lines that make nodes and cells of others, or move them
-MAKERS = (
-    "NGEN",
-    "NFILL",
-    "NCOPY",
-    "NMAP",
-    "ELGEN",
-    "ELCOPY",
-    "IMPORT",
-    "IMPERFECTION",
-    "SYMMETRIC MODEL GENERATION",
-)
+MAKERS = ("NMAP", "IMPORT", "IMPERFECTION", "SYMMETRIC MODEL GENERATION")
 FLAT = re.compile(r"(?:S|DS|M3D|SFM3D|R3D|CPS|CPE|CAX)(\d)")  # types of surfaces, with their nodes
 STATED = ("MATERIAL", "SOLID SECTION", "STEP", "BOUNDARY", "CLOAD", "DLOAD", "INITIAL CONDITIONS", "TIE")
 
@@ -107,6 +98,8 @@ class _Deck:
                 "Abaqus/CAE and PrePoMax do."
             )
         self.stated = self.stated or name in STATED
+        if name in abaqus_rules.KNOWN:
+            abaqus_rules.make(name, card.options, card.lines, self.here)
         taken = {
             "PART": self._part,
             "END PART": self._end,

@@ -76,7 +76,7 @@ def place(body: AbaqusPart, moves: list[list[str]], found: Elements, name: str) 
     first = len(found.place)
     number = {own: first + k for k, own in enumerate(body.nodes)}  # all instances count their nodes from 1
     points = np.array(list(body.nodes.values()), dtype=np.float64).reshape(-1, 3)
-    for own, point in enumerate(_moved(points, moves, name).tolist(), first):
+    for own, point in enumerate(moved(points, moves, f"*INSTANCE {name}").tolist(), first):
         found.node(own, point)
     members: dict[int, list[str]] = {}
     for one, numbers in body.sets.items():
@@ -123,9 +123,9 @@ def _faces(kind: str, nodes: tuple[int, ...], side: str) -> list[tuple[int, ...]
     return [tuple(nodes[k] for k in face) for face in chosen if len(nodes) > max(face)]
 
 
-def _moved(points: FloatArray, moves: list[list[str]], name: str) -> FloatArray:
-    """Return nodes moved by the first line of an instance, then turned about the axis of its second."""
-    lines = [[number_of(part, f"*INSTANCE {name}") for part in line if part] for line in moves]
+def moved(points: FloatArray, moves: list[list[str]], name: str) -> FloatArray:
+    """Return nodes moved by the first line of ``name``, then turned about the axis of its second."""
+    lines = [[number_of(part, name) for part in line if part] for line in moves]
     if lines:
         points = points + np.array((lines[0] + [0.0] * 3)[:3])
     if len(lines) > 1:

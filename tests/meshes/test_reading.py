@@ -154,17 +154,51 @@ def test_a_mass_at_a_node_of_another_body_is_not_the_bodys_own(tmp_path):
 @pytest.mark.parametrize(
     ("line", "reason"),
     [
-        ("*NGEN\n1, 5, 1", r"makes nodes or cells by \*NGEN"),
+        ("*NGEN, LINE=C\n1, 5, 1", r"makes nodes or cells by \*NGEN with LINE, which is not read"),
+        ("*NGEN\n1, 5000", r"by \*NGEN from the node 5000, which is not there"),
+        ("*NFILL\nA, B, 3", r"names a set 'A' by \*NFILL, which is not there"),
         ("*INCLUDE, INPUT=mesh.inp", r"takes a part from the file 'mesh.inp', which is not beside it"),
         ("*NODE, INPUT=nodes.txt", r"takes a part from the file 'nodes.txt', which is not beside it"),
         ("*ELEMENT, TYPE=C3D8\n999, 1, 2, 3, 4, 5, 6, 7, 9999", "a cell 999 that names the node 9999"),
         ("*ELEMENT, TYPE=CIN3D8\n999, 1, 2, 3, 4, 5, 6, 7, 8", "infinite cells"),
     ],
 )
-def test_what_an_abaqus_deck_makes_by_rules_is_refused(tmp_path, line, reason):
+def test_what_an_abaqus_deck_makes_by_other_rules_is_refused(tmp_path, line, reason):
     (tmp_path / "a.inp").write_text(decks.abaqus(*square()) + line + "\n")
     with pytest.raises(MeshError, match=reason):
         read_own(tmp_path / "a.inp", 1e-3)
+
+
+def test_nodes_and_cells_by_rules_are_those_of_the_same_bar_written_out(tmp_path):
+    """Rows, a filled bottom, a copy that is moved and turned, filled up; two rows of cells and their copy."""
+    (tmp_path / "rules.inp").write_text("""*NODE
+1,-6,-6,0
+3,6,-6,0
+201,-6,6,0
+203,6,6,0
+*NGEN,NSET=A
+1,3
+*NGEN,NSET=B
+201,203,1
+*NFILL,NSET=LOW
+A,B,2,100
+*NCOPY, OLD SET=LOW, CHANGE NUMBER=5000, SHIFT, NEW SET=HIGH
+0,0,60
+0,0,0,0,0,1,360
+*NFILL
+LOW,HIGH,5,1000
+*ELEMENT,TYPE=C3D8
+1,1,2,102,101,1001,1002,1102,1101
+*ELGEN,ELSET=FRONT
+1,2,1,1,1,0,0,5,1000,10
+*ELCOPY,OLD SET=FRONT,ELEMENT SHIFT=100,SHIFT NODES=100,NEW SET=BACK
+""")
+    points, cells = square()
+    plain = own_body(points / 1e3, cells).half
+    body = read_own(tmp_path / "rules.inp", 1e-3)
+    assert summary(body.half) == pytest.approx(summary(plain), abs=1e-9)
+    assert len(body.half.cells) == len(plain.cells)
+    assert set(body.sets) == {"BACK"}  # the half y >= 0
 
 
 def test_a_mesh_of_calculix_is_known_by_its_content(tmp_path):
