@@ -49,7 +49,7 @@ def test_a_scene_without_vibration_is_judged_by_what_its_runs_know(cli, fake):
 
 
 def test_all_scenes_of_the_paper_make_a_summary(cli, fake, monkeypatch):
-    monkeypatch.setattr("fem_impact.scene.types.MEASURED_SETS", ("t5b",))
+    monkeypatch.setattr("fem_impact.cli.cost.MEASURED_SETS", ("t5b",))
     code, out, _ = cli("cost", "paper", "--finer", "0", "--out", "all", "--quiet")
     assert code == 0
     held = json.loads(Path("all/summary.json").read_text())
