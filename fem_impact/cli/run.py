@@ -235,8 +235,8 @@ def _motion_rows(outcome: Outcome, own_tests: bool) -> list[tuple[str, str, str]
 
 def _label(share: EnergyShare, energy: Energy) -> str:
     """Return the label of a share; a body in which nothing yields has no residual stress."""
-    body = share.key.path[-1].removeprefix("locked_")
-    elastic = share.label.startswith("residual") and getattr(energy, f"plastic_{body}") == 0.0
+    locked, _, body = share.key.path[-1].rpartition("_")
+    elastic = locked == "locked" and getattr(energy, f"plastic_{body}") == 0.0
     return f"elastic energy left in {body}" if elastic else share.label
 
 

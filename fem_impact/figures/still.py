@@ -6,8 +6,10 @@ The style: size, a palette safe for colour-blind readers, the sides of labels, a
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+import tomllib
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -24,23 +26,12 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-INK, QUIET = "#1f2328", "#6b7280"
-PALETTE = {
-    "blue": "#0072B2",
-    "sky": "#56B4E9",
-    "orange": "#E69F00",
-    "vermilion": "#D55E00",
-    "green": "#009E73",
-    "purple": "#CC79A7",
-    "yellow": "#F0E442",
-    "grey": "#999999",
-    "sand": "#F3CF8E",
-    "night": "#1B3A57",
-    "brown": "#7A4B1E",
-    "olive": "#A3A847",
-    "ink": INK,
-}
-"""Colours of Okabe and Ito, five more of other lightness, and that of texts."""
+STYLE: Mapping[str, dict[str, Any]] = tomllib.loads(
+    files("fem_impact.figures").joinpath("style.toml").read_text(encoding="utf-8")
+)
+PALETTE: Mapping[str, str] = STYLE["palette"]
+"""Colours of Okabe and Ito, others of other lightness, and those of texts."""
+INK, QUIET = PALETTE["ink"], PALETTE["quiet"]
 
 COLOURS = ("blue", "vermilion", "green", "purple", "orange", "sky", "night", "grey", "brown")
 """Colours of series in order."""
@@ -48,30 +39,6 @@ COLOURS = ("blue", "vermilion", "green", "purple", "orange", "sky", "night", "gr
 WIDTH = 8.4  # inches
 NEAR = 0.05
 """Least distance, share of the axis, of two marks whose labels stand on the same side."""
-
-_STYLE: dict[Any, Any] = {
-    "font.family": "DejaVu Sans",
-    "font.size": 9.0,
-    "axes.edgecolor": QUIET,
-    "axes.labelcolor": INK,
-    "axes.linewidth": 0.7,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.titlesize": 9.5,
-    "axes.titleweight": "bold",
-    "axes.titlelocation": "left",
-    "axes.axisbelow": True,
-    "grid.color": "#e2e5e9",
-    "grid.linewidth": 0.7,
-    "legend.frameon": False,
-    "legend.fontsize": 8.0,
-    "text.color": INK,
-    "xtick.color": QUIET,
-    "ytick.color": QUIET,
-    "xtick.labelcolor": INK,
-    "ytick.labelcolor": INK,
-    "svg.hashsalt": "fem-impact",
-}
 
 
 @contextmanager
@@ -85,7 +52,8 @@ def figure(path: Path, height: float, width: float = WIDTH) -> Iterator[Figure]:
     """
     import matplotlib
 
-    with matplotlib.rc_context(_STYLE):
+    style: dict[Any, Any] = {key: PALETTE.get(value, value) for key, value in STYLE["matplotlib"].items()}
+    with matplotlib.rc_context(style):
         drawn = new_figure(height, width)
         yield drawn
         save(drawn, path)
