@@ -36,7 +36,7 @@ def test_unknown_shares_give_each_reason_once_and_nothing_runs_over(cli, stand):
     sentences = " ".join(shares.split()).split("later strikes")[0]
     assert f"  restitution e (tip's arms){'not known':>24}\n" in motion
     assert sentences.count("not in the stand-in") == 1
-    assert "energy locked into rod; energy locked into barrier; radiated;" in sentences
+    assert "energy locked in rod; energy locked in barrier; radiated;" in sentences
     assert f"  friction{'30 %':>44}\n" in shares
     assert f"  not accounted for{'under 0.001 %':>35}\n" in shares
     assert max(map(len, out.splitlines())) < 80

@@ -82,10 +82,10 @@ def test_figures_of_a_study(tmp_path):
 
 def test_titles_of_a_comparison_stand_over_their_panels(tmp_path, monkeypatch):
     names = [
-        "energy locked into rod/E_0",
+        "energy locked in rod/E_0",
         "plastic barrier/E_0",
-        "energy locked into barrier/E_0",
-        "energy locked into barrier/E_0 ",
+        "energy locked in barrier/E_0",
+        "energy locked in barrier/E_0 ",
     ]
     first = result_maker.comparison()[0] | {"set": "t3-contaminated"}
     kept, save = [], still.save
