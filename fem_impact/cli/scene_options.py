@@ -109,19 +109,24 @@ def _say_fall(scene: Scene, changed: set[str], options: Options) -> None:
     """Say that the velocities are those of the angle before, or that the fall is as fast as it was."""
     impact = scene.impact
     given = any(key.startswith(("impact.v_", "impact.speed", "impact.height")) for key in changed)
-    if given or not {"impact.angle", "impact.angle_rad"} & changed or impact.height:
+    if (
+        given
+        or not {"impact.angle", "impact.angle_rad"} & changed
+        or (impact.height and impact.slope is not None)
+    ):
         return
     from fem_impact.scene.shipped import load_to_change
 
-    if load_to_change(options.scene, read_changes(options.changes)).impact.angle == impact.angle:
+    old = load_to_change(options.scene, read_changes(options.changes)).impact
+    if old.angle == impact.angle:
         return
     speed = math.hypot(impact.v_n, impact.v_t)
-    if impact.speed:
-        ball = getattr(scene.projectile.shape, "name", "") == "ball"
-        falls = "the ball falls" if ball else "the rod falls along its axis"
+    if impact.speed or impact.height:
+        falls = "still moves" if scene.projectile.is_ball else "still moves along its axis"
         sentence = (
-            f"{falls} as fast as before, {speed:.4g} m/s: v_n = {impact.v_n:.4g} m/s, "
-            f"v_t = {impact.v_t:.4g} m/s (others: --set impact.v_n=... --set impact.v_t=...)"
+            f"the {scene.projectile.called} {falls} at {speed:.4g} m/s, which turns its velocity: "
+            f"v_n = {impact.v_n:.4g} m/s, v_t = {impact.v_t:.4g} m/s. To keep the old one: "
+            f"--set impact.v_n='{old.v_n:.4g} m/s' --set impact.v_t='{old.v_t:.4g} m/s'"
         )
     else:
         sentence = "warning: v_n and v_t are those of the old angle."

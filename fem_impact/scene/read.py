@@ -332,6 +332,7 @@ def _barrier(table: tables.Table) -> Barrier:
     if "layers" in table:
         example = '{thickness = "2 mm", material = "rod-steel"}'
         given["layers"] = tables.listed(table["layers"], "layers", _layer, example)
+        tables.needed(table, "material", '"plate-steel", for what lies under the layers')
     return Barrier(tables.within(table, "material", library.read_material), **given)
 
 

@@ -104,8 +104,8 @@ def test_a_bore_that_stays_short_is_told(cli, tmp_path):
 def test_a_ball_has_no_axis_to_fall_along(cli):
     Path("ball.toml").write_text(BALL)
     for scene, falls in (
-        ("ball.toml", "the ball falls as fast"),
-        ("t5b", "the rod falls along its axis as fast"),
+        ("ball.toml", "the ball still moves at 3 m/s"),
+        ("t5b", "the rod still moves along its axis at"),
     ):
         assert falls in " ".join(cli("check", scene, "--set", "impact.angle=20 deg")[2].split())
 

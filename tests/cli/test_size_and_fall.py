@@ -49,7 +49,8 @@ BESIDE = "which no dropped rod does"
 def test_a_fall_at_a_new_angle_stays_a_fall_and_the_user_is_told(cli, command):
     rigid = () if command == "check" else ("--fidelity", "rigid")
     _, out, err = cli(command, "t5b", "--set", "impact.angle=30 deg", *rigid)
-    assert "along its axis as fast as before, 2.11 m/s: v_n = -1.828 m/s" in err
+    assert "along its axis at 2.11 m/s, which turns its velocity: v_n = -1.828 m/s" in err
+    assert "To keep the old one: --set impact.v_n='-1.502 m/s' --set impact.v_t='-1.482 m/s'" in err
     assert BESIDE not in " ".join(out.split())
 
 
