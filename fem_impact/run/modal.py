@@ -9,17 +9,8 @@ from fem_impact.outcome.groups import Energy, Heat, Markers, RunCost, limitation
 from fem_impact.outcome.keys import Num, Unknown, unknown
 from fem_impact.outcome.record import Outcome
 from fem_impact.progress import Progress
+from fem_impact.run import common
 from fem_impact.run.assemble import ImpactEnd, Reduction
-from fem_impact.run.common import (
-    HARDER,
-    MASSIVE,
-    RESIDUAL_LIMIT,
-    UNBENT,
-    apart,
-    flow_left_out,
-    plastic_shares,
-    rod_flows,
-)
 from fem_impact.run.modal_error import half_widths, place_of, sentence
 
 HALVINGS = 2  # of the time step
@@ -48,7 +39,7 @@ def closed(
     """
     for halved in range(HALVINGS + 1):
         result = solve(case, progress, recorded, 0.5**halved, arrival, alone)
-        if abs(result.residual / result.E_0) <= RESIDUAL_LIMIT:
+        if abs(result.residual / result.E_0) <= common.RESIDUAL_LIMIT:
             break
     return result
 
@@ -57,7 +48,7 @@ def reduce(case: Case, result: ModalResult) -> Outcome:
     """Return the Outcome of a modal impact."""
     barrier, base = case.scene.barrier, (result.V_bn, result.V_bt)
     turns = barrier.inertia is not None
-    left_out = flow_left_out(case)
+    left_out = common.flow_left_out(case)
     end = ImpactEnd(
         V_n=result.V_n,
         V_t=result.V_t,
@@ -70,7 +61,7 @@ def reduce(case: Case, result: ModalResult) -> Outcome:
         missing=result.residual / result.E_0,
         finished=result.finished,
         reason=result.reason,
-        turn=(result.Omega_b, apart(case), result.away) if turns else None,
+        turn=(result.Omega_b, common.apart(case), result.away) if turns else None,
     )
     turned = abs(result.Omega_b) * float(result.contacts[-1, 1])
     tilted = f"The barrier turns by up to {turned:.2g} rad in contact, but its surface is taken as level."
@@ -109,7 +100,7 @@ def reduce(case: Case, result: ModalResult) -> Outcome:
 def _energy(case: Case, result: ModalResult) -> Energy:
     E_0, vibration = result.E_0, result.vibration / result.E_0
     floor = abs(result.residual) / E_0
-    plastic_rod, plastic_barrier = plastic_shares(case, result.plastic / E_0)
+    plastic_rod, plastic_barrier = common.plastic_shares(case, result.plastic / E_0)
     skin, skin_rod, skin_barrier = _skins(case, result.skin / E_0, result.friction / E_0)
     return Energy(
         E_0=E_0,
@@ -127,8 +118,8 @@ def _energy(case: Case, result: ModalResult) -> Energy:
         locked_rod=NO_STRESS,
         locked_barrier=NO_STRESS,
         radiated=result.waves / E_0 if result.laid else UNSENT,
-        plate=result.plate / E_0 if case.slots.plate else UNBENT,
-        barrier=result.barrier / E_0 if case.scene.barrier.mass else MASSIVE,
+        plate=result.plate / E_0 if case.slots.plate else common.UNBENT,
+        barrier=result.barrier / E_0 if case.scene.barrier.mass else common.MASSIVE,
         closing=Unknown("the reduced model has no contact nodes"),
         damping=result.viscous / E_0 if case.slots.contact_loss else UNDAMPED,
         contact=result.stored / E_0 if result.stored else Unknown("nothing touches at the end"),
@@ -174,12 +165,12 @@ def _dent(case: Case) -> list[str]:
     """Return which body keeps the dent; none where neither yields."""
     if not (case.contact.rod_yields or case.contact.barrier_yields):
         return []
-    where = "tip" if rod_flows(case) else "barrier"
+    where = "tip" if common.rod_flows(case) else "barrier"
     return [f"A later contact of the same strike meets the dent that the first one left in the {where}."]
 
 
 def _skins(case: Case, sheared: float, friction: float) -> tuple[Num, Num, Num]:
     """Return friction and plastic work of the surface, and that work of rod and barrier alone."""
-    if rod_flows(case):
-        return SOFT_ROD, SOFT_ROD, HARDER if case.contact.barrier_yields else 0.0
-    return sheared, HARDER if case.contact.rod_yields else 0.0, sheared - friction
+    if common.rod_flows(case):
+        return SOFT_ROD, SOFT_ROD, common.HARDER if case.contact.barrier_yields else 0.0
+    return sheared, common.HARDER if case.contact.rod_yields else 0.0, sheared - friction

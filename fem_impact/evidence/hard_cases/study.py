@@ -229,7 +229,10 @@ class HardCaseJob:
 
 
 def model_of(case: HardCase, planned: Case) -> Model:
-    """Return the model of a case, with its own height, shift and step at the start."""
+    """Return the solver's model of a case, which starts `gap` above the barrier and `shifted` along t, m.
+
+    Its time step is `step` times the stable one.
+    """
     model = build(planned, case.gap)
     x, v = model.start[0].copy(), model.start[1]
     x[model.layout.rod[:, 0]] += case.shifted

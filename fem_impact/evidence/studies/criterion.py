@@ -260,7 +260,10 @@ def _bands(rods: DataFrame) -> Array | None:
 
 
 def angles_picture(angles: DataFrame) -> Picture:
-    """Return e against inclination, one panel per family with up to six of its 19 mm rods."""
+    """Return e against inclination, degrees, one panel per family with up to six of its 19 mm rods.
+
+    ``angles`` are rows of `angle_rows`.
+    """
     panels = []
     colours: dict[str, int] = {}
     for name, of_contact in angles[angles.diameter_m == dropped.BODY].groupby("contact", sort=False):
