@@ -23,7 +23,7 @@ LIMIT_PRESSURE = 2.8  # mean pressure of a fully plastic indentation over the yi
 SECTION = 1.8412  # first zero of J1': cut-off k R of shear modes within the round section
 FLAT = 2.0  # depths, within which a face or a flank lies flat on the barrier
 ROUNDS = 12  # of depth and width, each of which moves the depth a quarter of the last
-FLATTEST = 0.2  # m, upper limit of R2, which is infinite for a contact on a flat face
+FLATTEST = 0.2 / 0.019  # diameters, upper limit of R2, which is infinite for a contact on a flat face
 
 
 class Plate(NamedTuple):
@@ -163,13 +163,14 @@ class ContactPair:
     def principal_radii(self) -> tuple[float, float]:
         """(R1, R2), m, of the tip at its lowest point."""
         R1 = self.body.tip_curvature(self.angle) or self.body.diameter / 200
+        flattest = FLATTEST * self.body.diameter
         if isinstance(self.body, Faceted):
-            return R1, min(max(self.body.curvature_around(self.angle), R1), FLATTEST)
+            return R1, min(max(self.body.curvature_around(self.angle), R1), flattest)
         x, _ = self.body.contact_point(self.angle)
-        at_pole = FLATTEST if self.body.face > 0 else R1
+        at_pole = flattest if self.body.face > 0 else R1
         around = float(x) / sin(self.angle) if self.angle else at_pole
         # a straight side is round about the rod's axis, whatever the radius of the edge at its end
-        return R1, min(around if self.lands_flat and self.angle else max(around, R1), FLATTEST)
+        return R1, min(around if self.lands_flat and self.angle else max(around, R1), flattest)
 
     @property
     def reduced(self) -> tuple[float, float]:

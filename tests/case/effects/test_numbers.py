@@ -132,7 +132,11 @@ def test_tip_radii_where_the_shape_ends():
     }
     assert at["0 deg"] == pytest.approx((9.5e-3, 9.5e-3))
     assert at["1 deg"] == pytest.approx(at["0 deg"])
-    assert radii(replace_all(load("t5b"), {"impact.angle": "0 deg"}))[1] == FLATTEST
+    flat = replace_all(load("t5b"), {"impact.angle": "0.1 deg"})
+    twice = {"length": "160 mm", "diameter": "38 mm", "tip_radius": "6 mm"}
+    larger = replace_all(flat, {f"projectile.{name}": size for name, size in twice.items()})
+    assert radii(flat)[1] == pytest.approx(FLATTEST * 0.019)
+    assert radii(larger) == pytest.approx(tuple(2 * radius for radius in radii(flat)))
     round_tip = replace_all(load("t5b"), {"projectile.tip": "A", "projectile.tip_radius": "7 mm"})
     assert Case(changed(round_tip, "impact.angle", "59 deg")).contact.principal_radii[0] == 7e-3
     assert Case(changed(round_tip, "impact.angle", "61 deg")).contact.principal_radii[0] == pytest.approx(
