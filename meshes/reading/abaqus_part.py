@@ -27,6 +27,7 @@ SIDES = {
     8: ((0, 1, 2, 3), (4, 7, 6, 5), (0, 4, 5, 1), (1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 4, 0)),
 }
 SIDES |= {10: SIDES[4], 15: SIDES[6], 20: SIDES[8], 27: SIDES[8]}
+LINES = ("B2", "B3", "T2D", "T3D", "PIPE", "SPRING", "DASHPOT", "CONN", "ELBOW", "FRAME")  # cells along lines
 SHELL_SIDES = ("SPOS", "SNEG", "")
 
 
@@ -90,6 +91,8 @@ def place(body: AbaqusPart, moves: list[list[str]], found: Elements, name: str) 
         if told is None and kind == "MASS":
             stated = [body.masses[one] for one in named if one in body.masses]
             found.masses.append(PointMass("MASS", (*stated, nan)[0], places[0]))
+        elif told is None and kind.startswith(LINES):
+            found.leave(f"cell of type {kind}")
         elif told is None:
             found.add_face(kind, places, *named)
         elif min(places) < 0:

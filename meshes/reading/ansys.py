@@ -16,6 +16,7 @@ SOLIDS |= {239, 278, 279}
 TETRA10 = {87, 92, 98, 123, 127, 148, 168, 187, 227, 232, 237, 291}
 TETRA4 = {72, 285}
 MASSES = {21, 166}
+LINES = {4, 8, 10, 14, 16, 20, 44, 180, 188, 189, 288, 289, 290}  # beams, links, pipes and springs
 MAKERS = ("NGEN", "EGEN", "NSCALE", "TRANSFER", "NSYM", "ESYM", "EN", "E", "N")
 
 
@@ -172,6 +173,8 @@ def _stored(archive: _Archive) -> StoredMesh:
         elif kind in MASSES:
             mass = archive.constants.get(archive.real[number], nan)
             found.masses.append(PointMass(f"MASS{kind}", mass, found.at(nodes)[0]))
+        elif kind in LINES:
+            found.leave(f"cell of type {kind}")
         elif kind:
             found.add_face(str(kind), found.at(nodes), *sets.get(number, []))
         else:

@@ -99,10 +99,11 @@ def test_two_instances_are_both_there_and_one_may_be_named(tmp_path):
 def test_reference_points_and_shells_are_told(tmp_path):
     points, cells = square()
     point = "*NODE\n1, 0., 0., -10.\n*NSET, NSET=RP\n1,\n"
+    beam = "*element, type=B32, elset=skin\n9002, 1, 2, 3\n*END PART"
     deck = tmp_path / "rp.inp"
-    deck.write_text(parts(decks.abaqus(points, cells), assembly=point))
+    deck.write_text(parts(decks.abaqus(points, cells), assembly=point).replace("*END PART", beam))
     body = read_own(deck, 1e-3)
-    assert body.told[0] == "left out: 1 cell of type S3"
+    assert body.told[0] == "left out: 1 cell of type S3, 1 cell of type B32"
 
 
 # by ending: what a deck of the bar is told of masses without volume, and where its last line comes after
