@@ -98,9 +98,8 @@ def with_spread(case: Case, strikes: Strikes, meshed: Sequence[Doubt | None] = (
         plain = _run(case.scene, each)
         runs = [_run(scene, each, at) for scene, at in _drawn(case)]
     except SceneError as error:
-        return _without(
-            strikes, Unknown(f"rigid theory does not follow the scene: {error.problem.rstrip('.')}")
-        )
+        why = f"rigid theory does not follow the scene: its {error.key} {error.problem.rstrip('.')}"
+        return _without(strikes, Unknown(why))
     certain, length = _common([own, plain, *runs]), case.contact.body.length
     ends = [other_end(run, length) for run in runs]
     # a strike of a part that the run's own is not of comes by the law of rigid runs, without a force

@@ -47,7 +47,9 @@ BEYOND = (
 ELSEWHERE = (
     "Strike {} lands {:.2g} mm beside the fine cells that are held ready: finite elements end before it."
 )
-ALONE = "Where it will strike is foretold by rigid theory alone, as the reduced model refuses the scene: {}."
+ALONE = (
+    "Where it will strike is foretold by rigid theory alone, as the reduced model refuses the scene: its {}."
+)
 STOPPED = "Strike {} is not that of finite elements, which did not see its end. {}"
 NARROW = "Of strike {} {}."
 """What is told of a strike whose contact is narrow: its number, and how narrow."""
@@ -93,7 +95,7 @@ def _by_modes(case: Case) -> Case | str:
     try:
         return Case.of(case.scene, "modal")
     except SceneError as refused:
-        return refused.problem
+        return f"{refused.key} {refused.problem.rstrip('.')}"
 
 
 class StruckDent(NamedTuple):
@@ -168,7 +170,7 @@ class SolidCourse:
             _by_modes(self.case),
         )
         if isinstance(by_modes, str):
-            several.append(ALONE.format(by_modes.rstrip(".")))
+            several.append(ALONE.format(by_modes))
         return [*(several if self.body.upto != 1 else []), *self.told]
 
     def to_the_end(self, options: RunOptions) -> Finish:
