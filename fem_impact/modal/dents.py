@@ -46,7 +46,8 @@ class Dent:
         state, law = held.state[s], FlowLaw(*held.flow[s])
         cells = np.arange(int(state[IN_GROOVE.first]), int(state[IN_GROOVE.last]) + 1)
         place = (cells + 0.5) * held.size[s] - _origin(sites, s, now, along, law.ploughs)
-        depth = held.depth[s][cells % CELLS]
+        # the ridge that was piled up is left out: a strike begins at the level of the surface beside it
+        depth = np.maximum(held.depth[s][cells % CELLS], 0.0)
         return cls(s, law.R2, place, depth, float(state[IN_GROOVE.widest]), float(held.size[s]))
 
     def meets(self, held: Touched, s: int, sites: Sites, now: ModalState, along: float) -> bool:
@@ -65,7 +66,7 @@ class Dent:
         held.depth[s][cells % CELLS] = np.interp((cells + 0.5) * size, x, self.depth, 0.0, 0.0)
         state = held.state[s]
         state[IN_GROOVE.first], state[IN_GROOVE.last] = cells[0], cells[-1]
-        state[IN_GROOVE.widest], state[IN_GROOVE.top] = self.widest, max(0.0, -float(self.depth.min()))
+        state[IN_GROOVE.widest] = self.widest
         return True
 
 
