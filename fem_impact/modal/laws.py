@@ -24,6 +24,9 @@ STEADIER = 30.0  # times as many steps where a whole row of cells touches and le
 FLATTEST, UPRIGHT = 1e-4, 1.5  # rad, least and most lean of a straight part beside a site
 BEYOND = 0.25 * pi  # rad, by which its far end leans more: cells leave a loaded end over a way, not at once
 SLOWEST = 0.25  # of the first approach, at which a site that touches later counts as coming at least
+DEEPER = (
+    30.0  # times the energy of its approach that a contact may take up: vibration and ploughing drive it on
+)
 
 
 def pair_at(case: Case, rod: ModalRod, now: ModalState, s: int, slowest: float) -> ContactPair:
@@ -86,6 +89,8 @@ def give_law(
     row[SITE.sunk_n] -= max(0.0, row[SITE.sunk_n] - rigid[AT.height] - height_of(rod, now, s))
     law = contact_law(pair, case.slots.contact_loss)
     flow = flow_law(pair, case.slots.rod_law, case.slots.barrier_law)
+    # of a rod that grazes little presses its tip in: cells as wide as for all its energy miss the contact
+    energy = min(energy, DEEPER * pair.energy)
     widest = reach(law, flow, energy)
     longest = widest * LONGEST / ACROSS if flow.yields and flow.ploughs else 0.0
     laid = lay_flat(case, rod, now, held, s, pair, longest)

@@ -235,7 +235,7 @@ class ContactPair:
         return flows and self.barrier_yields
 
     @cached_property
-    def _energy(self) -> float:
+    def energy(self) -> float:
         """What presses the tip in, J."""
         return 0.5 * self.effective_mass * max(self.approach, 1e-6) ** 2
 
@@ -243,12 +243,12 @@ class ContactPair:
         """Return the size of the contact of a tip of radii ``R1`` and ``R2``, m."""
         R, E_star, speed = sqrt(R1 * R2), self.modulus, max(self.approach, 1e-6)
         limit = LIMIT_PRESSURE * min((metal.yield_stress for metal in self.yielding), default=inf)
-        depth = (self._energy / (8 / 15 * E_star * sqrt(R))) ** 0.4
+        depth = (self.energy / (8 / 15 * E_star * sqrt(R))) ** 0.4
         pressure = 4 / (3 * pi) * E_star * sqrt(depth / R)
         if pressure <= limit:
             duration = 2.94 * depth / speed
             return ContactEstimate(depth, sqrt(R1 * depth), sqrt(R2 * depth), duration, pressure, R1, R2)
-        depth = sqrt(self._energy / (pi * limit * R))
+        depth = sqrt(self.energy / (pi * limit * R))
         duration = 0.5 * pi * depth / speed * 1.3
         return ContactEstimate(depth, sqrt(2 * R1 * depth), sqrt(2 * R2 * depth), duration, limit, R1, R2)
 

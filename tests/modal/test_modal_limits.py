@@ -139,6 +139,13 @@ def test_a_negative_restitution_is_explained():
     assert "the tip lifts off by friction or turning" in texts(outcome.validity.limitations, "result")[0]
 
 
+@pytest.mark.parametrize("v_t", ["-1 m/s", "-20 m/s"])
+def test_a_tip_that_grazes_rubs_as_it_presses(v_t):
+    """It comes down at 10 mm/s: the energy of its way along the barrier does not widen its contact."""
+    grazing = replace_all(load("t5b"), {"impact.v_n": "-10 mm/s", "impact.v_t": v_t})
+    assert outcome_of(grazing).restitution.mu == pytest.approx(grazing.surface.friction, rel=1e-3)
+
+
 def test_a_long_step_does_not_cut_a_contact_to_pieces():
     """A contact of 15 ms takes steps longer than the gap that joins contacts, 10 us."""
     heavy = {"projectile.length": "2 m", "projectile.diameter": "60 mm", "impact.v_n": "-1e-6 m/s"}
