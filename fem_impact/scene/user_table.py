@@ -119,7 +119,7 @@ def _text(path: str | Path) -> str:
 
 def _lines(text: str, path: str | Path) -> Iterator[Line]:
     header = next((line for line in text.split("\n") if line.strip() and not line.startswith("#")), "")
-    mark = next((one for one in ";\t" if one in header), ",")
+    mark = max(",;\t", key=header.count)
     reader = csv.reader(io.StringIO(text), strict=True, delimiter=mark)
     try:
         for cells in reader:

@@ -15,8 +15,9 @@ from fem_impact.errors import RunError
 from fem_impact.fem.flight import RigidMotion
 from fem_impact.fem.stable import SAFETY, gradient_squares
 from fem_impact.outcome.keys import Unknown
+from fem_impact.run.markers import WINDOW, lever_of, replay
 from fem_impact.run.simulate import simulate
-from fem_impact.run.solid import WINDOW, lever_of, reduce, replay
+from fem_impact.run.solid import reduce
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.solid.build import START_GAP, build
 from fem_impact.solid.contact.book import StepRecord
