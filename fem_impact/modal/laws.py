@@ -24,9 +24,7 @@ STEADIER = 30.0  # times as many steps where a whole row of cells touches and le
 FLATTEST, UPRIGHT = 1e-4, 1.5  # rad, least and most lean of a straight part beside a site
 BEYOND = 0.25 * pi  # rad, by which its far end leans more: cells leave a loaded end over a way, not at once
 SLOWEST = 0.25  # of the first approach, at which a site that touches later counts as coming at least
-DEEPER = (
-    30.0  # times the energy of its approach that a contact may take up: vibration and ploughing drive it on
-)
+DEEPER = 30.0  # times the energy of its approach that vibration and ploughing may press into a contact
 
 
 def pair_at(case: Case, rod: ModalRod, now: ModalState, s: int, slowest: float) -> ContactPair:

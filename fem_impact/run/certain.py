@@ -36,8 +36,8 @@ EXACT = Unknown(
     "friction_high, strikes.angle_error or speed_error"
 )
 FORCELESS = Unknown("one of the first strikes has no force: it is rigid, without duration")
-UNTOLD = "fidelity", "part", "damping", "taken", "other", "dent", "highest", "lowest"
 PHASES = tuple(f"{name}_phase" for name in PHASED)
+UNTOLD = "fidelity", "part", "damping", "taken", "other", "dent", "highest", "lowest"
 """What of a strike has no half-width: see `NO_ERROR`."""
 NAMES = {key.path[-1]: key.name for key in keys_of(StrikeRecord) if key.path[-1] not in UNTOLD + PHASES}
 """Keys of the numbers that have half-widths."""
