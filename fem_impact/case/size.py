@@ -79,7 +79,11 @@ class RunSize:
 
 def run_size(slots: ModelSpec, bodies: Bodies, zones: Zones) -> RunSize:
     """Return about what a run of these bodies takes with these fine zones."""
-    rod = _rod_elements(bodies, zones, slots.vibrating)
+    # the elements of half the rod, without slices if it cannot vibrate
+    boxes, end = zones.rod_boxes, bodies.rod.length
+    rod = _coarse_elements(bodies, end if slots.vibrating else min(_body_start(bodies, zones, boxes), end))
+    for edge, lowest, highest in _split_boxes(zones.rod_base, boxes):
+        rod += SPLIT * _inside_rod(bodies, lowest, highest)[1] / edge**3
     barrier = _block_elements(bodies, zones) if slots.meshed_barrier else 0.0
     yielding = _yielding_rod(bodies, zones) if slots.rod_law else 0.0
     yielding += _yielding_block(zones) if any(slots.barrier_laws) else 0.0
@@ -248,15 +252,6 @@ def _split_boxes(base: float, boxes: list[tuple[Array, Array]]) -> Iterator[tupl
         pairs = list(zip(boxes[level - 1 :], margins, strict=True))
         low = np.min([corner - margin for (corner, _), margin in pairs], axis=0)
         yield edge, low, np.max([corner + margin for (_, corner), margin in pairs], axis=0)
-
-
-def _rod_elements(bodies: Bodies, zones: Zones, vibrating: bool) -> float:
-    """Return the elements of half the rod, without slices if it cannot vibrate."""
-    boxes, end = zones.rod_boxes, bodies.rod.length
-    count = _coarse_elements(bodies, end if vibrating else min(_body_start(bodies, zones, boxes), end))
-    for edge, lowest, highest in _split_boxes(zones.rod_base, boxes):
-        count += SPLIT * _inside_rod(bodies, lowest, highest)[1] / edge**3
-    return count
 
 
 def _coarse_elements(bodies: Bodies, end: float) -> float:

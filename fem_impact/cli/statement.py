@@ -23,6 +23,15 @@ __all__ = ["statement_of"]
 def statement_of(case: Case) -> dict[str, Any]:
     """Return the document of ``--json``, from which the texts are made; SI units."""
     scene = case.scene
+    # why a fidelity refuses the scene, None where it answers it; finite elements do
+    refusals: dict[str, str | None] = {"solid": None}
+    for fidelity in ("modal", "rigid"):
+        try:
+            compiled(scene, fidelity)
+        except SceneError as error:
+            refusals[fidelity] = str(error)
+        else:
+            refusals[fidelity] = None
     return {
         "scene": to_dict(scene),
         "digest": digest(scene),
@@ -39,22 +48,9 @@ def statement_of(case: Case) -> dict[str, Any]:
         "defaults": [{"key": d.key, "value": d.value, "source": d.source} for d in DEFAULTS],
         "effects": [{key.name: key.of(choice) for key in keys_of(EffectChoice)} for choice in case.choices],
         "limitations": [asdict(one) for one in case.limitations],
-        "fidelities": _fidelities(scene),
+        "fidelities": refusals,
         "size": None if scene.accuracy.target else _size_entry(case.size),
     }
-
-
-def _fidelities(scene: Scene) -> dict[str, str | None]:
-    """Return why a fidelity refuses the scene, None where it answers it; finite elements do."""
-    found: dict[str, str | None] = {"solid": None}
-    for fidelity in ("modal", "rigid"):
-        try:
-            compiled(scene, fidelity)
-        except SceneError as error:
-            found[fidelity] = str(error)
-        else:
-            found[fidelity] = None
-    return found
 
 
 def _mesh_entry(scene: Scene) -> list[str]:

@@ -91,22 +91,18 @@ def study(options: Options) -> int:
     from fem_impact.answers.report import Request
 
     if options.name == "report":
-        return _report(options, out)
+        # write one page over the studies in the parent directory of ``out``
+        from fem_impact.files.atomic import directory_lock
+        from fem_impact.pages.all_page import write_all
+
+        with directory_lock(out):
+            if not options.quiet:
+                sys.stderr.write("reading the studies and drawing their figures ...\n")
+            path = write_all(out.parent, out)
+        print_answer(options, {"path": str(path)}, f"report: {path}\n")
+        return 0
     drawn = {"first": options.first, "seed": options.seed} if STUDIES[options.name].draws else {}
     return carry_out(f"studies.{options.name}", options, Request(out, ids, options.quick, **drawn))
-
-
-def _report(options: Options, out: Path) -> int:
-    """Write one page over the studies in the parent directory of ``out``."""
-    from fem_impact.files.atomic import directory_lock
-    from fem_impact.pages.all_page import write_all
-
-    with directory_lock(out):
-        if not options.quiet:
-            sys.stderr.write("reading the studies and drawing their figures ...\n")
-        path = write_all(out.parent, out)
-    print_answer(options, {"path": str(path)}, f"report: {path}\n")
-    return 0
 
 
 def carry_out(module: str, options: Options, request: Request) -> int:

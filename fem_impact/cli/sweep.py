@@ -9,7 +9,7 @@ from typing import Any
 
 from fem_impact.answers.sweep import FIDELITY, cases_digest
 from fem_impact.answers.sweep import sweep as swept
-from fem_impact.answers.sweep_results import Results, require_columns
+from fem_impact.answers.sweep_results import require_columns
 from fem_impact.answers.vary import cases
 from fem_impact.cli.parser import Options
 from fem_impact.cli.paths import checked_out, told_kept
@@ -27,7 +27,12 @@ def sweep(options: Options) -> int:
     """Compute all combinations, write table and figures, and print the findings."""
     columns = [name.strip() for name in options.columns.split(",")] if options.columns else []
     require_columns(columns)
-    vary = _vary(options)
+    pairs = [read_values(text) for text in options.vary]
+    keys = [key for key, _ in pairs]
+    twice = next((key for key in keys if keys.count(key) > 1), "")
+    if twice:
+        raise UsageError("is varied twice.", key="--vary", value=twice, remedy="Give all its values at once.")
+    vary = dict(pairs)
     _refuse_both(read_changes(options.changes), vary)
     scene = changed_scene(options.scene, options.changes)
     cases(scene, vary)  # refuses what cannot run before a directory is made
@@ -39,21 +44,18 @@ def sweep(options: Options) -> int:
         line = command_line(options, "sweep", "vary", "fidelity", "columns")
         results = swept(scene, vary, fidelity, out, workers, meter, executor, columns, line)
     if options.json:
-        print_json(_document(results, out))
+        table = results.table()
+        names = [column.name for column in table.columns]
+        document = {
+            "vary": {key: list(values) for key, values in results.vary.items()},
+            "rows": [dict(zip(names, row, strict=True)) for row in table.rows],
+            "path": str(out),
+        }
+        print_json(document)
     else:
         print_markdown(read_text(out / "summary.md"), options)
         sys.stdout.write(f"results: {out}\nreport: fem-impact report {out}\n")
     return RunError.exit_code if any(row.outcome is None for row in results) else 0
-
-
-def _vary(options: Options) -> dict[str, list[Any]]:
-
-    pairs = [read_values(text) for text in options.vary]
-    keys = [key for key, _ in pairs]
-    twice = next((key for key in keys if keys.count(key) > 1), "")
-    if twice:
-        raise UsageError("is varied twice.", key="--vary", value=twice, remedy="Give all its values at once.")
-    return dict(pairs)
 
 
 def _refuse_both(changes: Mapping[str, Any], vary: Mapping[str, Any]) -> None:
@@ -69,13 +71,3 @@ def _refuse_both(changes: Mapping[str, Any], vary: Mapping[str, Any]) -> None:
         the_way(stated)
     except SceneError as error:
         raise error.under("impact", "--set, --vary") from None
-
-
-def _document(results: Results, out: Path) -> dict[str, Any]:
-    table = results.table()
-    names = [column.name for column in table.columns]
-    return {
-        "vary": {key: list(values) for key, values in results.vary.items()},
-        "rows": [dict(zip(names, row, strict=True)) for row in table.rows],
-        "path": str(out),
-    }

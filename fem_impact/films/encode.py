@@ -60,7 +60,15 @@ def encode(frames: Iterable[np.ndarray], path: Path, fps: int) -> Path:
         ".gif": partial(_animate, prepare=lambda picture: picture.quantize(192), optimize=False),
     }
     if path.suffix == ".png":
-        return _write_folder(frames, path.with_suffix(""))
+        folder = path.with_suffix("")
+        if folder.is_dir():
+            for old in folder.glob("frame_*.png"):
+                old.unlink()
+        make_directory(folder)
+        for number, frame in enumerate(frames):
+            with atomic_path(folder / f"frame_{number:04d}.png") as draft:
+                Image.fromarray(frame).save(draft)
+        return folder
     if path.suffix not in writers:
         raise OutputPathError(f"{path}: a film ends in {', '.join(SUFFIXES)}.")
     if path.suffix == ".mp4" and not _has_ffmpeg():
@@ -100,17 +108,6 @@ def _animate(
     pictures = (prepare(Image.fromarray(frame)) for frame in frames)
     first = next(pictures)
     first.save(path, save_all=True, append_images=pictures, duration=round(1000 / fps), loop=0, **options)
-
-
-def _write_folder(frames: Iterable[np.ndarray], folder: Path) -> Path:
-    if folder.is_dir():
-        for old in folder.glob("frame_*.png"):
-            old.unlink()
-    make_directory(folder)
-    for number, frame in enumerate(frames):
-        with atomic_path(folder / f"frame_{number:04d}.png") as draft:
-            Image.fromarray(frame).save(draft)
-    return folder
 
 
 # VTK alone: with pyvista the trial takes three times as long

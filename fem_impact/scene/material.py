@@ -304,7 +304,16 @@ def _check_law(metal: Material) -> None:
     if metal.tangent_modulus is not None and metal.tangent_modulus >= metal.E:
         value = f"{metal.tangent_modulus / 1e9:.4g} GPa"
         raise SceneError("is not below E, the slope before yield.", key="tangent_modulus", value=value)
-    _check_flow(metal)
+    # refuse a table that does not begin at the yield stress, and heat without a heat capacity
+    flow = metal.flow
+    if isinstance(flow, TableFlow) and flow.points[0][1] != metal.yield_stress:
+        first = f"{flow.points[0][1] / 1e6:g} MPa"
+        remedy = f"Leave it out: it is the first point's stress, {first}."
+        value = f"{metal.yield_stress / 1e6:g} MPa"
+        raise SceneError("is not that of the table.", key="yield_stress", value=value, remedy=remedy)
+    if isinstance(flow, JohnsonCookFlow) and flow.m is not None and metal.heat_capacity is None:
+        remedy = "Give it, or leave out m, melting, reference and heat_share."
+        raise SceneError("is missing for the heat of the flow.", key="heat_capacity", remedy=remedy)
     _check_skin(metal)
 
 
@@ -319,19 +328,6 @@ def _check_skin(metal: Material) -> None:
         remedy = 'Write law = "tensile", or give skin.depth.'
         problem = "gives the bulk the hardness that the skin is to explain."
         raise SceneError(problem, key="law", value=metal.law, remedy=remedy)
-
-
-def _check_flow(metal: Material) -> None:
-    """Refuse a table that does not begin at the yield stress, and heat without a heat capacity."""
-    flow = metal.flow
-    if isinstance(flow, TableFlow) and flow.points[0][1] != metal.yield_stress:
-        first = f"{flow.points[0][1] / 1e6:g} MPa"
-        remedy = f"Leave it out: it is the first point's stress, {first}."
-        value = f"{metal.yield_stress / 1e6:g} MPa"
-        raise SceneError("is not that of the table.", key="yield_stress", value=value, remedy=remedy)
-    if isinstance(flow, JohnsonCookFlow) and flow.m is not None and metal.heat_capacity is None:
-        remedy = "Give it, or leave out m, melting, reference and heat_share."
-        raise SceneError("is missing for the heat of the flow.", key="heat_capacity", remedy=remedy)
 
 
 @dataclass(frozen=True, slots=True)

@@ -185,7 +185,11 @@ def _projectile(table: tables.Table) -> ProjectileSpec:
     }
     known = {key: value for key, value in table.items() if key not in own}
     _refuse_length(known)
-    _refuse_hollow(known)
+    # refuse other words for a bore, and say how it is stated
+    for key in known:
+        if any(word in key for word in ("inner", "wall", "hollow")):
+            remedy = 'State inner_diameter = "14 mm", or a bore by points (place from the tip, radius).'
+            raise SceneError(tables.UNKNOWN_KEY, key=key, value=known[key], remedy=remedy)
     if own["segments"]:
         if "material" in known:
             raise SceneError("stands beside segments, which have their own.", key="material")
@@ -227,14 +231,6 @@ def _refuse_length(table: tables.Table) -> None:
         remedy = f"Leave it out, or change projectile.{instead} instead."
         problem = f"is not stated for a {kind}: its length is {own}."
         raise SceneError(problem, key=key, value=table[key], remedy=remedy)
-
-
-def _refuse_hollow(table: tables.Table) -> None:
-    """Refuse other words for a bore, and say how it is stated."""
-    for key in table:
-        if any(word in key for word in ("inner", "wall", "hollow")):
-            remedy = 'State inner_diameter = "14 mm", or a bore by points (place from the tip, radius).'
-            raise SceneError(tables.UNKNOWN_KEY, key=key, value=table[key], remedy=remedy)
 
 
 def _of_mesh(table: tables.Table, own: dict[str, Any]) -> ProjectileSpec:

@@ -207,17 +207,14 @@ def outline_of(shape: Shape) -> Array:
     try:
         return shape.outline()
     except rigid.TooLongError as error:
-        raise SceneError(f"is not a shape: {error}.", key="shape", remedy=_shorter_nose(shape)) from None
+        # the remedy for a nose that is longer than the body
+        sizes = NEEDS.get(shape.name, ()) if isinstance(shape, NamedShape) else ("tip_radius",)
+        keys = " or ".join(key for key in sizes if key in (*REPLACED, "tip_radius"))
+        length = f" (projectile.{BY_LENGTH}, {keys})" if keys in REPLACED else f" (projectile.{keys})"
+        shorter_nose = f"Give a projectile.length beyond the nose, or with it a shorter nose{length}."
+        raise SceneError(f"is not a shape: {error}.", key="shape", remedy=shorter_nose) from None
     except rigid.ShapeError as error:
         raise SceneError(f"is not a shape: {error}.", key="shape") from None
-
-
-def _shorter_nose(shape: Shape) -> str:
-    """Return the remedy for a nose that is longer than the body."""
-    sizes = NEEDS.get(shape.name, ()) if isinstance(shape, NamedShape) else ("tip_radius",)
-    keys = " or ".join(key for key in sizes if key in (*REPLACED, "tip_radius"))
-    length = f" (projectile.{BY_LENGTH}, {keys})" if keys in REPLACED else f" (projectile.{keys})"
-    return f"Give a projectile.length beyond the nose, or with it a shorter nose{length}."
 
 
 @lru_cache(maxsize=64)

@@ -192,7 +192,13 @@ def _change(data: dict[str, Any], key: str, value: Any) -> None:
         if last == "law" or path[-1] not in material:
             material[path[-1]] = {}  # another law leaves none of the old one's numbers
     if not path and last not in data:
-        _refuse_bare(key, data)
+        # refuse a key without its section that one of a section comes near to, such as ``lenght``
+        sections = ((name, table) for name, table in data.items() if isinstance(table, dict))
+        whole = {inner: f"{name}.{inner}" for name, table in sections for inner in table}
+        near = get_close_matches(key, whole, 1, 0.8)
+        if near:
+            remedy = f"Did you mean {whole[near[0]]}?"
+            raise SceneError("is not a key of a scene.", key=key, remedy=remedy)
     table = _section(data, path, key)
     # an SI key replaces the key with a unit: ``length_m`` replaces ``length``
     table.pop(bare(last) if bare(last) in table else last, None)
@@ -241,16 +247,6 @@ def titled(title: str, changes: Mapping[str, Any]) -> str:
         for key, value in changes.items()
     )
     return f"{title}{', ' if _CHANGED in title else _CHANGED}{told}"[:_LONGEST]
-
-
-def _refuse_bare(key: str, data: dict[str, Any]) -> None:
-    """Refuse a key without its section that one of a section comes near to, such as ``lenght``."""
-    sections = ((name, table) for name, table in data.items() if isinstance(table, dict))
-    whole = {inner: f"{name}.{inner}" for name, table in sections for inner in table}
-    near = get_close_matches(key, whole, 1, 0.8)
-    if near:
-        remedy = f"Did you mean {whole[near[0]]}?"
-        raise SceneError("is not a key of a scene.", key=key, remedy=remedy)
 
 
 def _section(data: dict[str, Any], path: list[str], key: str) -> dict[str, Any]:

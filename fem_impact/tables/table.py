@@ -231,7 +231,13 @@ class Table:
     def terminal(self, width: int = 120, indent: str = "") -> str:
         """Return aligned lines; the widest column of texts is broken where ``width`` letters are too few."""
         rows = [[column.title for column in self.columns], *self.plain_rows()]
-        widths = self._widths(rows, width - len(indent))
+        # letters of each column, the widest one of texts cut down to what fits
+        widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+        over = sum(widths) + len(GAP) * (len(widths) - 1) - (width - len(indent))
+        texts = [at for at, column in enumerate(self.columns) if column.left]
+        if over > 0 and texts:
+            widest = max(texts, key=lambda at: widths[at])
+            widths[widest] = max(widths[widest] - over, min(NARROWEST, widths[widest]))
         lines = [line for row in rows for line in self._lines(row, widths)]
         return "\n".join((indent + line).rstrip() for line in lines)
 
@@ -244,16 +250,6 @@ class Table:
             [_text(cell, column.digits) for cell, column in zip(row, self.columns, strict=True)]
             for row in self.rows
         ]
-
-    def _widths(self, rows: Sequence[Sequence[str]], width: int) -> list[int]:
-        """Return letters of each column, the widest one of texts cut down to what fits."""
-        widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-        over = sum(widths) + len(GAP) * (len(widths) - 1) - width
-        texts = [at for at, column in enumerate(self.columns) if column.left]
-        if over > 0 and texts:
-            widest = max(texts, key=lambda at: widths[at])
-            widths[widest] = max(widths[widest] - over, min(NARROWEST, widths[widest]))
-        return widths
 
     def _lines(self, row: Sequence[str], widths: Sequence[int]) -> list[str]:
         """Return a row in as many lines as its longest cell needs."""

@@ -85,18 +85,14 @@ def as_stored(mesh: Any) -> StoredMesh:
     counts = {kind: sum(count for one, count in ignored if one == kind) for kind, _ in ignored}
     told = tuple(counted(count, f"cell of type {kind}") for kind, count in counts.items())
     points = np.asarray(mesh.points, np.float64)
-    surfaces = replace(found.surfaces(), sets=_sets(mesh, faces_at), nodes=_node_sets(mesh))
-    return StoredMesh(points, tuple(blocks), _sets(mesh, at), told, surfaces=surfaces)
-
-
-def _node_sets(mesh: Any) -> dict[str, IntArray]:
-    """Return the named sets of nodes, of MED its groups of nodes."""
+    # the named sets of nodes, of MED its groups of nodes
     sets = {name: np.asarray(nodes, np.int64) for name, nodes in mesh.point_sets.items()}
     for family, names in (getattr(mesh, "point_tags", None) or {}).items():
         here = np.flatnonzero(np.asarray(mesh.point_data.get("point_tags", [])) == family)
         for name in names:
             sets[name] = np.concatenate([sets[name], here]) if name in sets else here
-    return sets
+    surfaces = replace(found.surfaces(), sets=_sets(mesh, faces_at), nodes=sets)
+    return StoredMesh(points, tuple(blocks), _sets(mesh, at), told, surfaces=surfaces)
 
 
 def _sets(mesh: Any, at: list[IntArray]) -> dict[str, IntArray]:

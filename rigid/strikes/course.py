@@ -160,7 +160,10 @@ class _Course:
             self.finish = Finish.LEAVES
             return None
         dt, corner = touch
-        self._advance(dt)
+        if dt > 0.0:
+            after = self.state.flown(dt, self.pull.g_n, self.pull.g_t)
+            self.phases.append(Phase(True, (self.state, after)))
+            self.state = after
         if self._moving > self.runaway:
             self.finish = Finish.TUMBLES
             return None
@@ -215,12 +218,6 @@ class _Course:
         pull = self.pull
         moving = 0.5 * (state.V_n**2 + state.V_t**2 + pull.k2 * state.Omega**2)
         return moving + pull.g_n * state.height + pull.g_t * state.along
-
-    def _advance(self, dt: float) -> None:
-        if dt > 0.0:
-            after = self.state.flown(dt, self.pull.g_n, self.pull.g_t)
-            self.phases.append(Phase(True, (self.state, after)))
-            self.state = after
 
     def _enter(self, held: Held) -> None:
         if len(held.states) > 1:

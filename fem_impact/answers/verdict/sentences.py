@@ -174,8 +174,10 @@ def _heat(run: Outcome) -> str:
 def case_sentence(scene: Scene) -> str:
     """Return the scene in one sentence: body, material, barrier, impact."""
     rod, impact = scene.projectile, scene.impact
+    parts = [f"{one.material.name} to {1e3 * one.to:g} mm" for one in rod.segments]
+    materials = ", ".join(parts) or rod.material.name
     return (
-        f"{scene.id}: {1e3 * rod.length:g} mm x {1e3 * rod.diameter:g} mm {rod.called} of {_materials(rod)}, "
+        f"{scene.id}: {1e3 * rod.length:g} mm x {1e3 * rod.diameter:g} mm {rod.called} of {materials}, "
         f"{_form(rod)}{rod.bored}, {scene.projectile.rigid_body.mass:.3g} kg, on {struck(scene.barrier)}, "
         f"{degrees(impact.angle):.4g} degrees, v_n {impact.v_n:.4g} and v_t {impact.v_t:.4g} m/s, f "
         f"{scene.surface.friction:g} ({scene.surface.state})."
@@ -189,12 +191,6 @@ def struck(barrier: Barrier) -> str:
         return f"{layers}{barrier.material.name}"
     support = "free underneath" if barrier.bends else "bonded to a base"
     return f"{layers}a plate of {1e3 * barrier.thickness:g} mm of {barrier.material.name} ({support})"
-
-
-def _materials(rod: ProjectileSpec) -> str:
-    """Return the material, of a rod of segments each with its end, m from the tip."""
-    parts = [f"{one.material.name} to {1e3 * one.to:g} mm" for one in rod.segments]
-    return ", ".join(parts) or rod.material.name
 
 
 def _form(rod: ProjectileSpec) -> str:
