@@ -13,7 +13,8 @@ from typing import Any, Literal
 
 import fem_impact
 from fem_impact.answers.refine.level import LevelRun
-from fem_impact.answers.verdict.levels import by_levels
+from fem_impact.answers.verdict.assess import BUDGET, assess
+from fem_impact.answers.verdict.levels import by_levels, next_step
 from fem_impact.answers.verdict.vibration import (
     CHANGED,
     Answer,
@@ -34,14 +35,15 @@ from fem_impact.scene.types import Scene
 Trouble = Literal["", "refused", "stopped", "too dear", "fault"]
 """Why a run has no outcome: refused before any work, stopped by an error, broken off by the study, a fault of
 the program."""
-DEFAULT, FINER, FINEST, MODAL, TWINS = "default", "finer", "finest", "modal", "twins"
+MODELS = "default", "finer", "finest", "modal", "twins", "assess", "check"
+DEFAULT, FINER, FINEST, MODAL, TWINS, ASSESS, CHECK = MODELS
 LEVELS: Mapping[str, int] = {FINER: 1, FINEST: 2}
 """Levels more than a scene's own by model."""
-PLANNED: Mapping[str, float] = {DEFAULT: 20.0, FINER: 50.0, FINEST: 100.0, MODAL: 0.5, TWINS: 40.0}
+PLANNED: Mapping[str, float] = dict(zip(MODELS, (20.0, 50.0, 100.0, 0.5, 40.0, 30.0, 90.0), strict=True))
 """Processor time, s, that a run of each model is expected to take."""
-MOST: Mapping[str, float] = {DEFAULT: 60.0, FINER: 90.0, FINEST: 180.0, MODAL: 60.0, TWINS: 90.0}
-"""Processor time, s, after which a run of each model is broken off: it is too dear for the study. Twins get
-it as the budget of their levels."""
+MOST: Mapping[str, float] = dict(zip(MODELS, (60.0, 90.0, 180.0, 60.0, 90.0, BUDGET, 180.0), strict=True))
+"""Processor time, s, after which a run of each model is broken off: it is too dear for the study. Verdicts,
+their checks and twins get it as the budget of their levels, s of wall time."""
 NEXT: Mapping[str, tuple[str, float]] = {FINER: (DEFAULT, 11.0), FINEST: (FINER, 10.0), TWINS: (MODAL, inf)}
 """After which run another follows, and the processor time, s, that this may have taken at most."""
 NARROW = 0.02
@@ -62,6 +64,8 @@ class CoverageResult:
         time that it then took, as an idle machine takes; None where nothing was told
     notices : sentences told during the run
     changes : of twins: change by vibration and its half-width, by the numbers of `CHANGED`
+    verdict : ``answer``, ``model`` and ``levels`` of a verdict, what was ``tried`` last, what is ``missing``,
+        and what to type ``next``
     """
 
     outcome: Outcome | None
@@ -74,6 +78,7 @@ class CoverageResult:
     left_s: float | None = None
     notices: tuple[str, ...] = ()
     changes: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    verdict: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def end(self) -> str:
@@ -135,11 +140,12 @@ class _Listener:
 class CoverageRun:
     """A drawn scene by one model: levels as by default, one or two finer, with a twin, or the reduced model.
 
-    The twin cannot vibrate.
+    The twin cannot vibrate. A verdict may take several models; its check is twins on so many ``levels``.
     """
 
     drawn: DrawnScene
     model: str
+    levels: int = 0
 
     @property
     def name(self) -> str:
@@ -149,7 +155,7 @@ class CoverageRun:
     @property
     def key(self) -> str:
         """Digest of scene, model, time and program."""
-        stated = json.dumps([asdict(self.drawn), self.model, MOST[self.model]], sort_keys=True)
+        stated = json.dumps([asdict(self), MOST[self.model]], sort_keys=True)
         return hashlib.sha256(f"{stated} {source_digest()}".encode()).hexdigest()
 
     @property
@@ -206,8 +212,10 @@ class CoverageRun:
             scene = self.drawn.scene(folder)
             if self.model == MODAL:
                 return CoverageResult(fem_impact.simulate(scene, "modal"))
-            if self.model == TWINS:
-                return CoverageResult(None, changes=_changes(scene))
+            if self.model in (TWINS, CHECK):
+                return CoverageResult(None, changes=_changes(scene, MOST[self.model], self.levels))
+            if self.model == ASSESS:
+                return _verdict(scene)
             levels = scene.accuracy.levels + LEVELS.get(self.model, 0)
             scene = replace(scene, accuracy=replace(scene.accuracy, levels=levels))
             options = fem_impact.RunOptions(progress=listener)
@@ -223,31 +231,56 @@ class CoverageRun:
             return CoverageResult(None, "fault", traceback.format_exc())
 
 
-_PLAIN = ("trouble", "reason", "cpu_s", "wall_s", "planned_s", "forecast_s", "left_s", "changes")
+_PLAIN = ("trouble", "reason", "cpu_s", "wall_s", "planned_s", "forecast_s", "left_s", "changes", "verdict")
 
 
 @dataclass(frozen=True, slots=True)
 class _Effects:
-    """Changes by vibration on levels of finite elements, by the numbers of `CHANGED` that these give."""
+    """Changes by vibration on levels of finite elements, by the numbers of `CHANGED` that these give.
+
+    ``enough`` says whether no finer level is wanted.
+    """
 
     known: Mapping[str, VibrationEffect]
+    enough: bool
 
     def answer(self, limit: float) -> Answer:
-        """Say whether the half-width of e is below a limit."""
-        return "yes" if self.known["e"].band <= limit else "undecided"
+        """Say undecided until the levels are enough."""
+        return "yes" if self.enough else "undecided"
 
 
-def _changes(scene: Scene) -> dict[str, tuple[float, float]]:
-    """Return changes by vibration and half-widths by the numbers of `CHANGED`, none where nothing is told."""
+def _changes(scene: Scene, budget_s: float, levels: int) -> dict[str, tuple[float, float]]:
+    """Return changes by vibration and half-widths by the numbers of `CHANGED`, none where nothing is told.
 
-    def estimate(levels: Sequence[LevelRun]) -> _Effects | None:
-        effects = {of: solid_effect([level.runs for level in levels], of) for of in CHANGED}
+    Finer levels run until e is known within `NARROW`; or until they are so many, and fewer tell nothing.
+    """
+
+    def estimate(done: Sequence[LevelRun]) -> _Effects | None:
+        effects = {of: solid_effect([level.runs for level in done], of) for of in CHANGED}
         known = {of: effect for of, effect in effects.items() if effect}
-        return _Effects(known) if "e" in known else None
+        if "e" not in known:
+            return None
+        return _Effects(known, len(done) >= levels if levels else known["e"].band <= NARROW)
 
-    pair, means = twins(untargeted(scene)), (MOST[TWINS], 1)
+    pair, means = twins(untargeted(scene)), (budget_s, 1)
     found, _, _ = by_levels(pair, estimate, str, NARROW, means, lambda _: None, [])
-    return {of: (effect.value, effect.band) for of, effect in found.known.items()} if found else {}
+    if found is None or (levels and not found.enough):
+        return {}
+    return {of: (effect.value, effect.band) for of, effect in found.known.items()}
+
+
+def _verdict(scene: Scene) -> CoverageResult:
+    """Return the verdict of `assess` within its own budget."""
+    v = assess(scene, tell=lambda _: None)
+    told = {
+        "answer": v.answer,
+        "model": v.fidelity,
+        "levels": sum(step.startswith("finite elements, level") for step in v.steps),
+        "tried": "; ".join([*v.steps[-1:], *v.notes]),
+        "missing": v.missing,
+        "next": next_step("fem-impact assess", v.more) or "",
+    }
+    return CoverageResult(None, changes={"e": (v.here.value, v.here.band)}, verdict=told)
 
 
 def _expected_s(scene: Scene) -> float | None:
