@@ -94,7 +94,8 @@ def simulate(
             try:
                 return LevelChain(case or Case(scene), options, budget, workers, read_s=read_s).run()
             except OverBudgetError as late:
-                raise OverBudgetError(f"{late} {_without_mesh(scene, SPARE * budget)}") from None
+                said = _without_mesh(scene, SPARE * budget)
+                raise OverBudgetError(f"{late} {said}", late.enough_s) from None
         _require_mesh(scene, fidelity)
         return run.simulate(scene, fidelity, options, case)
 

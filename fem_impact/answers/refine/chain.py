@@ -67,7 +67,7 @@ class LevelChain:
     twin : a scene that runs on the meshes of this one; it states no place of the grid
     read_s : wall time, s, that reading the scene took of the budget
     done : levels so far
-    failed : why the level after them has no outcome, empty where none failed
+    refused : what ended the level after them, None where none failed
     """
 
     case: Case
@@ -78,7 +78,7 @@ class LevelChain:
     twin: Scene | None = None
     read_s: float = 0.0
     done: list[LevelRun] = field(default_factory=list)
-    failed: str = ""
+    refused: SceneError | RunError | None = None
 
     def run(self) -> Outcome:
         """Run levels from coarse to fine until the contact is resolved; return the last one's outcome.
@@ -128,7 +128,7 @@ class LevelChain:
             except (SceneError, RunError) as error:  # a mesh that folds is found when it is made
                 if not self.done:
                     raise
-                self.failed = str(error)
+                self.refused = error
                 return
             splits = self._next
 
@@ -205,7 +205,7 @@ class LevelChain:
     @property
     def _not_begun(self) -> str:
         """Say that the budget does not hold the next level, and which does; empty where none is wanted."""
-        if self.failed or self.following is None:
+        if self.refused or self.following is None:
             return ""
         used, budget = map(forecast.about_s, (self.spent_s, self.budget_s))
         return f"{used} of the budget of {budget} are used up. {self.advice()[0]}"
@@ -332,7 +332,7 @@ class LevelChain:
             limits = bands = Unknown(f"{why.reason}; {self._finer}")
         short = self.meshes.lacking(counted.splits, counted.record, self.finest)
         short, narrow = (one and f"{one}: {self._finer}." for one in (short, counted.narrow))
-        cut = beyond[0].stopped if beyond else self.failed
+        cut = beyond[0].stopped if beyond else str(self.refused or "")
         ended = f"The numbers are those of level {len(upto)}: level {len(upto) + 1} was cut off. {cut}"
         outcome = counted.outcome if self.scene.accuracy.unresolved == "report" else counted.withheld
         said, missed = outcome.validity, self._not_begun
@@ -378,8 +378,8 @@ class LevelChain:
         """Say what adds a finer level than those that have run, or why nothing does."""
         if self.done[-1].record.crushed:
             return "cells were crushed, and finer ones would be sooner: fidelity rigid or modal has none"
-        if self.failed or self.following is not None:
-            return "a finer level gave no result" if self.failed else "a larger budget adds a finer level"
+        if self.refused or self.following is not None:
+            return "a finer level gave no result" if self.refused else "a larger budget adds a finer level"
         levels = f"accuracy.levels = {self.scene.accuracy.levels + 1}"
         return f"{'a smaller accuracy.tip_size' if self.meshes.is_sized else levels} adds a finer level"
 
@@ -389,8 +389,8 @@ class LevelChain:
         ``before_s`` of the budget, s, went by before this chain.
         """
         name = f"Level {len(self.done) + 1}, finer,"
-        if self.failed:
-            return f"{name} gave no result: {self.failed}", None
+        if self.refused:
+            return f"{name} gave no result: {self.refused}", forecast.budget_of(self.refused, before_s)
         then = self.following
         if then is None:
             return f"No finer level is tried: {self._finer}.", None

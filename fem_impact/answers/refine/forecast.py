@@ -14,7 +14,7 @@ from typing import TypeVar
 
 from fem_impact.case.case import Case
 from fem_impact.case.size import setup_time
-from fem_impact.errors import RunError
+from fem_impact.errors import RunError, SceneError
 from fem_impact.fem.kernels import COMPILING
 from fem_impact.jobs.executors import LocalProcesses
 from fem_impact.progress import Notice, Progress, left_text
@@ -85,8 +85,18 @@ def worked() -> float:
     return process_time() - COMPILING.cpu
 
 
+def budget_of(refused: SceneError | RunError | None, before_s: float = 0.0) -> int | None:
+    """Return a budget, s, with which what was refused would run after ``before_s``, None where none helps."""
+    enough = refused.enough_s if isinstance(refused, OverBudgetError) else None
+    return None if enough is None else enough + ceil(before_s)
+
+
 class OverBudgetError(RunError):
-    """A level that takes longer than its budget allows."""
+    """A level that takes longer than its budget allows; ``enough_s`` is one, s, that holds it, if known."""
+
+    def __init__(self, told: str, enough_s: int | None = None) -> None:
+        super().__init__(told)
+        self.enough_s = enough_s
 
 
 def later_s(own_s: float, halvings: Sequence[int]) -> list[float]:
@@ -113,8 +123,8 @@ def require_pilot(pilot: Case, limit_s: float) -> None:
     size = pilot.size
     setup_s = setup_time(pilot.bodies, pilot.slots.vibrating, size.rod, size.rod + size.barrier)
     if max(PILOT * size.time, OWN[0] * setup_s) > limit_s:
-        told = f"The coarsest level would take about {about_s(size.time)}: it is not begun."
-        raise OverBudgetError(f"{told} {_for_two(size.time)}")
+        told, enough = f"The coarsest level would take about {about_s(size.time)}", _for_two_s(size.time)
+        raise OverBudgetError(f"{told}: it is not begun. {FOR_TWO.format(enough)}", enough)
 
 
 def enough_s(used_s: float, level_s: float) -> int:
@@ -124,10 +134,12 @@ def enough_s(used_s: float, level_s: float) -> int:
     return int(ceil(least / unit) * unit)
 
 
-def _for_two(pilot_s: float) -> str:
-    """Say which budget holds two levels, by the time of the first, s."""
-    enough = enough_s(pilot_s, MIDDLE * pilot_s)
-    return f"For it and a finer one, which tell the error of each number, give a budget of {enough} s."
+FOR_TWO = "For it and a finer one, which tell the error of each number, give a budget of {} s."
+
+
+def _for_two_s(pilot_s: float) -> int:
+    """Return a budget, s, that holds two levels, by the time of the first, s."""
+    return enough_s(pilot_s, MIDDLE * pilot_s)
 
 
 @dataclass
@@ -222,7 +234,8 @@ class LevelProgress:
             return
         told = f"It was given up after {about_s(spent_s)}, as the budget does not hold it: it takes about"
         whole_s = spent_s + left_s
-        more = f"For it give a budget of {enough_s(self.used_s, whole_s)} s."
+        enough = enough_s(self.used_s, whole_s) if self.duration_s else _for_two_s(whole_s)
+        more = f"For it give a budget of {enough} s."
         if not self.duration_s:
-            more = f"The coarsest level gave no number. {_for_two(whole_s)}"
-        raise OverBudgetError(f"{told} {about_s(whole_s)}. {more}")
+            more = f"The coarsest level gave no number. {FOR_TWO.format(enough)}"
+        raise OverBudgetError(f"{told} {about_s(whole_s)}. {more}", enough)

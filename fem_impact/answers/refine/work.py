@@ -86,7 +86,7 @@ class LevelsJob:
         chain = LevelChain(Case(self.scene), budget_s=self.budget_s, twin=self.twin)
         chain.refine()
         default, most = len(chain.done), chain.done[-1].splits + self.finer
-        if self.finer and not chain.failed:
+        if self.finer and not chain.refused:
             chain.decides = lambda levels: levels[-1].splits >= most
             chain.refine()
         levels = [level.runs for level in chain.done[: chain.counted]]

@@ -6,9 +6,10 @@ from math import isclose
 
 import numpy as np
 
+from fem_impact.answers.refine.forecast import budget_of
 from fem_impact.answers.refine.level import LevelRun
 from fem_impact.answers.verdict import vibration
-from fem_impact.answers.verdict.levels import Means, Tell, by_levels, finite_elements
+from fem_impact.answers.verdict.levels import Means, Tell, by_levels, finite_elements, with_budget
 from fem_impact.answers.verdict.screening import Screening, screening
 from fem_impact.answers.verdict.vibration import CHANGED, inclined, twins
 from fem_impact.case.case import Case
@@ -165,7 +166,8 @@ def assess(
         except (SceneError, RunError) as refused:
             if fidelity == "solid" or quick is None:
                 raise
-            solid, told, more = None, [f"Finite elements have no answer here: {refused}"], {}
+            solid, told = None, [f"Finite elements have no answer here: {refused}"]
+            more = with_budget(budget_of(refused))
         here, used = (solid, "solid") if solid else (quick, "modal")
         notes += told
         more = {"fidelity": fidelity, **more} if more and fidelity == "solid" else more

@@ -84,7 +84,7 @@ def by_levels(
     if decides(levels.done):
         return found, [], {}
     note, enough = levels.advice(before_s)
-    more = {} if enough is None else {"budget_s": enough}
+    more = with_budget(enough)
     if found is not None:
         return found, [note], more
     nothing = "The last level of finite elements does not resolve the contact."
@@ -94,6 +94,11 @@ def by_levels(
     if len(levels.done) < LEAST_LEVELS:
         nothing = "One level of finite elements alone does not tell its error."
     return None, [note, nothing], more
+
+
+def with_budget(budget_s: int | None) -> Means:
+    """Return the means of a budget, s; none where none helps."""
+    return {} if budget_s is None else {"budget_s": budget_s}
 
 
 def finite_elements(budget_s: float) -> Means:

@@ -14,10 +14,11 @@ from typing import Any
 
 import numpy as np
 
+from fem_impact.answers.refine.forecast import budget_of
 from fem_impact.answers.validate import FRICTION, Ends, at_place, interval_of
 from fem_impact.answers.verdict.assess import BUDGET, LACKING, check_means
 from fem_impact.answers.verdict.criteria import Bound, Criterion
-from fem_impact.answers.verdict.levels import Means, Tell, by_levels, finite_elements, next_step
+from fem_impact.answers.verdict.levels import Means, Tell, by_levels, finite_elements, next_step, with_budget
 from fem_impact.answers.verdict.sentences import case_sentence, never_covered
 from fem_impact.answers.verdict.vibration import Answer
 from fem_impact.case.case import Case
@@ -252,7 +253,8 @@ def _by_solids(
             pair = criterion.meshed(scene)
             found, said, more = by_levels(pair, criterion.solid, told, limit, left, tell, steps, before)
         except (SceneError, RunError) as refused:
-            found, said, more = None, [f"Finite elements have no answer here: {refused}"], {}
+            found, said = None, [f"Finite elements have no answer here: {refused}"]
+            more = with_budget(budget_of(refused))
         notes += said
         solids |= {} if found is None else {place: found}
         if found is None or found.answer(limit) != "yes":

@@ -12,6 +12,7 @@ from cost_fakes import pressed
 from own_bodies import taper, write
 
 from fem_impact.answers.refine import level as level_module
+from fem_impact.answers.refine.forecast import OverBudgetError
 from fem_impact.answers.verdict import vibration
 from fem_impact.answers.verdict.assess import assess
 from fem_impact.answers.verdict.dropped import dropped
@@ -409,6 +410,22 @@ def test_a_budget_that_allows_one_level_leaves_the_reduced_model_and_says_so(mon
     assert "Level 2, finer, takes about" in first
     assert found.more == {"budget_s": int(re.search(r"give a budget of (\d+) s", first)[1])}
     assert "alone does not tell its error" in second
+
+
+@pytest.mark.parametrize("ran", [0, 1])
+def test_a_level_given_up_for_its_budget_names_the_one_that_holds_it(monkeypatch, ran):
+    asked = meshed(monkeypatch, [0.0])
+    real = level_module.simulate_recorded
+
+    def late(*case):
+        if len(asked) == ran:
+            raise OverBudgetError("It was given up. For it give a budget of 130 s.", 130)
+        return real(*case)
+
+    monkeypatch.setattr(level_module, "simulate_recorded", late)
+    found = assess(load("t5b"), tolerance=0.02, budget_s=1e5)
+    assert (found.fidelity, found.answer, found.more) == ("modal", "undecided", {"budget_s": 130})
+    assert "give a budget of 130 s" in found.notes[0]
 
 
 def test_inclinations_without_an_answer_are_named_and_leave_the_worst_open(monkeypatch):
