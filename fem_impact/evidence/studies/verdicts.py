@@ -4,10 +4,9 @@ The scenes are those of the study of coverage, as many of each family as of ever
 decided runs again with a twin that cannot vibrate, on two levels of meshes more than the verdict had.
 """
 
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from itertools import chain, zip_longest
-
-import pandas
 
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.answers.verdict.assess import BUDGET, TOLERANCE
@@ -24,6 +23,7 @@ GROUPS = len(FAMILIES) + 2
 FINER = 2
 """Levels that a check has more than its verdict; one by the reduced model counts as of one level."""
 DECIDED, JUDGED = ("yes", "no"), ("right", "wrong")
+BY = ("by", "answer", "judged")
 COLUMNS = (
     *("scene", "family", "barrier", "answer", "by", "levels", "change", "half-width", "wall_s", "cpu_s"),
     *("truth", "its half-width", "judged", "clear", "tried", "missing", "next"),
@@ -56,31 +56,32 @@ def _check(scene: DrawnScene, results: Results) -> CoverageRun | None:
 
 def conclude(request: Request, results: Results) -> StudyReport:
     """Return how many were decided, how many of these finer meshes confirm, and every scene."""
-    rows = [_row(scene, results) for scene in scenes(request)]
-    table = pandas.DataFrame(rows, columns=COLUMNS)
-    decided, checked = table["answer"].isin(DECIDED), table["judged"].isin(JUDGED)
-    right, vague = int((table["judged"] == "right").sum()), int((table["clear"] == "no").sum())
-    counts = ", ".join(f"{count} {name}" for name, count in table["answer"].value_counts().items())
+    rows = [dict(zip(COLUMNS, _row(scene, results), strict=True)) for scene in scenes(request)]
+    decided, lacking = (
+        [row for row in rows if (row["answer"] in DECIDED) == known] for known in (True, False)
+    )
+    judged, clear = (Counter(str(row[name]) for row in decided) for name in ("judged", "clear"))
+    counts = ", ".join(
+        f"{count} {name}" for name, count in Counter(row["answer"] for row in rows).most_common()
+    )
     sentences = [
-        f"Within its {BUDGET:g} s, assess decided {_share(int(decided.sum()), len(table))}: {counts}.",
-        f"Of those decided, {FINER} levels more say the same of {_share(right, int(checked.sum()))}; in "
-        f"{vague} the half-width of the finer run leaves the answer open, and its value counts.",
-        f"{int((decided & ~checked).sum())} were decided and not checked: the finer run takes more than "
+        f"Within its {BUDGET:g} s, assess decided {_share(len(decided), len(rows))}: {counts}.",
+        f"Of those decided, {FINER} levels more say the same of "
+        f"{_share(judged['right'], sum(judged[name] for name in JUDGED))}; in {clear['no']} the half-width "
+        "of the finer run leaves the answer open, and its value counts.",
+        f"{judged['not checked']} were decided and not checked: the finer run takes more than "
         f"{MOST[CHECK]:g} s or tells no number.",
     ]
-    by = table[decided].groupby(["by", "answer", "judged"]).size().reset_index().to_numpy().tolist()
+    counted = [(*at, n) for at, n in Counter(tuple(row[name] for name in BY) for row in decided).items()]
     shown, words = [*COLUMNS[:-3]], ["scene", "answer", *COLUMNS[-3:]]
-    lacking, every = table.loc[~decided, words].to_numpy().tolist(), table[shown].to_numpy().tolist()
     return StudyReport(
         "verdicts",
         "How often assess decides, and is right",
         sentences,
         sheets=[
-            Sheet(
-                "by", "What was decided", Table.of(("by", "answer", "judged", "scenes"), by, left=(0, 1, 2))
-            ),
-            Sheet("undecided", "What was not decided", Table.of(words, lacking, left=(0, 1, 2, 3, 4))),
-            Sheet("scenes", "Every scene", Table.of(shown, every, left=(0, 1, 2, 3, 4))),
+            Sheet("by", "What was decided", Table.of((*BY, "scenes"), counted, left=(0, 1, 2))),
+            Sheet("undecided", "What was not decided", _table(words, lacking)),
+            Sheet("scenes", "Every scene", _table(shown, rows)),
         ],
         assumptions=[
             f"Scenes drawn with seed {request.seed or SEED}, on which no told error rests. A change of e by "
@@ -89,6 +90,10 @@ def conclude(request: Request, results: Results) -> StudyReport:
         ],
         conclusions=[("", sentence) for sentence in sentences],
     )
+
+
+def _table(columns: Sequence[str], rows: Sequence[Mapping[str, Cell]]) -> Table:
+    return Table.of(columns, [[row[name] for name in columns] for row in rows], left=range(5))
 
 
 def _row(scene: DrawnScene, results: Results) -> tuple[Cell, ...]:
