@@ -383,18 +383,18 @@ class LevelChain:
         levels = f"accuracy.levels = {self.scene.accuracy.levels + 1}"
         return f"{'a smaller accuracy.tip_size' if self.meshes.is_sized else levels} adds a finer level"
 
-    def advice(self, before_s: float = 0.0) -> tuple[str, int | None]:
-        """Return what another level would take, or why none is made; the budget for it, s, or None.
+    def advice(self, before_s: float = 0.0, halvings: int = 1) -> tuple[str, int | None]:
+        """Return what finer levels would take, or why none is made; the budget for them, s, or None.
 
-        ``before_s`` of the budget, s, went by before this chain.
+        ``before_s`` of the budget, s, went by before this chain; the errors are to be halved so often.
         """
-        name = f"Level {len(self.done) + 1}, finer,"
+        number = len(self.done) + 1
         if self.refused:
-            return f"{name} gave no result: {self.refused}", forecast.budget_of(self.refused, before_s)
+            told = f"Level {number}, finer, gave no result: {self.refused}"
+            return told, forecast.budget_of(self.refused, before_s)
         then = self.following
         if then is None:
             return f"No finer level is tried: {self._finer}.", None
-        more_s = self.forecast_s(then)
-        enough = forecast.enough_s(before_s + self.spent_s, more_s)
-        more = forecast.about_s(more_s)
-        return f"{name} takes about {more} more: for it give a budget of {enough} s.", enough
+        last = max(then, min(self.done[-1].splits + halvings, self.finest + MOST_FINER))
+        each_s = [self.forecast_s(splits) for splits in range(then, last + 1)]
+        return forecast.advice(number, before_s + self.spent_s, each_s)

@@ -134,6 +134,16 @@ def enough_s(used_s: float, level_s: float) -> int:
     return int(ceil(least / unit) * unit)
 
 
+def advice(number: int, used_s: float, each_s: Sequence[float]) -> tuple[str, int]:
+    """Say what levels take from a number on, s each, and the budget for them; return that, too, s."""
+    enough, more = enough_s(used_s, sum(each_s)), about_s(sum(each_s))
+    if len(each_s) == 1:
+        return f"Level {number}, finer, takes about {more} more: for it give a budget of {enough} s.", enough
+    last = number + len(each_s) - 1
+    told = f"An error about halves on each level: levels {number} to {last} take about {more} more"
+    return f"{told}, for which give a budget of {enough} s.", enough
+
+
 FOR_TWO = "For it and a finer one, which tell the error of each number, give a budget of {} s."
 
 

@@ -49,6 +49,13 @@ class Bound:
             return "no"
         return "yes" if self.high <= limit else "undecided"
 
+    def over(self, limit: float) -> float:
+        """Return the error towards a limit over the one with which there would be an answer."""
+        margin, error = limit - self.value, self.high - self.value
+        if margin < 0.0:
+            margin, error = -margin, self.value - self.low
+        return error / margin if margin else inf
+
 
 class Criterion(ABC):
     """A number that must stay below a limit.

@@ -2,9 +2,10 @@
 
 import shlex
 from collections.abc import Callable, Mapping, Sequence
+from math import ceil, log2
 from typing import Any, Protocol, TypeVar
 
-from fem_impact.answers.refine.chain import LevelChain
+from fem_impact.answers.refine.chain import MOST_FINER, LevelChain
 from fem_impact.answers.refine.forecast import about_s
 from fem_impact.answers.refine.level import LevelRun
 from fem_impact.answers.verdict.vibration import Answer
@@ -26,6 +27,10 @@ class Found(Protocol):
 
     def answer(self, limit: float) -> Answer:
         """Say whether the number stays below a limit."""
+        ...
+
+    def over(self, limit: float) -> float:
+        """Return the error over the one with which there would be an answer."""
         ...
 
 
@@ -83,7 +88,7 @@ def by_levels(
         tell(steps[-1])
     if decides(levels.done):
         return found, [], {}
-    note, enough = levels.advice(before_s)
+    note, enough = levels.advice(before_s, 1 if found is None else halvings(found.over(limit)))
     more = with_budget(enough)
     if found is not None:
         return found, [note], more
@@ -94,6 +99,11 @@ def by_levels(
     if len(levels.done) < LEAST_LEVELS:
         nothing = "One level of finite elements alone does not tell its error."
     return None, [note, nothing], more
+
+
+def halvings(over: float) -> int:
+    """Return how many levels bring down an error so many times too large: each about halves it."""
+    return ceil(log2(min(max(2.0, over), 2.0**MOST_FINER)))
 
 
 def with_budget(budget_s: int | None) -> Means:

@@ -9,7 +9,7 @@ where the scene stands among the stored ones (`fem_impact.run.modal_error.Stored
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
-from math import cos, hypot, sin
+from math import cos, hypot, inf, sin
 from typing import Literal
 
 import numpy as np
@@ -188,6 +188,11 @@ class VibrationEffect:
         if abs(self.value) - self.band > tolerance:
             return "no"
         return "yes" if abs(self.value) + self.band <= tolerance else "undecided"
+
+    def over(self, tolerance: float) -> float:
+        """Return the band over the one with which there would be an answer."""
+        margin = abs(tolerance - abs(self.value))
+        return self.band / margin if margin else inf
 
 
 def unfinished(pair: Pair, of: str = "e") -> str:

@@ -12,6 +12,7 @@ from cost_fakes import pressed
 from own_bodies import taper, write
 
 from fem_impact.answers.refine import level as level_module
+from fem_impact.answers.refine.chain import LevelChain
 from fem_impact.answers.refine.forecast import OverBudgetError
 from fem_impact.answers.verdict import vibration
 from fem_impact.answers.verdict.assess import assess
@@ -426,6 +427,17 @@ def test_a_level_given_up_for_its_budget_names_the_one_that_holds_it(monkeypatch
     found = assess(load("t5b"), tolerance=0.02, budget_s=1e5)
     assert (found.fidelity, found.answer, found.more) == ("modal", "undecided", {"budget_s": 130})
     assert "give a budget of 130 s" in found.notes[0]
+
+
+def test_an_error_far_too_large_asks_for_as_many_levels_as_bring_it_down(monkeypatch):
+    """Each level about halves an error."""
+    meshed(monkeypatch, [0.0, 0.03])
+    monkeypatch.setattr(LevelChain, "_next", property(lambda chain: 2 if len(chain.done) < 2 else None))
+    found = assess(load("t5b"), "solid", tolerance=0.05, budget_s=1e5)
+    assert 4 < found.here.over(0.05) < 8
+    (note,) = found.notes
+    assert "halves on each level: levels 3 to 5 take about" in note
+    assert found.more == {"fidelity": "solid", "budget_s": int(re.search(r"give a budget of (\d+) s", note)[1])}
 
 
 def test_inclinations_without_an_answer_are_named_and_leave_the_worst_open(monkeypatch):

@@ -248,6 +248,10 @@ class _Effects:
         """Say undecided until the levels are enough."""
         return "yes" if self.enough else "undecided"
 
+    def over(self, limit: float) -> float:
+        """Return 1: another level is asked for."""
+        return 1.0
+
 
 def _changes(scene: Scene, budget_s: float, levels: int) -> dict[str, tuple[float, float]]:
     """Return changes by vibration and half-widths by the numbers of `CHANGED`, none where nothing is told.
