@@ -437,7 +437,8 @@ def test_an_error_far_too_large_asks_for_as_many_levels_as_bring_it_down(monkeyp
     assert 4 < found.here.over(0.05) < 8
     (note,) = found.notes
     assert "halves on each level: levels 3 to 5 take about" in note
-    assert found.more == {"fidelity": "solid", "budget_s": int(re.search(r"give a budget of (\d+) s", note)[1])}
+    budget_s = int(re.search(r"give a budget of (\d+) s", note)[1])
+    assert found.more == {"fidelity": "solid", "budget_s": budget_s}
 
 
 def test_inclinations_without_an_answer_are_named_and_leave_the_worst_open(monkeypatch):
