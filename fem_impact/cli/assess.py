@@ -133,14 +133,14 @@ def _within(options: Options) -> tuple[str, float]:
     if not options.within:
         return "e", TOLERANCE
     of, _, text = options.within.strip().partition(" ")
-    try:
-        number, percent = text.removesuffix("%"), text.endswith("%")
-        if of in CHANGED:
-            return of, float(number) / (100.0 if percent else 1.0)
-    except ValueError:
-        pass
     remedy = f'Name one of {", ".join(CHANGED)} and a change of it, such as "e 0.05" or "energy 2 %".'
-    raise UsageError("is not a change of a number.", key="--within", value=options.within, remedy=remedy)
+    wrong = UsageError("is not a change of a number.", key="--within", value=options.within, remedy=remedy)
+    if of not in CHANGED:
+        raise wrong
+    try:
+        return of, float(text.removesuffix("%")) / (100.0 if text.endswith("%") else 1.0)
+    except ValueError as error:
+        raise wrong from error
 
 
 def _text(answer: dict[str, Any]) -> str:

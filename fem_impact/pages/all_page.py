@@ -181,8 +181,7 @@ TITLE = "Where the energy of a dropped steel rod goes"
 QUESTIONS = {
     "sets": "Does the model meet the measured series?",
     "validation": "How large is the error of the model, and what causes it?",
-    "criterion": "When may a rod be called rigid?",
-    "gamma": "How much energy does vibration take?",
+    "gamma": "When may a rod be called rigid, and how much energy does vibration take?",
     "convergence": "How far is the usual mesh from vanishing elements?",
     "effects": "Does each scene choose the effects that it needs?",
     "reduced": "How far is the reduced model from the finite elements?",

@@ -28,7 +28,7 @@ def test_bash_completes_studies_and_options(cli, tmp_path):
         return done.stdout.split()
 
     assert completed("fem-impact", "ass") == ["assess"]
-    assert completed("fem-impact", "study", "crit") == ["criterion"]
+    assert completed("fem-impact", "study", "conv") == ["convergence"]
     assert "--estimate" in completed("fem-impact", "study", "gamma", "--e")
     assert completed("fem-impact", "run", "--fidelity", "mo") == ["modal"]
 

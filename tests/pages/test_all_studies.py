@@ -39,7 +39,8 @@ def results(tmp_path):
 
 def test_the_page_holds_findings_figures_data_and_ledger(results):
     page = write_all(results, results / "report").read_text()
-    answer = "<strong>How much energy does vibration take?</strong> It rises &amp; falls."
+    question = "When may a rod be called rigid, and how much energy does vibration take?"
+    answer = f"<strong>{question}</strong> It rises &amp; falls."
     assert "1 studies, 1 runs, 0 of them failed." in page
     assert 0 < page.index(answer) < page.index("<details>") < page.index('<div id="gamma">')
     assert page.count('<figure class="live">') == 1 and '"x":[0.0,1.0],"y":[2.0,3.0]' in page

@@ -1,355 +1,297 @@
-"""Vibration against slenderness by finite elements, beside the measured sets and the modal fidelity."""
+"""Vibration against slenderness, and when a rod may be called rigid.
 
-from collections.abc import Sequence
+By finite elements rods at one angle, elastic and yielding, with one input changed, and measured sets; by
+finite elements and the reduced model rods at all angles, each beside the same rod that cannot vibrate.
+"""
+
 from dataclasses import replace
-from itertools import pairwise, product
+from itertools import product
 from math import degrees, hypot
 from typing import Any
 
 import numpy as np
 from pandas import DataFrame
 
-from fem_impact import Scene, load
+from fem_impact import load
+from fem_impact.answers.refine.work import LevelsJob
 from fem_impact.answers.report import Request, Sheet, StudyReport
-from fem_impact.evidence.studies import gamma_figures as figures
-from fem_impact.evidence.studies import rods as dropped
+from fem_impact.evidence.studies import gamma_table as runs
+from fem_impact.evidence.studies.gamma_figures import pictures
+from fem_impact.evidence.studies.gamma_findings import LEVELS, STEEPEST, findings
+from fem_impact.evidence.studies.gamma_table import VIBRATION, Results, RodRun, among, crossing, exponent
 from fem_impact.evidence.studies.report_parts import rests_on
-from fem_impact.jobs.job import Job, JobResults
+from fem_impact.evidence.studies.rod_theory import static_restitution
+from fem_impact.evidence.studies.rods import (
+    BODY,
+    KINDS,
+    PAPER_RODS,
+    PLAIN,
+    STATES,
+    TIP,
+    DroppedRod,
+    length_of,
+)
+from fem_impact.jobs.job import Job
 from fem_impact.tables.table import Table
 from fem_impact.tables.text import rounded_up
 from rigid import LIMIT
+from rigid.slenderness import EXPONENT
 
 SETS = ("t3-machined", "t4", "t5b")  # tip B at 45 degrees, one of each rod
-BETWEEN = (10.0, 14.0, 23.0, LIMIT, 35.0, 45.0, 70.0, 85.0, 100.0, 120.0)  # beside the paper's rods
-QUICK_BETWEEN = (LIMIT, 70.0)
-FEWER = (15.0, LIMIT, 57.3, 90.0)  # where diameters, speeds and the reading of the strength are changed
-DIAMETERS, SPEEDS = (0.010, 0.030), (1.3, 4.2)  # m and m/s, beside those of the curve
-ANGLES = (5.0, 15.0, 25.0, 35.0, 60.0, 75.0)  # degrees, beside that of the curve
-REDUCED = tuple(10.0 + 2.0 * i for i in range(56))  # gammas of the modal fidelity
-QUICK_REDUCED = REDUCED[::11]
-PLACES = 2  # of the barrier's grid, of a rod that can vibrate
-ONE_PERCENT = 0.01  # of E_0: beyond it vibration counts as large
-ALIKE = 0.1  # m^-0.3815, difference of gammas that are called one
+FEWER = (
+    15.0,
+    LIMIT,
+    57.3,
+    90.0,
+)  # gammas where diameters, speeds and the reading of the strength are changed
+OTHER_DIAMETERS, OTHER_SPEEDS = (0.010, 0.030), (1.3, 4.2)  # m and m/s, beside those of the curve
+OTHER_ANGLES = (5.0, 15.0, 25.0, 35.0, 60.0, 75.0)  # degrees, beside that of the curve
+
+# of the whole study and of the quick one; angles in degrees, diameters in m
+PLACES = 2, 1  # of the barrier's grid, of a rod that can vibrate
+BETWEEN = (10.0, 14.0, 23.0, LIMIT, 35.0, 45.0, 70.0, 85.0, 100.0, 120.0), (LIMIT, 70.0)
+REDUCED = tuple(10.0 + 2.0 * i for i in range(56)), tuple(10.0 + 22.0 * i for i in range(6))
+GAMMAS = (10, 14, 18, 20, 22, 24, LIMIT, 30, 36, 45), (14.0, LIMIT, 42.0)
+ANGLES = (1.0, 5.0, 10.0, 20.0, 30.0, 40.0, 45.0, 50.0, 60.0, 70.0, 80.0), (1.0, 20.0, 45.0, 70.0)
+DIAMETERS = (0.012, BODY, 0.030), (0.012, BODY)
+FRICTIONS = np.round(np.arange(0.0, 0.951, 0.05), 3), np.round(np.arange(0.0, 0.951, 0.25), 3)
+MESHED_GAMMAS = (10.0, 15.0, 20.0, LIMIT, 35.0, 50.0, 80.0), (15.0, 35.0)
+MESHED_ANGLES = (5.0, 20.0, 35.0, 45.0, 60.0, 75.0), (20.0, 45.0)
+SURFACES = ("contaminated", "machined"), ("machined",)
+END_GAMMAS = (10.0, 45.0), (14.0,)
+ALIKE = 0.1  # m^-0.3815, difference of gammas that count as the same
 
 
-def line(quick: bool) -> list[dropped.DroppedRod]:
+def curve(quick: bool) -> list[DroppedRod]:
     """Return the rods of the curve: 19 mm, 2.1 m/s, 45 degrees, elastic and yielding, every state."""
-    lengths = [
-        *(dropped.length_of(g) for g in (QUICK_BETWEEN if quick else BETWEEN)),
-        *dropped.PAPER_RODS.values(),
-    ]
     return [
-        dropped.DroppedRod(length, friction=f, yields=yields)
-        for length in sorted(lengths)
-        for yields, kind in dropped.KINDS.items()
-        for state, f in dropped.STATES.items()
-        if not quick or state == dropped.PLAIN[kind]
+        DroppedRod(length, friction=f, yields=yields)
+        for length in sorted([*map(length_of, BETWEEN[quick]), *PAPER_RODS.values()])
+        for yields, kind in KINDS.items()
+        for state, f in STATES.items()
+        if not quick or state == PLAIN[kind]
     ]
 
 
-def others(quick: bool) -> list[dropped.DroppedRod]:
+def other_inputs() -> list[DroppedRod]:
     """Return the rods with another diameter, speed, angle or flow curve than the curve's."""
-    if quick:
-        return []
     changed = [
-        *(dropped.DroppedRod(dropped.length_of(g, d), diameter=d) for g in FEWER for d in DIAMETERS),
-        *(dropped.DroppedRod(dropped.length_of(g), speed=v) for g in FEWER for v in SPEEDS),
-        *(dropped.DroppedRod(length, angle) for length in dropped.PAPER_RODS.values() for angle in ANGLES),
+        *(DroppedRod(length_of(g, d), diameter=d) for g in FEWER for d in OTHER_DIAMETERS),
+        *(DroppedRod(length_of(g), speed=v) for g in FEWER for v in OTHER_SPEEDS),
+        *(DroppedRod(length, angle) for length in PAPER_RODS.values() for angle in OTHER_ANGLES),
     ]
-    harder = [dropped.DroppedRod(dropped.length_of(g), law="hardness") for g in FEWER]
+    harder = [DroppedRod(length_of(g), law="hardness") for g in FEWER]
     return [
-        replace(rod, friction=dropped.STATES[dropped.PLAIN[kind]], yields=yields)
-        for yields, kind in dropped.KINDS.items()
+        replace(rod, friction=STATES[PLAIN[kind]], yields=yields)
+        for yields, kind in KINDS.items()
         for rod in (*changed, *(harder if yields else []))
     ]
 
 
-def reduced(quick: bool) -> list[dropped.DroppedRod]:
-    """Return the rods of the modal fidelity: over the same slendernesses, closer together."""
-    lengths = {dropped.length_of(g) for g in (QUICK_REDUCED if quick else REDUCED)}
-    lengths |= {rod.length for rod in line(quick)}
-    states = {(rod.friction, rod.yields) for rod in line(quick)}
-    return [
-        dropped.DroppedRod(length, friction=f, yields=yields)
-        for length in sorted(lengths)
-        for f, yields in sorted(states)
-    ]
-
-
-def families(quick: bool) -> dict[str, list[dropped.RodRun]]:
-    """Return all runs of vibrating rods, by family."""
-    places = 1 if quick else PLACES
-    rods = {"curve": line(quick), "other inputs": others(quick)}
-    solid = {name: [dropped.RodRun(rod, "solid", places) for rod in of] for name, of in rods.items()}
-    sets = [dropped.RodRun(_most_like(load(name)), "solid", places, name) for name in SETS]
-    return {**solid, "measured sets": sets, "modes": [dropped.RodRun(rod) for rod in reduced(quick)]}
-
-
-def _most_like(scene: Scene) -> dropped.DroppedRod:
-    """Return the yielding rod with length, diameter, tip, angle, speed and friction of a scene."""
+def measured(name: str) -> DroppedRod:
+    """Return the yielding rod with length, diameter, tip, angle, speed and friction of a measured set."""
+    scene = load(name)
     rod, impact = scene.projectile, scene.impact
     speed, angle = hypot(impact.v_n, impact.v_t), round(degrees(impact.angle), 9)
-    return dropped.DroppedRod(
-        rod.length, angle, scene.surface.friction, True, rod.diameter, rod.tip_radius, speed
-    )
+    return DroppedRod(rod.length, angle, scene.surface.friction, True, rod.diameter, rod.tip_radius, speed)
 
 
-def plan(request: Request, results: JobResults) -> list[Job]:
-    """Return the jobs, the longest first; with results also those that are cut after a first contact."""
-    runs = [run for family in families(request.quick).values() for run in family]
-    solid = [run for run in runs if run.fidelity == "solid"]
-    cut = [job for run in solid if run.name in results and (job := dropped.cut_job(run, results[run.name]))]
-    return dropped.longest_first([*runs, *(run.twin for run in solid)], cut)
-
-
-def conclude(request: Request, results: JobResults) -> StudyReport:
-    """Return the study: curves with bands, where the energy went, and the modal fidelity beside them."""
-    table = dropped.run_table(families(request.quick), results)
-    points, modes = dropped.points_of(table, results), table[table.family == "modes"]
-    sentences = findings(points)
-    pictures = [figures.curve(points, modes), figures.later_contacts(points)]
-    pictures += [figures.other_inputs(points)] if (points.family == "other inputs").any() else []
-    gaps = points[points.reason != ""]
-    gaps_sheet = Sheet(
-        "gaps",
-        "Points without a value or a band",
-        dropped.as_table(gaps.loc[:, :"law"].assign(reason=gaps.reason)),
-    )
-    sheets = [
-        Sheet("rods", "The paper's rods at 45 degrees and 2.1 m/s, by finite elements", rod_table(points)),
-        *([gaps_sheet] if len(gaps) else []),
-        Sheet(
-            "points",
-            "Every point by finite elements",
-            dropped.as_table(points.loc[:, :"reason"]),
-            shown=False,
-        ),
-        Sheet("contacts", "Every contact of every point", contact_table(points), shown=False),
-        Sheet(
-            "reduced",
-            "The reduced model (modal)",
-            dropped.as_table(modes.loc[:, : dropped.RESTITUTION]),
-            shown=False,
-        ),
+def over_angles(rod: DroppedRod, quick: bool) -> list[DroppedRod]:
+    """Return rods like a given one of every size and angle; the paper's rods are among those of 19 mm."""
+    lengths = {d: [length_of(g, d) for g in GAMMAS[quick]] for d in DIAMETERS[quick]}
+    lengths[BODY] += PAPER_RODS.values()
+    return [
+        replace(rod, length=length, diameter=d, angle=angle)
+        for d in lengths
+        for length in sorted(lengths[d])
+        for angle in ANGLES[quick]
     ]
+
+
+def families(quick: bool) -> dict[str, list[RodRun]]:
+    """Return all runs of vibrating rods, by family."""
+    line, places = curve(quick), PLACES[quick]
+    lengths = sorted({*map(length_of, REDUCED[quick]), *(rod.length for rod in line)})
+    states = sorted({(rod.friction, rod.yields) for rod in line})
+    angled = {
+        runs.HERTZ[0]: DroppedRod(0.1, tip_radius=TIP),
+        runs.HERTZ[1]: DroppedRod(0.1),
+        runs.YIELDING: DroppedRod(0.1, yields=True),
+        runs.SPRING: DroppedRod(0.1),
+    }
+    meshed = {
+        runs.BY_MESHES[state]: [
+            DroppedRod(length_of(g), angle, STATES[state], True)
+            for g in MESHED_GAMMAS[quick]
+            for angle in MESHED_ANGLES[quick]
+        ]
+        for state in SURFACES[quick]
+    } | {runs.ENDS: [DroppedRod(length_of(g)) for g in END_GAMMAS[quick]]}
+    return {
+        runs.CURVE: [RodRun(rod, "solid", places) for rod in line],
+        runs.OTHERS: [] if quick else [RodRun(rod, "solid", places) for rod in other_inputs()],
+        runs.MEASURED: [RodRun(measured(name), "solid", places, name) for name in SETS],
+        runs.MODES: [RodRun(DroppedRod(l, friction=f, yields=y)) for l in lengths for f, y in states],
+        runs.BLIND: [
+            RodRun(DroppedRod(l, friction=float(f))) for l in PAPER_RODS.values() for f in FRICTIONS[quick]
+        ],
+        **{
+            name: [RodRun(r, "spring" if name == runs.SPRING else "modal") for r in over_angles(rod, quick)]
+            for name, rod in angled.items()
+        },
+        **{name: [RodRun(rod, "pair") for rod in rods] for name, rods in meshed.items()},
+    }
+
+
+def plan(request: Request, results: Results) -> list[Job | LevelsJob]:
+    """Return the jobs, the longest first; with results also those that are cut after a first contact."""
+    planned, cut = dict[str, RodRun](), list[Job]()
+    for family, members in families(request.quick).items():
+        for run in (run for run in members if run.way != "spring"):
+            planned[run.name] = run
+            if run.way != "pair" and family not in (runs.MODES, runs.BLIND):
+                planned[run.twin.name] = run.twin
+            if run.way == "solid" and (job := run.cut_job(results)):
+                cut.append(job)
+    return sorted([*(run.job() for run in planned.values()), *cut], key=lambda job: -job.planned_s)
+
+
+def conclude(request: Request, results: Results) -> StudyReport:
+    """Return the study: vibration and where the energy is, the error of rigid theory, and its group."""
+    table = runs.table_of(families(request.quick), results)
+    angles = table[table.family.isin(runs.ANGLED)]
+    angles = angles[angles[["e_edge", "e_edge_rigid", "T1_over_tau"]].notna().all(axis=1)]
+    upright = among(angles, family=runs.YIELDING, diameter_m=BODY)
+    upright = upright[upright.angle_deg <= STEEPEST]
+    upright = upright.assign(e_static_give=[static_restitution(rod) for rod in upright.rod])
+    rods = runs.rods_of(angles)
+    body = rods[rods.diameter_m == BODY].rename(columns={"family": "contact"})
+    points = table[table.way == "solid"]
+    gaps = points[points.reason != ""]
+    sentences = findings(table, angles, rods, upright)
+    shown = {
+        "The paper's rods at 45 degrees and 2.1 m/s, by finite elements": ("paper_rods", paper_table(points)),
+        OTHERS_CAPTION: ("other_inputs", others_table(points)),
+        "Points without a value or a band": ("gaps", as_table(gaps[[*INPUTS, "reason"]])),
+        LEVEL_CAPTION: ("levels", level_table(rods)),
+        "Rods of 19 mm": ("rods", as_table(body[RODS_CSV])),
+    }
+    files = {
+        "Yielding tip, frictionless, 19 mm: e with quasi-static bending alone": (
+            "static_give",
+            upright[GIVE_CSV],
+        ),
+        "Every contact of every point by finite elements": ("contacts", contacts_of(points)),
+        "Every run of a rod, by family": ("points", table.drop(columns=["rod", "intervals"])),
+    }
     return StudyReport(
         "gamma",
-        "Vibration against slenderness",
-        sentences,
-        pictures,
-        sheets,
-        [*rests_on("dropped rods"), *rests_on("gamma")],
+        "Vibration against slenderness, and when a rod may be called rigid",
+        [sentence for _, sentence in sentences],
+        pictures(table, angles, rods, upright),
+        [
+            *(Sheet(name, caption, made) for caption, (name, made) in shown.items() if len(made)),
+            *(Sheet(name, caption, as_table(rows), shown=False) for caption, (name, rows) in files.items()),
+        ],
+        rests_on("gamma"),
         ["modal", "thornton", "slenderness"],
-        [("vibration", sentence) for sentence in sentences],
+        sentences,
     )
 
 
-def rod_table(points: DataFrame) -> Table:
+INPUTS = ("point", *DroppedRod(0.1).inputs)
+GIVE_CSV = ["gamma", "angle_deg", "e_edge_rigid", "e_static_give", "e_edge"]
+RODS_CSV = "contact gamma diameter_m length_m T1_over_tau T1_over_tau_whole error_of_e spread_of_e".split()
+OTHERS_CAPTION = "Rods as slender as the longest with one input changed, and the measured sets' own scenes"
+LEVEL_CAPTION = (
+    "Slenderness at which error or spread of e over the angles passes a level, and the power of the diameter "
+    f"with which that length grows (published {EXPONENT})"
+)
+
+
+def as_table(rows: DataFrame) -> Table:
+    """Return a frame as a table for a report."""
+    return Table.of([*rows], rows.astype(object).where(rows.notna(), None).to_numpy().tolist())
+
+
+def paper_table(points: DataFrame) -> Table:
     """Return one row per paper's rod, kind of contact and surface state."""
-    curve = points[points.family == "curve"]
     rows = [
         {
             "rod": rod,
             "contact": kind,
             "surface": state,
-            "E_vib/E_0, %": _with_band(p.E_vib_over_E_0, p.E_vib_over_E_0_band, 100.0, 2),
-            "e": _with_band(p.e_edge, p.e_edge_band, 1.0, 3),
+            "E_vib/E_0, %": with_band(p, VIBRATION, 100.0, 2),
+            "e": with_band(p, "e_edge", 1.0, 3),
             "e if rigid": p.e_edge_rigid,
             "contacts": p.contacts,
-            "peak force, kN": _with_band(p.peak_force_N, p.peak_force_N_band, 1e-3, 1),
+            "peak force, kN": with_band(p, "peak_force_N", 1e-3, 1),
             "T1/tau": p.T1_over_tau,
-            "E_vib/E_0 by modes, %": None if p.by_modes is None else 100 * p.by_modes,
+            "E_vib/E_0 by modes, %": 100 * p.by_modes,
         }
-        for (rod, length), kind, (state, f) in product(
-            dropped.PAPER_RODS.items(), dropped.KINDS.values(), dropped.STATES.items()
-        )
-        for p in dropped.among(curve, length_m=length, contact=kind, f=f).itertuples()
+        for (rod, length), kind, (state, f) in product(PAPER_RODS.items(), KINDS.values(), STATES.items())
+        for p in among(points, family=runs.CURVE, length_m=length, contact=kind, f=f).itertuples()
     ]
-    return Table.of(tuple(rows[0]), rows)
+    return as_table(DataFrame(rows))
 
 
-def _with_band(value: float | None, band: float | None, scale: float, places: int) -> str | None:
-    if value is None:
+def others_table(points: DataFrame) -> Table:
+    """Return one row per rod as slender as the paper's longest with another input, and per measured set."""
+    longest = (points.gamma - DroppedRod(max(PAPER_RODS.values())).gamma).abs() < ALIKE
+    others = points[(points.family == runs.MEASURED) | ((points.family == runs.OTHERS) & longest)]
+    rows = [
+        {
+            "rod": p.point if p.family == runs.MEASURED else "",
+            "contact": p.contact,
+            "gamma": p.gamma,
+            "diameter, mm": 1e3 * p.diameter_m,
+            "speed, m/s": p.speed_m_per_s,
+            "angle, degrees": p.angle_deg,
+            "strength from": p.law,
+            "E_vib/E_0, %": with_band(p, VIBRATION, 100.0, 2),
+        }
+        for p in others.itertuples()
+    ]
+    return as_table(DataFrame(rows))
+
+
+def with_band(point: Any, key: str, scale: float, places: int) -> str | None:
+    """Return a number of a point with its band, rounded up; None where it is not known."""
+    number, band = scale * getattr(point, key), scale * getattr(point, f"{key}_band")
+    if np.isnan(number):
         return None
-    return f"{scale * value:.{places}f}" + ("" if band is None else f" ± {rounded_up(scale * band, places)}")
+    return f"{number:.{places}f}" + ("" if np.isnan(band) else f" ± {rounded_up(band, places)}")
 
 
-def contact_table(points: DataFrame) -> Table:
+def contacts_of(points: DataFrame) -> DataFrame:
     """Return one row per contact of every point, of its last level."""
     rows = [
-        [p.point, p.gamma, at, touch.start, touch.end, touch.impulse_n, touch.impulse_t]
+        {
+            "point": p.point,
+            "gamma": p.gamma,
+            "contact": at,
+            "start_s": touch.start,
+            "end_s": touch.end,
+            "impulse_n_Ns": touch.impulse_n,
+            "impulse_t_Ns": touch.impulse_t,
+        }
         for p in points.itertuples()
         for at, touch in enumerate(p.intervals, 1)
     ]
-    head = ("point", "gamma", "contact", "start_s", "end_s", "impulse_n_Ns", "impulse_t_Ns")
-    return Table.of(head, rows)
+    return DataFrame(rows)
 
 
-def findings(points: DataFrame) -> list[str]:
-    """Return the sentences of the study."""
-    curve = points[points.family == "curve"]
-    sentences = [
-        what_the_limit_says(curve),
-        *(how_much(curve, kind) for kind in dropped.PLAIN),
-        *(where_it_peaks(curve, kind) for kind in dropped.PLAIN),
-        *(other_inputs(points, kind) for kind in dropped.PLAIN),
-        measured_sets(points),
-        *(modes_less_elements(curve, kind) for kind in dropped.PLAIN),
-        how_sure(points),
-    ]
-    return [sentence for sentence in sentences if sentence]
-
-
-def how_much(curve: DataFrame, kind: str) -> str:
-    """Return vibration of the paper's rods, in the surface state of `PLAIN`."""
-    shares = {p.length_m: share(p) for p in _known(figures.plain_line(curve, kind))}
-    rods = [f"{shares[length]} ({rod} rod)" for rod, length in dropped.PAPER_RODS.items() if length in shares]
-    tip = f"A{'n' if kind == 'elastic' else ''} {kind} tip ({dropped.PLAIN[kind]}, 45 degrees, 2.1 m/s)"
-    return f"{tip} leaves as vibration, of E_0: {', '.join(rods)}." if rods else ""
-
-
-def where_it_peaks(curve: DataFrame, kind: str) -> str:
-    """Return the slenderness of most vibration, and what makes it fall beyond."""
-    points = [p for p in _known(figures.plain_line(curve, kind)) if p.E_vib_over_E_0_own_mesh is not None]
-    if len(points) < 2:
-        return ""
-    top = max(points, key=_vibration)
-    after = points[points.index(top) + 1 :]
-    peak = f"{kind.capitalize()}, {dropped.PLAIN[kind]}: vibration is largest at gamma {top.gamma:.0f} with "
-    peak += f"{share(top)} of E_0"
-    if not after:
-        return f"{peak}, the longest rod."
-    low, last = min(after, key=_vibration), after[-1]
-    bands = [p.E_vib_over_E_0_band or 0.0 for p in (top, low)]
-    if _vibration(top) - _vibration(low) <= sum(bands):
-        return f"{peak}; beyond it stays within the bands (least {share(low)} at gamma {low.gamma:.0f})."
-    again = f" At gamma {last.gamma:.0f} it is {share(last)}." if last is not low else ""
-    return f"{peak}; it falls {_fall(top, low)}{again}"
-
-
-def _fall(top: Any, low: Any) -> str:
-    """Return how far vibration falls, and which part of that later contacts make."""
-    last, fall = low.E_vib_over_E_0_own_mesh, _vibration(top) - _vibration(low)
-    first = last if low.E_vib_over_E_0_first_contact is None else low.E_vib_over_E_0_first_contact
-    back = first - last
-    mostly = "later contacts give energy back" if back > fall / 2 else "the first contact itself leaves less"
-    return (
-        f"to {share(low)} at gamma {low.gamma:.0f}, mostly because {mostly}: the first contact leaves "
-        f"{100 * first:.2g} % there, "
-        + (f"later contacts change that by {-100 * back:+.2g} % of E_0." if back else "no later one follows.")
-    )
-
-
-def what_the_limit_says(curve: DataFrame) -> str:
-    """Return vibration and e at the limit of Eq 29, and where vibration passes `ONE_PERCENT`."""
-    sentences = []
-    for kind, state in dropped.PLAIN.items():
-        points = _known(figures.plain_line(curve, kind))
-        for p in [p for p in points if abs(p.gamma - LIMIT) < 1e-6]:
-            change = ""
-            if p.e_edge is not None and p.e_edge_rigid is not None:
-                change = f" and e is {p.e_edge:.3f} where a rod that cannot vibrate has {p.e_edge_rigid:.3f}"
-            where = f"{kind.capitalize()}, {state}: vibration there takes {share(p)} of E_0{change}"
-            sentences.append(f"{where}; {_passes(points)}.")
-    rods = ", ".join(
-        name for name, length in dropped.PAPER_RODS.items() if dropped.DroppedRod(length).gamma <= LIMIT
-    )
-    called = f"The limit gamma <= {LIMIT} calls the {rods} rod rigid and the longer ones not."
-    return " ".join([called, *sentences]) if sentences else ""
-
-
-def _passes(points: Sequence[Any]) -> str:
-    """Return from which slenderness on vibration takes more than `ONE_PERCENT`, by linear interpolation."""
-    first = points[0]
-    if _vibration(first) > ONE_PERCENT:
-        return (
-            f"it takes more than {ONE_PERCENT:.0%} of E_0 from gamma {first.gamma:.0f} on, the shortest rod"
-        )
-    for low, high in pairwise(points):
-        below, above = _vibration(low), _vibration(high)
-        if above > ONE_PERCENT:
-            gamma = low.gamma + (high.gamma - low.gamma) * (ONE_PERCENT - below) / (above - below)
-            return f"it passes {ONE_PERCENT:.0%} of E_0 at gamma {gamma:.1f}"
-    return f"it never reaches {ONE_PERCENT:.0%} of E_0"
-
-
-def other_inputs(points: DataFrame, kind: str) -> str:
-    """Return vibration of rods as slender as the longest of the paper with one input changed."""
-    usual = dropped.DroppedRod(max(dropped.PAPER_RODS.values()))
-    changed = [
-        f"{_changed(p, usual)} {share(p)}"
-        for p in _known(points[(points.family == "other inputs") & (points.contact == kind)])
-        if abs(p.gamma - usual.gamma) < ALIKE
-    ]
-    curve = dropped.among(figures.plain_line(points[points.family == "curve"], kind), length_m=usual.length)
-    if not changed or curve.empty:
-        return ""
-    return (
-        f"Other inputs at gamma {usual.gamma:.0f}, {kind}, {dropped.PLAIN[kind]}: vibration is "
-        f"{share(next(curve.itertuples()))} of E_0 on the curve ({usual.diameter * 1e3:g} mm, "
-        f"{usual.speed:g} m/s, {usual.angle:g} degrees), and with {', '.join(changed)}."
-    )
-
-
-def _changed(point: Any, usual: dropped.DroppedRod) -> str:
-    """Return the input of a point that is not the usual one."""
-    if point.law != usual.law:
-        return f"strength from {point.law}"
-    if point.angle_deg != usual.angle:
-        return f"{point.angle_deg:g} degrees"
-    speed, diameter = point.speed_m_per_s, point.diameter_m
-    return f"{speed:g} m/s" if speed != usual.speed else f"{diameter * 1e3:g} mm"
-
-
-def measured_sets(points: DataFrame) -> str:
-    """Return vibration of the measured sets' own scenes."""
-    sets = [
-        f"{p.point} (gamma {p.gamma:.1f}, {p.speed_m_per_s:.2f} m/s) {share(p)}"
-        for p in _known(points[points.family == "measured sets"])
-    ]
-    return f"The measured sets' own scenes keep as vibration, of E_0: {', '.join(sets)}." if sets else ""
-
-
-def modes_less_elements(curve: DataFrame, kind: str) -> str:
-    """Return how far the modal fidelity lies from the points of the curve."""
-    points = _known(curve[(curve.contact == kind) & curve.by_modes.notna()])
-    differences = [p.by_modes - p.E_vib_over_E_0 for p in points]
-    if not differences:
-        return ""
-    return (
-        f"{kind.capitalize()} tips: vibration by modes less by finite elements, of E_0: root mean square "
-        f"{100 * np.linalg.norm(differences) / len(differences) ** 0.5:.2g} %, largest "
-        f"{100 * max(differences, key=abs):+.2g} %, over {len(differences)} points of the curve."
-    )
-
-
-def how_sure(points: DataFrame) -> str:
-    """Return how many points have a band as narrow as wanted, and how many are gaps."""
-    close = points.band_as_wanted == "yes"
-    doubted = points.doubted & ~close
-    residuals = points.residual_over_E_0.dropna().astype(float).abs()
-    return (
-        f"Levels give vibration of {close.sum()} of {len(points)} points within {dropped.CLOSE:.0%} of "
-        f"itself or {dropped.LEAST:g} of E_0; in {doubted.sum()} of the others its two counts, by modes and "
-        f"without them, differ by more. {(points.reason != '').sum()} points have no value or no band. "
-        f"The largest residual of their ledgers is {max(residuals, default=0.0):.1g} of E_0."
-    )
-
-
-def share(point: Any) -> str:
-    """Return vibration of a point with its band, rounded up to 0.01, in per cent."""
-    value, band = 100 * (point.E_vib_over_E_0 or 0.0), point.E_vib_over_E_0_band
-    if band is None:
-        return f"{value:.2g} %"
-    if value < 0.0:
-        return f"less than {value + 100 * band:.2f} %"
-    return f"{value:.2f} ± {rounded_up(100 * band, 2)} %"
-
-
-def _known(points: DataFrame) -> list[Any]:
-    """Return the points whose vibration is known, each with the columns as attributes."""
-    return list(points[points[dropped.VIBRATION].notna()].itertuples())
-
-
-def _vibration(point: Any) -> float:
-    return float(point.E_vib_over_E_0)
+def level_table(rods: DataFrame) -> Table:
+    """Return gamma at which each measure passes each level, for three diameters, and the exponent."""
+    rows = []
+    for contact, of_contact in rods.groupby("family", sort=False):
+        by_diameter = dict(iter(of_contact.groupby("diameter_m")))
+        ends = (min(by_diameter), max(by_diameter)) if len(by_diameter) > 1 else (None, None)
+        diameters = {"gamma_thinnest": ends[0], "gamma_19_mm": BODY, "gamma_thickest": ends[1]}
+        for title, measure in {"error of e": "error_of_e", "spread of e": "spread_of_e"}.items():
+            for level in LEVELS:
+                row = {"contact": contact, "measure": title, "level": level}
+                for name, d in diameters.items():
+                    row[name] = crossing(by_diameter[d], level, measure) if d else None
+                rows.append({**row, "exponent": exponent(of_contact, level, measure)})
+    return as_table(DataFrame(rows))

@@ -167,9 +167,8 @@ def spring_bounce(rod: DroppedRod) -> dict[str, float]:
     """Return columns of a rod on that spring: e with and without vibration, T1/tau by either mass."""
     modes, period, k = slender(rod), rod.first_period, spring_stiffness()
     return {
-        "e": spring_drop(modes, k).restitution,
-        "e_rigid": 1.0,
-        "band_of_change": 0.0,
+        "e_edge": spring_drop(modes, k).restitution,
+        "e_edge_rigid": 1.0,
         "T1_over_tau": period / (pi * sqrt(effective_mass(modes) / k)),
         "T1_over_tau_whole": period / (pi * sqrt(modes.mass / k)),
     }
