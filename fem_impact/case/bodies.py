@@ -15,6 +15,9 @@ from fem_impact.scene.types import Scene
 from meshes import SKIN, HexMesh
 from rigid import Body
 
+WEAKEST = 1e-3
+"""Energy that a strike brings along its normal, over the most with which one of its sequence began, below
+which it does not rebound, where restitutions follow from the contact law: slow strikes lose nothing by it."""
 SAME_PLACE = 1e-6  # of the length, as far as nodes of a user's mesh may lie from where they touch
 
 

@@ -31,14 +31,12 @@ from fem_impact.scene.types import Scene
 
 # after the last touch: bending periods, and durations of the contact, within which one impact touches again
 PERIODS, DURATIONS = 1.5, 2.0
-OTHER_END = "The rod's other end strikes"
-"""How the reason of an impact begins that ends before the other end strikes: `before_other_end`."""
 
 
 def before_other_end(later: float) -> str:
     """Return why an impact ended before the strike of the other end, which comes so much, s, later."""
     return (
-        f"{OTHER_END} {later * 1e3:.2g} ms later: this is the motion before, and "
+        f"The rod's other end strikes {later * 1e3:.2g} ms later: this is the motion before, and "
         '`impact.until = "rest"` follows the body on.'
     )
 

@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import hypot, inf
 from typing import Self
 
@@ -67,12 +67,14 @@ class ModalResult:
     V_bn, V_bt, Omega_b : velocity of the barrier, m/s, as seen from where it was before, and its spin, rad/s
     away : (n, t) rod's mass centre from the barrier's at the end, m
     fallen : what gravity added to these and to the vibration, J
+    gravity : its work until the end, J
     energies : (k,) vibration of each mode, J
     contacts : (m, 4) start, end, s, impulses along n and t, N s
     force : largest normal force, N
     sites : what touched, in the order of its first touch
     laid : whether a straight part landed flat
     finished, reason : whether the impact is over, and why the march ended
+    other_end : whether it ended because the other end strikes next
     last, time : motion and modes at the end, gravity in them, and its time, s
     dents, met : that it leaves, and those of the arrival that it met, in whose place they stand
     record : (m, 17) what moved over time, see `fem_impact.modal.motion`; no rows where none was wanted
@@ -100,12 +102,14 @@ class ModalResult:
     away: tuple[float, float]
     residual: float
     fallen: float
+    gravity: float
     contacts: Array
     sites: tuple[ContactSite, ...]
     laid: bool
     force: float
     finished: bool
     reason: str
+    other_end: bool
     last: ModalState
     time: float
     dents: tuple[Dent, ...]
@@ -253,9 +257,9 @@ def solve(
         rate = hypot(rate, lawful(touched))
         bounds = bounds._replace(step=min(bounds.step, step * FASTEST / rate))
     wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
-    result = _result(case, rod, course, touched, E_0, bounds, (wall, cpu))
-    left = (Dent.of(course.held, s, sites, course.now, along) for s in range(len(ends)))
-    return replace(result, dents=tuple(dent for dent in left if dent), met=tuple(met))
+    kept = (Dent.of(course.held, s, sites, course.now, along) for s in range(len(ends)))
+    left = tuple(dent for dent in kept if dent)
+    return _result(case, rod, course, touched, E_0, bounds, (wall, cpu), (left, tuple(met)))
 
 
 def _arriving(case: Case, rod: ModalRod, arrival: Arrival | None) -> ModalState:
@@ -308,8 +312,12 @@ def _result(
     E_0: float,
     bounds: Bounds,
     took: tuple[float, float],
+    dents: tuple[tuple[Dent, ...], tuple[Dent, ...]],
 ) -> ModalResult:
-    """Return the result of a march that ``ended`` as it returned, and ``took`` wall and processor time, s."""
+    """Return the result of a march that ``ended`` as it returned, and ``took`` wall and processor time, s.
+
+    ``dents`` are those that it left and those that it met.
+    """
     over = ended != CUT
     scene, now, tally, clock = case.scene, course.now, course.tally, course.clock
     motion, energies = now.rigid[:3], _energies(rod, now)
@@ -349,16 +357,18 @@ def _result(
         away=(float(now.rigid[AT.away_n]), float(now.rigid[AT.away_t])),
         residual=E_0 + tally[SUM.gravity] - _kinetic(rod, *motion) - sum(parts),
         fallen=tally[SUM.gravity] + kinetic - _kinetic(rod, *motion),
+        gravity=tally[SUM.gravity],
         contacts=contacts,
         sites=pressed_sites(case, rod, course.held),
         laid=laid,
         force=tally[SUM.force],
         finished=over,
         reason=_reason(ended, bounds, float(clock[CLOCK.free])),
+        other_end=ended == NEXT,
         last=now,
         time=float(clock[CLOCK.time]),
-        dents=(),
-        met=(),
+        dents=dents[0],
+        met=dents[1],
         record=course.record[: int(clock[CLOCK.rows])],
         step=bounds.step,
         steps=int(clock[CLOCK.steps]),

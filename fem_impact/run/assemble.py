@@ -6,7 +6,7 @@ from math import cos
 from typing import Self
 
 from fem_impact.arrays import Array
-from fem_impact.case.case import OTHER_END, Case
+from fem_impact.case.case import Case
 from fem_impact.case.effects.registry import EFFECTS
 from fem_impact.outcome import groups
 from fem_impact.outcome.groups import Limitation, limitations
@@ -53,6 +53,7 @@ class ImpactEnd:
     missing : what the energy ledger misses, of E_0
     finished : whether the impact is over
     reason : why the computation ended, a sentence
+    other_end : whether it ended because the other end strikes next
     turn : of a barrier that turns: its spin, rad/s, and the rod's mass centre from its own (n, t), m, before
         and after
     """
@@ -68,6 +69,7 @@ class ImpactEnd:
     missing: float
     finished: bool
     reason: str
+    other_end: bool = False
     turn: tuple[float, tuple[float, float], tuple[float, float]] | None = None
 
 
@@ -138,7 +140,7 @@ class Reduction:
         shown = () if withheld or cut else unusual(origin, self.motion, self.restitution, energy)
         again = strikes_again(case, end.leaving, end.Omega) if end.finished and not failed else ""
         alone = case.scene.impact.until == FIRST
-        told = named(again) if alone and not self.end.reason.startswith(OTHER_END) else ""
+        told = named(again) if alone and not end.other_end else ""
         next_one = told or (end.reason if alone and again else "")
         of_result = limitations("result", *shown, gravity, next_one)
         outcome = Outcome(

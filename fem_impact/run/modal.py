@@ -61,6 +61,7 @@ def reduce(case: Case, result: ModalResult) -> Outcome:
         missing=result.residual / result.E_0,
         finished=result.finished,
         reason=result.reason,
+        other_end=result.other_end,
         turn=(result.Omega_b, common.apart(case), result.away) if turns else None,
     )
     turned = abs(result.Omega_b) * float(result.contacts[-1, 1])

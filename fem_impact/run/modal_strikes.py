@@ -7,6 +7,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from fem_impact.arrays import Array
+from fem_impact.case.bodies import WEAKEST
 from fem_impact.case.case import PERIODS, Case
 from fem_impact.case.effects.damping import loss_factor, states_loss
 from fem_impact.case.effects.registry import AUTO
@@ -18,7 +19,7 @@ from fem_impact.modal.sites import lowest_place
 from fem_impact.outcome.strikes import PHASED, StrikeRecord
 from fem_impact.run.certain import SEEN
 from fem_impact.run.modal import closed
-from fem_impact.run.strikes import LEAST_BY_LAW, Followed
+from fem_impact.run.strikes import Followed
 from rigid.strikes import Finish, FlightState, next_touch
 
 MOST = 40
@@ -40,7 +41,7 @@ QUARTERS = (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)
 """Cosine and sine of the phases by which vibration that comes in is moved on, to see what that changes."""
 LEAST = 1e-3
 """Vibration that comes in, over the energy of the rigid motion, from which on its phase counts."""
-SMOOTH = "A rod that leaves its dent is taken to leave the surface beside it."
+SMOOTH = "A rod that leaves its dent touches nothing until it is above the surface beside that."
 
 
 def modal_loss(case: Case) -> float:
@@ -113,7 +114,7 @@ class ModalCourse:
         while self.followed.missing != 0 and self.strikes < MOST and self.finished:
             touch = self._touch()
             if touch is None or not self.followed.hard(touch):
-                state, finish = self.followed.go_on(self.state, LEAST_BY_LAW)
+                state, finish = self.followed.go_on(self.state, WEAKEST)
                 self.swing_on(state)
                 if finish is not Finish.STRONG:
                     return finish
@@ -192,7 +193,7 @@ class ModalCourse:
         ``moved`` is the same with vibration of other phases.
         """
         after, last = self._after(before, result), result.last
-        self.followed.gravity += self.followed.work(before, after)
+        self.followed.gravity += result.gravity
         if result.met:
             self.followed.again.add(len(self.followed.each) + 1)
         self.dents = (*(dent for dent in self.dents if dent not in result.met), *result.dents)
@@ -203,10 +204,9 @@ class ModalCourse:
             for name in (PHASED if others else ())
         }
         self.followed.each.append(replace(own, **swings))
-        outside = self.followed.touching(after.alpha, after.V_n, after.V_t, after.Omega).height
-        self.state = after._replace(height=max(after.height, outside))  # beside its dent
-        self.rod, self.q, self.rate = result.rod, last.q, last.rate
+        self.state, self.rod, self.q, self.rate = after, result.rod, last.q, last.rate
         self.strikes, self.finished, self.damped = self.strikes + 1, result.finished, 0.0
+        self.swing_on(self.followed.leave_dent(after))
 
     def _after(self, before: FlightState, result: ModalResult) -> FlightState:
         """Return the motion after a strike."""
@@ -240,7 +240,7 @@ class ModalCourse:
             taken=taken,
         )
         spent = record.vibration + result.friction + result.plastic + result.viscous
-        return replace(record, other=record.lost + taken + followed.work(before, after) - spent)
+        return replace(record, other=record.lost + taken + result.gravity - spent)
 
 
 def swung(omega: Array, loss: float, dt: float, q: Array, rate: Array) -> tuple[Array, Array]:

@@ -70,6 +70,7 @@ def reduce(result: SolidResult) -> Outcome:
         missing=result.worst / result.E_0,
         finished=result.finished,
         reason=result.reason,
+        other_end=result.other_end,
         turn=result.turned,
     )
     reduction = Reduction.of(case, end)

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from fem_impact.arrays import Array
-from fem_impact.case.bodies import Bodies, LaterStrike
+from fem_impact.case.bodies import WEAKEST, Bodies, LaterStrike
 from fem_impact.case.case import Case
 from fem_impact.case.record import ContactRecord, expected_record, joined
 from fem_impact.errors import SceneError
@@ -27,7 +27,7 @@ from fem_impact.outcome.strikes import StrikeRecord
 from fem_impact.run.modal_strikes import ModalCourse, loss_told, modal_loss, swung
 from fem_impact.run.resolution import unresolved
 from fem_impact.run.solid import readings
-from fem_impact.run.strikes import LEAST_BY_LAW, Followed
+from fem_impact.run.strikes import Followed
 from fem_impact.solid.build import START_GAP, build
 from fem_impact.solid.carry import carry, dented, later_view, lowered, turned
 from fem_impact.solid.run import SolidResult, solve
@@ -179,7 +179,7 @@ class SolidCourse:
         while body.missing != 0:
             touch = self._touch()
             if touch is None or not body.hard(touch):
-                state, finish = body.go_on(self.state, LEAST_BY_LAW)
+                state, finish = body.go_on(self.state, WEAKEST)
                 self.swing_on(state)
                 if finish is not Finish.STRONG:
                     return finish
@@ -321,9 +321,8 @@ class SolidCourse:
         self.body.each.append(self._recorded(before, after, end, taken))
         if narrow := unresolved(end):
             self.told.append(NARROW.format(len(self.body.each), narrow))
-        outside = self.body.touching(after.alpha, after.V_n, after.V_t, after.Omega).height  # beside its dent
-        self.state = after._replace(height=max(after.height, outside))
-        self.last, self.flight, self.damped = end, end.flight, 0.0
+        self.state, self.last, self.flight, self.damped = after, end, end.flight, 0.0
+        self.swing_on(self.body.leave_dent(after))
 
     def _recorded(
         self, before: FlightState, after: FlightState, end: SolidResult, taken: float

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import copysign, cos, hypot, inf, pi, remainder, sin
 
-from fem_impact.case.bodies import LaterStrike
+from fem_impact.case.bodies import WEAKEST, LaterStrike
 from fem_impact.case.case import Case
 from fem_impact.case.effects.registry import AUTO
 from fem_impact.outcome.keys import Num, Unknown, unknown
@@ -13,7 +13,6 @@ from fem_impact.outcome.strikes import PHASED, StrikeRecord, Strikes, other_end
 from fem_impact.physics.contact import ContactPair
 from fem_impact.run.common import rod_flows
 from fem_impact.run.rigid import NormalLoss, normal_loss
-from fem_impact.scene.material import Material
 from fem_impact.scene.types import Scene
 from rigid import GRAVITY, Body, kinetic_energy
 from rigid.strikes import (
@@ -25,9 +24,9 @@ from rigid.strikes import (
     Moved,
     Outline,
     Pull,
-    Round,
     Strike,
     as_it_is,
+    clears,
     outline,
     sequence,
 )
@@ -49,10 +48,8 @@ FINISHED = {
 RATTLE = 4.73
 """Largest factor between the times to the rest by rigid theory and by modes, of 19 bodies (study strikes)."""
 SLOWEST = 1e-9  # m/s, of a body that comes down
-LEAST_BY_LAW = 1e-3
-"""As `LEAST` where restitutions follow from the contact law, which knows no loss of slow strikes."""
 RULES = (
-    f"A strike that brings along its normal less than {LEAST_BY_LAW:g} ({LEAST:g} with a stated restitution) "
+    f"A strike that brings along its normal less than {WEAKEST:g} ({LEAST:g} with a stated restitution) "
     "of the most energy with which one began does not rebound: its contact is held, and the body pivots, "
     "rolls or slides on it.",
     "Two feet at one instant strike one after the other, the one that comes down first; a face or side that "
@@ -130,7 +127,7 @@ class Followed:
             self.pull,
             self._restitution,
             until=self.missing,
-            least=LEAST_BY_LAW if self.case.scene.restitution is None else LEAST,
+            least=WEAKEST if self.case.scene.restitution is None else LEAST,
             energy=self.each[0].before / mass if self.each else None,
             most_energy=self._most_energy / mass,
             strong=strong,
@@ -189,7 +186,7 @@ class Followed:
         """Return whether a strike is hard enough for a model that is finer than a rigid body."""
         comes, d_c = self.comes(state)
         brings = 0.5 * self.case.contact.body.mass * comes**2 / (1.0 + d_c**2 / self.pull.k2)
-        return brings >= LEAST_BY_LAW * max(self._most_energy, self.kinetic(state))
+        return brings >= WEAKEST * max(self._most_energy, self.kinetic(state))
 
     @property
     def _most_energy(self) -> float:
@@ -214,6 +211,18 @@ class Followed:
         height = self.shape.corners[self.shape.lowest(alpha, omega)].arms(alpha)[1]
         return FlightState(0.0, height, 0.0, alpha, v_n, v_t, omega)
 
+    def leave_dent(self, state: FlightState) -> FlightState:
+        """Return a body after a strike as its flight brings it level with the surface beside its dent.
+
+        One that does not come so far is lifted there as it is. The work of gravity is booked.
+        """
+        dt = clears(self.shape, state, self.pull.g_n)
+        if dt is None:
+            return state._replace(height=self.touching(*state[3:]).height)
+        out = state.flown(dt, self.pull.g_n, self.pull.g_t)
+        self.gravity += self.work(state, out)
+        return out
+
     @property
     def coming(self) -> FlightState:
         """Return the body as it touches first, with the motion that the scene states."""
@@ -233,11 +242,17 @@ class Followed:
     def _pair(self, strike: Approach) -> ContactPair:
         """Return body and barrier as they touch in a strike; of its tail as those of the body turned over."""
         first, state, one = self.case.contact, strike.state, self.shape.corners[strike.corner]
-        angle = remainder(state.alpha if strike.line else _inside(one, state.alpha), 2.0 * pi)
-        body = first.body
+        body, angle = first.body, remainder(state.alpha, 2.0 * pi)
+        if not strike.line:  # a corner touches alone, beside an inclination at which a line does
+            middle, half = 0.5 * (one.low + one.high), 0.5 * (one.high - one.low) - BESIDE
+            angle = remainder(middle + min(max(remainder(angle - middle, 2.0 * pi), -half), half), 2.0 * pi)
         if abs(angle) > 0.5 * pi:
             body, angle = self._turned_over, angle - copysign(pi, angle)
-        material, yields = _struck(self.case, strike.place[1] + first.body.z_c)
+        segments, z = self.case.scene.projectile.segments, strike.place[1] + first.body.z_c
+        part = next((part for part in segments if z <= part.to), None)
+        metal, yields = first.rod, first.rod_yields
+        if part is not None and part != segments[0]:
+            metal, yields = part.material, False  # only the first segment may yield
         return replace(
             first,
             body=body,
@@ -245,7 +260,7 @@ class Followed:
             v_n=state.V_n,
             v_t=state.V_t,
             omega=state.Omega,
-            rod=material,
+            rod=metal,
             rod_yields=yields,
         )
 
@@ -371,21 +386,6 @@ class Followed:
             return "face" if abs(remainder(alpha, pi)) < 0.25 * pi else "side"
         body = self.case.contact.body
         return "tip" if place[1] + body.z_c < 0.5 * body.length else "tail"
-
-
-def _inside(one: Round, alpha: float) -> float:
-    """Return the inclination, rad, at which a corner touches alone, next to one at which a line does."""
-    middle, half = 0.5 * (one.low + one.high), 0.5 * (one.high - one.low) - BESIDE
-    return middle + min(max(remainder(alpha - middle, 2.0 * pi), -half), half)
-
-
-def _struck(case: Case, z: float) -> tuple[Material, bool]:
-    """Return the material of the body at a place, m from its tip, and whether it may yield."""
-    segments, pair = case.scene.projectile.segments, case.contact
-    part = next((one for one in segments if z <= one.to), None)
-    if part is None or part == segments[0]:
-        return pair.rod, pair.rod_yields
-    return part.material, False  # only the first segment may yield
 
 
 def _hardest(values: Iterable[float | None]) -> int | Unknown:

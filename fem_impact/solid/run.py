@@ -113,6 +113,7 @@ class SolidResult:
     vibration_check: tuple[float, float] | None
     finished: bool
     reason: str
+    other_end: bool
     cost: LoopCost
     limitations: tuple[Limitation, ...]
     record: ContactRecord
@@ -250,6 +251,7 @@ def _result(
         vibration_check=check,
         finished=stop.finished,
         reason=watchers.reason,
+        other_end=stop.other_end,
         cost=cost,
         limitations=(
             *limitations("run", *(w for f in watchers.frames for w in f.writer.warnings)),

@@ -36,6 +36,7 @@ class Separation:
     every: int = 100
     reason: str = ""
     finished: bool = False
+    other_end: bool = False
 
     @property
     def _sample(self) -> float:
@@ -62,7 +63,8 @@ class Separation:
         self.reason = (
             f"The rod does not touch again within the next {self.horizon * 1e3:.3g} ms of free flight."
         )
-        if ahead < self.horizon:
+        self.other_end = ahead < self.horizon
+        if self.other_end:
             self.reason = before_other_end(ahead)
         return True
 

@@ -2,7 +2,7 @@
 
 from ..rounds import Round
 from .course import LEAST, MOST, RUNAWAY, Moved, as_it_is, sequence
-from .flight import FlightState, next_touch
+from .flight import FlightState, clears, next_touch
 from .held import Ending, Held, Pull, hold
 from .outline import Outline, outline
 from .record import Approach, Finish, Phase, Sequence, Strike
@@ -24,6 +24,7 @@ __all__ = [
     "Sequence",
     "Strike",
     "as_it_is",
+    "clears",
     "hold",
     "next_touch",
     "outline",

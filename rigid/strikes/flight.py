@@ -11,6 +11,7 @@ from ..rounds import TURN, Round
 from .outline import Outline
 
 EXACT, SOON = 1e-15, 1e-20  # relative and absolute error, s, of a root
+TWICE = 2.0  # the time that a body which does not slow down takes to come out of its dent
 
 
 class FlightState(NamedTuple):
@@ -65,6 +66,25 @@ def next_touch(
         if touch is not None:
             return touch, number
     return None
+
+
+def clears(outline: Outline, state: FlightState, g_n: float) -> float | None:
+    """Return when, s from now, a body that has pressed itself in comes out; None if it does not.
+
+    It is 0 of a body that stands above the barrier.
+    """
+
+    def gap(dt: float) -> float:
+        flown = state.flown(dt, g_n, 0.0)
+        one = outline.corners[outline.lowest(flown.alpha, flown.Omega)]
+        return flown.height - one.arms(flown.alpha)[1]
+
+    sunk, one = -gap(0.0), outline.corners[outline.lowest(state.alpha, state.Omega)]
+    if sunk <= 0.0:
+        return 0.0
+    rises = state.V_n + one.arms(state.alpha)[0] * state.Omega
+    late = TWICE * sunk / rises if rises > 0.0 else 0.0
+    return float(brentq(gap, 0.0, late, xtol=SOON, rtol=EXACT)) if gap(late) > 0.0 else None
 
 
 def _latest(outline: Outline, state: FlightState, g_n: float) -> float | None:

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 
 from rigid import Faceted, Projectile, Turned, shapes
-from rigid.strikes import Finish, FlightState, Outline, Pull, Round, next_touch, outline, sequence
+from rigid.strikes import Finish, FlightState, Outline, Pull, Round, clears, next_touch, outline, sequence
 
 G = 9.81
 
@@ -99,6 +99,20 @@ def test_a_flight_ends_where_a_fine_search_finds_it():
         assert (heights - np.max(supports, axis=0)).min() > -1e-12
         after = state.flown(dt, G, 0.0)
         assert after.height == pytest.approx(shape.corners[corner].arms(after.alpha)[1], abs=1e-12)
+
+
+@pytest.mark.parametrize("depth", [1e-6, 1e-4])
+def test_a_body_leaves_its_dent_by_its_flight(depth):
+    """By its mass centre and its spin, against gravity: straight up it is a parabola."""
+    shape = thin(0.24)
+    sunk = start(shape, 60.0, 0.1)._replace(height=0.12 * math.cos(math.radians(60.0)) - depth)
+    assert clears(shape, sunk, G) == pytest.approx((0.1 - math.sqrt(0.01 - 2.0 * G * depth)) / G, rel=1e-9)
+    turning = sunk._replace(V_n=-0.5, Omega=-8.0)  # the tip rises by its spin
+    out = turning.flown(clears(shape, turning, G), G, 0.0)
+    assert out.height == pytest.approx(shape.corners[0].arms(out.alpha)[1], abs=1e-15)
+    assert clears(shape, sunk._replace(height=0.2), G) == 0.0
+    assert clears(shape, sunk._replace(V_n=-0.1), G) is None
+    assert clears(shape, sunk._replace(V_n=0.9 * math.sqrt(2.0 * G * depth)), G) is None
 
 
 def test_without_gravity_a_body_that_rises_leaves_unless_it_turns_into_the_barrier():
