@@ -255,7 +255,7 @@ def test_a_ball_on_its_dent_rebounds_nearly_elastically_by_modes_as_by_finite_el
     outcome = simulate(read_dict(data), "modal")
     first, second = outcome.strikes.each
     assert first.e < 0.65
-    assert 0.98 < second.e < 1.0001  # it falls by the depth of its dent
+    assert 0.98 < second.e < 1.0002  # gravity acts over the depth of its dent
     assert second.force == pytest.approx(first.force, rel=0.02)
     assert second.plastic < 0.01 * first.plastic
     told = " ".join(texts(outcome.validity.limitations, "model"))
