@@ -20,7 +20,6 @@ from fem_impact.cli.parser import build_parser, every_command
 from fem_impact.cli.study import REPORT, STUDIES
 from fem_impact.errors import EXIT_CODES
 from fem_impact.evidence.problems.problem import PROBLEMS, problem
-from fem_impact.outcome.keys import markdown_table
 from fem_impact.outcome.record import KEYS
 from fem_impact.pages.bibliography import references
 from fem_impact.scene import fields, library
@@ -173,7 +172,12 @@ def problems() -> str:
 
 def outcome_keys() -> str:
     """Every key of outcome.json."""
-    return markdown_table(KEYS)
+    head = "| key | kind | unit | null | meaning |\n|---|---|---|---|---|"
+    null = {True: "with a reason", False: "never"}
+    rows = [
+        f"| `{key.name}` | {key.kind} | {key.unit} | {null[key.nullable]} | {key.meaning} |" for key in KEYS
+    ]
+    return "\n".join([head, *rows]) + "\n"
 
 
 def commands() -> str:

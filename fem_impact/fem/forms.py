@@ -22,11 +22,9 @@ from skfem import (
     ElementHex1,
     ElementVector,
     FacetBasis,
-    Functional,
-    LinearForm,
     MeshHex,
 )
-from skfem.helpers import ddot, div, dot, inner, mul, sym_grad
+from skfem.helpers import ddot, div, dot, inner, sym_grad
 
 from fem_impact.arrays import Array, Ints
 from meshes.hexmesh import face_keys
@@ -70,18 +68,6 @@ def springs(u, v, w):  # type: ignore[no-untyped-def]
 def dashpots(u, v, w):  # type: ignore[no-untyped-def]
     """Dashpots rho c_d and rho c_s, which absorb plane waves; ``rho``, kg/m3; ``c_d`` and ``c_s``, m/s."""
     return w.rho * along_and_across(u, v, w.n, w.c_d, w.c_s)
-
-
-@LinearForm
-def surface_load(v, w):  # type: ignore[no-untyped-def]
-    """Work <t, v> of the traction ``t`` (3, faces or 1, points or 1), Pa."""
-    return dot(w.t, v)
-
-
-@Functional
-def axial_strain(w):  # type: ignore[no-untyped-def]
-    """Strain a . eps(u) a along the unit vector ``a`` (3, 1, 1), under the displacement ``u``, m."""
-    return dot(w.a, mul(sym_grad(w.u), w.a))
 
 
 def cell_mean(field: Array, dx: Array) -> Array:

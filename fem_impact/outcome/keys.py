@@ -4,7 +4,7 @@ The table of keys, the checks of a file, its text and the attributes in docstrin
 """
 
 import tomllib
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, fields, is_dataclass
 from importlib.resources import files
 from operator import attrgetter
@@ -207,13 +207,3 @@ def _text(value: Any) -> str:
     if isinstance(value, float):
         return f"{value:.4g}"
     return f"{len(value)} entries" if isinstance(value, tuple | Mapping) else repr(value)
-
-
-def markdown_table(keys: Iterable[Key]) -> str:
-    """Return a table of keys in Markdown: key, kind, unit, may be null, meaning."""
-    head = "| key | kind | unit | null | meaning |\n|---|---|---|---|---|"
-    null = {True: "with a reason", False: "never"}
-    rows = [
-        f"| `{key.name}` | {key.kind} | {key.unit} | {null[key.nullable]} | {key.meaning} |" for key in keys
-    ]
-    return "\n".join([head, *rows]) + "\n"

@@ -19,7 +19,7 @@ from fem_impact.errors import ResultError, UsageError
 from fem_impact.outcome import groups, strikes
 from fem_impact.outcome.check import SCHEMA_VERSION
 from fem_impact.outcome.groups import ARMS, Energy, Heat
-from fem_impact.outcome.keys import STATED, Unknown, known, markdown_table, or_none, unknown
+from fem_impact.outcome.keys import STATED, Unknown, known, or_none, unknown
 from fem_impact.outcome.record import KEY_TABLE, KEYS, Outcome, installed_versions
 from fem_impact.outcome.shares import SHARES, shares
 from fem_impact.pages.bibliography import references
@@ -266,12 +266,6 @@ def test_name_ends_in_the_unit_of_the_table(unit):
     spelled = unit.replace("_per_", "/")
     named = {key.name for key in KEYS if key.name.endswith(f"_{unit}")}
     assert {key.name for key in KEYS if key.unit == spelled and key.kind == "number"} <= named
-
-
-def test_markdown_has_a_row_for_every_key():
-    rows = markdown_table(KEYS).splitlines()
-    assert len(rows) == len(KEYS) + 2
-    assert all(row.count("|") == 6 for row in rows)
 
 
 def test_every_arms_set_has_its_six_keys():
