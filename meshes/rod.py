@@ -37,6 +37,8 @@ class RodMesh:
     on_surface : tuple of (low, high), m
         Ranges of z in which the nodes of the skin lie on the exact surface, so that the flat faces of the
         mesh cut some of the body off; elsewhere the section has the exact area.
+    rest_share : float
+        Share of the volume that a rest has which was cut away and which no section bounds; 0: one does.
     """
 
     mesh: HexMesh
@@ -47,6 +49,7 @@ class RodMesh:
     interface: IntArray
     rest_cells: IntArray
     on_surface: tuple[tuple[float, float], ...]
+    rest_share: float = 0.0
 
     @classmethod
     def plain(cls, mesh: HexMesh) -> "RodMesh":
@@ -55,13 +58,15 @@ class RodMesh:
         return cls(mesh, none.reshape(0, 1), none.reshape(0, 0), 0.0, 0.0, none, none, ())
 
     @classmethod
-    def cut(cls, mesh: HexMesh, start: float) -> "RodMesh":
+    def cut(cls, mesh: HexMesh, start: float, depth: FloatArray | None = None) -> "RodMesh":
         """Return a mesh as a body without slices that has a rest.
 
-        The rest are the cells that begin at ``start``, m, or further from the tip, beyond all refined ones.
+        The rest are the cells that begin at ``start``, m, or further from the tip, beyond all refined ones;
+        or by another ``depth`` (n,) of the nodes than z, m.
         """
-        start = max(start, float(mesh.points[mesh.cells[mesh.level > 0], 2].max(initial=0.0)))
-        behind = mesh.points[mesh.cells, 2].min(axis=1) >= start
+        depth = mesh.points[:, 2] if depth is None else depth
+        start = max(start, float(depth[mesh.cells[mesh.level > 0]].max(initial=0.0)))
+        behind = depth[mesh.cells].min(axis=1) >= start
         shared = np.intersect1d(mesh.cells[behind], mesh.cells[~behind])
         whole = cls.plain(mesh)
         return replace(whole, body_start=start, interface=shared, rest_cells=np.flatnonzero(behind))

@@ -210,7 +210,10 @@ class MeshedBodies:
         """Return the mass, kg, of half the rigid body behind the nose; 0 where the rod vibrates."""
         if self.spec.vibrating:
             return 0.0
-        return self.case.bodies.body.moments_behind(self.geometry.rod.body_start)[0] / 2
+        body, rod = self.case.bodies.body, self.geometry.rod
+        if rod.rest_share:
+            return body.mass * rod.rest_share / 2
+        return body.moments_behind(rod.body_start)[0] / 2
 
     @cached_property
     def materials(self) -> dict[str, Material]:

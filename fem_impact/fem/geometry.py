@@ -118,18 +118,39 @@ def _mesh(bodies: Bodies, zones: AnyZones, vibrating: bool) -> RodMesh:
             near = rod.mesh.cells[zones.rod_flow(rod.mesh, place)]
             end = float(rod.mesh.points[near, 2].max())  # past all that may yield
             rod = RodMesh.cut(rod.mesh, max(end, bodies.rod.diameter / 3))
+        elif len(rod.rest_cells) in (0, len(rod.mesh.cells)):  # of a disc: all nose, or slices alone
+            return _cut_aslant(bodies, zones, rod, turn)
         if len(rod.rest_cells) in (0, len(rod.mesh.cells)):
-            raise no_rest()  # a disc may be slices alone, and then no cell is left that could touch
-        rod = meshes.without_slices(rod, rest_points(bodies, rod.body_start))
+            raise no_rest()
+        rod = meshes.without_slices(rod, rest_points(*bodies.body.moments_behind(rod.body_start)[1:]))
     return rod
 
 
-def rest_points(bodies: Bodies, start: float) -> Array:
-    """Return the two points (2, 3), m, that replace what lies behind ``start``, m from the tip.
+def _cut_aslant(bodies: Bodies, zones: AnyZones, rod: RodMesh, turn: Array) -> RodMesh:
+    """Return a body of revolution without what lies deep, seen from its contact towards its mass centre.
 
-    They lie at its radius of gyration on either side of its centre.
+    That is beyond all that is split or may yield, and a third of the diameter at least.
     """
-    _, x, z, k2 = bodies.body.moments_behind(start)
+    body, lowest, mesh = bodies.body, bodies.lowest_point, rod.mesh
+    inward = np.array([0.0, 0.0, body.z_c]) - lowest
+    depth = (mesh.points - lowest) @ inward / np.linalg.norm(inward)
+    flows = mesh.cells[zones.rod_flow(mesh, (mesh.points - lowest) @ turn.T)]
+    cut = RodMesh.cut(mesh, max(float(depth[flows].max(initial=0.0)), bodies.rod.diameter / 3), depth)
+    if len(cut.rest_cells) in (0, len(mesh.cells)) or len(bodies.rod.segments) > 1:
+        raise no_rest()
+    of, rest = meshes.cell_moments(mesh), cut.rest_cells
+    volume, x, z, square = (part[rest].sum() for part in (of.volume, of.x, of.z, of.xx + of.zz))
+    x, z = x / volume, z / volume
+    cut = meshes.without_slices(cut, rest_points(x, z, square / volume - x**2 - z**2))
+    share = float(volume / of.volume.sum())
+    return replace(cut, body_start=rod.body_start, on_surface=rod.on_surface, rest_share=share)
+
+
+def rest_points(x: float, z: float, k2: float) -> Array:
+    """Return the two points (2, 3), m, that replace what has its centre at x and z, m.
+
+    They lie on either side of it at the radius of gyration, of which ``k2`` is the square, m2.
+    """
     return np.array([[x, 0.0, z - sqrt(k2)], [x, 0.0, z + sqrt(k2)]])
 
 

@@ -7,8 +7,11 @@ import pytest
 import solid_scenes
 
 from fem_impact.case.case import Case
+from fem_impact.errors import SceneError
+from fem_impact.fem.body import MeshedBodies
 from fem_impact.outcome.keys import Unknown
 from fem_impact.run.solid import reduce
+from fem_impact.scene.shipped import load
 from fem_impact.solid.build import build
 from fem_impact.solid.rigid_rest import ElasticNose, RigidRest, hold
 from fem_impact.solid.run import solve
@@ -142,3 +145,28 @@ def test_the_block_barrier_takes_it_too():
     result = solve(Case.of(stated))
     assert result.accounts["plastic_barrier"] > 0
     assert result.worst < 1e-4 * result.E_0
+
+
+def test_a_disc_has_a_rigid_rest_beyond_its_contact_unless_it_lands_flat():
+    table = {
+        "id": "disc",
+        "projectile": {"length": "3.2 mm", "diameter": "23 mm", "tip": "plain", "material": "rod-steel"},
+        "barrier": {"material": "s235"},
+        "surface": {"state": "machined"},
+        "impact": {"angle": "0 deg", "v_n": "-0.75 m/s", "v_t": "0.2 m/s"},
+        "effects": ["auto", "-vibration"],
+        "accuracy": {"tip_size": "0.7 mm"},
+    }
+    with pytest.raises(SceneError, match="deforms as a whole"):
+        _ = MeshedBodies(Case.of(load(table))).geometry
+    inclined = load({**table, "impact": {**table["impact"], "angle": "-30 deg"}})
+    body, made = inclined.projectile.rigid_body, MeshedBodies(Case.of(inclined))
+    assert 0.3 < made.geometry.rod.rest_share < 0.9
+    mass, rod = made.mass[made.free_nodes[:, 0]], made.geometry.rod.mesh
+    x, _, z = rod.points[~rod.is_hanging].T
+    assert 2 * mass.sum() == pytest.approx(body.mass, rel=1e-9)
+    centre = mass @ np.column_stack([x, z]) / mass.sum()
+    assert centre == pytest.approx([0.0, body.z_c], abs=0.01 * body.z_c)
+    assert mass @ ((x - centre[0]) ** 2 + (z - centre[1]) ** 2) / mass.sum() == pytest.approx(
+        body.k2, rel=0.01
+    )

@@ -250,17 +250,3 @@ def test_to_resume_where_nothing_is_begins_and_another_scene_is_refused(failing,
     assert read_toml(tmp_path / "scene.toml") == QUICK
     with pytest.raises(ResultError, match="another scene"):
         simulate(replace_all(QUICK, {"impact.speed": "2 m/s"}), options=RunOptions(tmp_path, resume=True))
-
-
-def test_a_disc_of_slices_alone_is_refused_without_vibration():
-    """The first level splits no cell of it, so that all of it lies behind the nose and none could touch."""
-    table = {
-        "id": "disc",
-        "projectile": {"length": "3.2 mm", "diameter": "23 mm", "tip": "plain", "material": "rod-steel"},
-        "barrier": {"material": "s235"},
-        "surface": {"state": "machined"},
-        "impact": {"angle": "-3 deg", "v_n": "-0.75 m/s", "v_t": "0.2 m/s"},
-        "effects": ["auto", "-vibration"],
-    }
-    with pytest.raises(SceneError, match="deforms as a whole"):
-        simulate(load(table))
