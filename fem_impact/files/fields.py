@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     import pyvista
 
 
-_CORNERS = np.array(
+CORNERS = np.array(
     [[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]],
     float,
 )
@@ -28,7 +28,7 @@ _CORNERS = np.array(
 
 def jacobian(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
     """Return ``(m, 3, 3)``, m: the change of the place along each edge direction at the centres of cells."""
-    result: np.ndarray = np.einsum("ki,mkj->mij", _CORNERS / 8.0, points[cells])
+    result: np.ndarray = np.einsum("ki,mkj->mij", CORNERS / 8.0, points[cells])
     return result
 
 

@@ -13,7 +13,6 @@ from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from PIL import Image, features
 
 from fem_impact.errors import MissingLibraryError, OutputPathError
@@ -44,8 +43,8 @@ def best_suffix() -> str:
     return ".webp" if features.check("webp") else ".gif"
 
 
-def encode(frames: Iterable[np.ndarray], path: Path, fps: int) -> Path:
-    """Write frames ``(height, width, 3) uint8`` as a film, in one step; return its path.
+def encode(frames: Iterable[Image.Image], path: Path, fps: int) -> Path:
+    """Write frames of mode RGB as a film, in one step; return its path.
 
     Raises
     ------
@@ -54,7 +53,7 @@ def encode(frames: Iterable[np.ndarray], path: Path, fps: int) -> Path:
     OutputPathError
         The suffix is no film format, or the place cannot be written.
     """
-    writers: dict[str, Callable[[Iterator[np.ndarray], Path, int], None]] = {
+    writers: dict[str, Callable[[Iterator[Image.Image], Path, int], None]] = {
         ".mp4": _write_mp4,
         ".webp": partial(_animate, prepare=lambda picture: picture, **WEBP),
         ".gif": partial(_animate, prepare=lambda picture: picture.quantize(192), optimize=False),
@@ -67,7 +66,7 @@ def encode(frames: Iterable[np.ndarray], path: Path, fps: int) -> Path:
         make_directory(folder)
         for number, frame in enumerate(frames):
             with atomic_path(folder / f"frame_{number:04d}.png") as draft:
-                Image.fromarray(frame).save(draft)
+                frame.save(draft)
         return folder
     if path.suffix not in writers:
         raise OutputPathError(f"{path}: a film ends in {', '.join(SUFFIXES)}.")
@@ -84,28 +83,27 @@ def _has_ffmpeg() -> bool:
     return importlib.util.find_spec("imageio_ffmpeg") is not None
 
 
-def _write_mp4(frames: Iterator[np.ndarray], path: Path, fps: int) -> None:
+def _write_mp4(frames: Iterator[Image.Image], path: Path, fps: int) -> None:
     imageio_ffmpeg = importlib.import_module("imageio_ffmpeg")
     first = next(frames)
-    height, width = first.shape[:2]
     how = {"quality": 7, "macro_block_size": 16, "pix_fmt_out": "yuv420p", "output_params": FAST}
-    writer = imageio_ffmpeg.write_frames(str(path), (width, height), fps=fps, **how)
+    writer = imageio_ffmpeg.write_frames(str(path), first.size, fps=fps, **how)
     writer.send(None)
     try:
         for frame in itertools.chain([first], frames):
-            writer.send(np.ascontiguousarray(frame))
+            writer.send(frame.tobytes())
     finally:
         writer.close()
 
 
 def _animate(
-    frames: Iterator[np.ndarray],
+    frames: Iterator[Image.Image],
     path: Path,
     fps: int,
     prepare: Callable[[Image.Image], Image.Image],
     **options: Any,
 ) -> None:
-    pictures = (prepare(Image.fromarray(frame)) for frame in frames)
+    pictures = map(prepare, frames)
     first = next(pictures)
     first.save(path, save_all=True, append_images=pictures, duration=round(1000 / fps), loop=0, **options)
 

@@ -112,7 +112,7 @@ def context(folder: Path) -> tuple[str, str, tuple[np.ndarray, np.ndarray], list
     return title, made, curve, missing
 
 
-def _frames(motion: FilmData, background: frame.FilmBackground, times: np.ndarray) -> Iterator[np.ndarray]:
+def _frames(motion: FilmData, background: frame.FilmBackground, times: np.ndarray) -> Iterator[Image.Image]:
     layout = background.layout
     size = layout.rod.size
     whole = RodPicture(motion, size, needed_height(motion, size))
@@ -226,19 +226,19 @@ class PairBackground:
         ends = tuple(motion.movement.end for motion in motions)
         return cls(layout, frame.picture(drawn), tuple(strips), ends)
 
-    def compose(self, pictures: Sequence[np.ndarray], time: float) -> np.ndarray:
-        """Return one frame ``(height, width, 3) uint8`` from the views at ``time`` in s."""
+    def compose(self, pictures: Sequence[Image.Image], time: float) -> Image.Image:
+        """Return one frame from the views at ``time`` in s."""
         image = self.base.copy()
         pen = ImageDraw.Draw(image)
         for drawn, view in zip(pictures, self.layout.views, strict=True):
-            image.paste(Image.fromarray(drawn), view.corner)
+            image.paste(drawn, view.corner)
         for strip, view, end in zip(self.strips, self.layout.views, self.ends, strict=True):
             strip.mark(pen, time)
             if time > end:
                 place = (view.left + view.width - 8, view.top + 4)
                 frame.write(pen, place, f"over at {end * 1e6:.0f} µs", 13)
         frame.clock(pen, self.layout, time)
-        return np.asarray(image)
+        return image
 
 
 def _title(drawn: Figure, layout: SideBySideLayout, view: Rectangle, title: str) -> None:
@@ -249,7 +249,7 @@ def _title(drawn: Figure, layout: SideBySideLayout, view: Rectangle, title: str)
 
 def _side_by_side_frames(
     background: PairBackground, motions: Sequence[FilmData], times: np.ndarray
-) -> Iterator[np.ndarray]:
+) -> Iterator[Image.Image]:
     sizes = [view.size for view in background.layout.views]
     height = max(needed_height(motion, size) for motion, size in zip(motions, sizes, strict=True))
     views = [RodPicture(motion, size, height) for motion, size in zip(motions, sizes, strict=True)]

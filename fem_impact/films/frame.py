@@ -19,6 +19,7 @@ from fem_impact.errors import UsageError
 from fem_impact.figures.still import INK, PALETTE, QUIET
 from fem_impact.files.waves import Waves
 from fem_impact.films.motion import FIELDS, FilmData
+from fem_impact.tables.text import plain
 
 
 @dataclass(frozen=True, slots=True)
@@ -186,29 +187,29 @@ class FilmBackground:
 
     def compose(
         self,
-        rod: np.ndarray,
-        close: np.ndarray | None,
+        rod: Image.Image,
+        close: Image.Image | None,
         time: float,
         overlay: Callable[[Any], None],
         slow: float,
-    ) -> np.ndarray:
-        """Return one frame ``(height, width, 3) uint8`` from the views at ``time`` in s.
+    ) -> Image.Image:
+        """Return one frame from the views at ``time`` in s.
 
         ``overlay`` draws over the rod with a pen; a second of the film shows ``slow`` s of motion.
         """
         frame = self.base.copy()
-        frame.paste(Image.fromarray(rod), self.layout.rod.corner)
+        frame.paste(rod, self.layout.rod.corner)
         if close is not None:
-            frame.paste(Image.fromarray(close), self.layout.close.corner)
+            frame.paste(close, self.layout.close.corner)
         pen = ImageDraw.Draw(frame)
         clock(pen, self.layout, time)
         if slow:
-            write(pen, (self.layout.width - 24, 42), f"1 s of the film shows {slow * 1e6:.3g} µs", 12)
+            write(pen, (self.layout.width - 24, 42), f"1 s of the film shows {plain(slow * 1e6, 3)} µs", 12)
         self.strip.mark(pen, time)
         if self.profile is not None:
             self.profile.mark(pen, time)
         overlay(pen)
-        return np.asarray(frame)
+        return frame
 
 
 def blank(frame: Frame) -> Figure:

@@ -1,13 +1,13 @@
 """Positions and colours of each frame, with magnification and ranges fixed over the whole film."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 from fem_impact.errors import ResultError
-from fem_impact.files.fields import FieldFile, jacobian
+from fem_impact.files.fields import CORNERS, FieldFile, jacobian
 from fem_impact.films.movement import Movement
 
 
@@ -17,22 +17,27 @@ def hex_volumes(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
     return volumes
 
 
-def stretch(points: np.ndarray, moved: np.ndarray, cells: np.ndarray, axis: np.ndarray) -> np.ndarray:
-    """Return the stretch |F a| ``(m,)`` of a fibre along ``axis`` a at the cell centres, F = dx/dX.
-
-    It does not depend on the rigid motion.
+def fibres(points: np.ndarray, cells: np.ndarray, axis: np.ndarray) -> np.ndarray:
+    """Return weights ``(m, 8)`` of the corners of cells: their sum of places is F a, F = dx/dX at the centre.
 
     Parameters
     ----------
-    points, moved : (n, 3) float64, m
-        Reference and present positions.
+    points : (n, 3) float64, m
+        Reference positions.
     cells : (m, 8) int
     axis : (3,) float64
-        Unit vector in the reference positions.
+        The unit vector a in the reference positions.
     """
-    along = np.linalg.solve(jacobian(points, cells).transpose(0, 2, 1), axis[:, None])
-    lengths: np.ndarray = np.linalg.norm(jacobian(moved, cells).transpose(0, 2, 1) @ along, axis=(1, 2))
-    return lengths
+    along = np.linalg.solve(jacobian(points, cells).transpose(0, 2, 1), axis[:, None])[:, :, 0]
+    return np.asarray(along @ CORNERS.T / 8.0)
+
+
+def stretch(weights: np.ndarray, corners: np.ndarray) -> np.ndarray:
+    """Return the stretch |F a| ``(m,)`` of `fibres` with their ``weights``, of moved corners ``(m, 8, 3)``.
+
+    It does not depend on the rigid motion.
+    """
+    return np.asarray(np.linalg.norm(np.einsum("mk,mkj->mj", weights, corners), axis=1))
 
 
 def axis_of(points: np.ndarray) -> np.ndarray:
@@ -125,6 +130,9 @@ _FURTHEST = 1000.0
 """Displacement, in sizes of the mesh, that no run reaches within its time."""
 
 
+Colours = Callable[[float], np.ndarray]
+
+
 @dataclass(frozen=True, slots=True)
 class FilmData:
     """The motion of a run made ready to be drawn.
@@ -146,6 +154,8 @@ class FilmData:
         Where the rod first touches, on the barrier's surface.
     span : float, m
         Diameter of the rod.
+    colours : function
+        The field at the points ``(n,)`` or in the cells ``(m,)`` at a time, s, in the shown unit.
     near, far : tuple of float
         Fixed colour ranges of the close-up and of the whole rod, in the shown unit.
     """
@@ -158,6 +168,7 @@ class FilmData:
     peak: float
     contact: np.ndarray
     span: float
+    colours: Colours
     near: tuple[float, float]
     far: tuple[float, float]
 
@@ -179,10 +190,6 @@ class FilmData:
         rigid = rigid_motion(self.fields.points[rod], true[rod], self.weights[rod])
         shown[rod] = magnified(rigid, true[rod], self.factor[rod])
         return true, shown
-
-    def colours(self, time: float) -> np.ndarray:
-        """Return the field at the points ``(n,)`` or in the cells ``(m,)``, in the shown unit."""
-        return _colours(self.movement, self.field, time)
 
 
 def prepare(movement: Movement, field: str, times: Sequence[float] | np.ndarray) -> FilmData:
@@ -219,53 +226,67 @@ def prepare(movement: Movement, field: str, times: Sequence[float] | np.ndarray)
         bent = moved[rod] - rigid_motion(fields.points[rod], moved[rod], weights[rod])
         largest = max(largest, float(np.linalg.norm(bent[away], axis=1).max(initial=0.0)))
     peak = nice_factor(_VISIBLE * span / largest) if largest > 0.0 else 1.0
-    near, far = _ranges(movement, field, looked, distance, rod)
+    colours = _colours_of(movement, field)
+    near, far = _ranges(movement, field, np.array([np.abs(colours(time)) for time in looked]), distance, rod)
     contact = np.array([lowest[0], 0.0, min(lowest[2], 0.0)])
     # no magnification within half a diameter of the contact, all of it beyond two diameters
     share = np.clip((distance - 0.5) / 1.5, 0.0, 1.0)
     fade = share**2 * (3.0 - 2.0 * share)
-    return FilmData(movement, field, rod, weights, fade, peak, contact, span, near, far)
+    return FilmData(movement, field, rod, weights, fade, peak, contact, span, colours, near, far)
 
 
-def _colours(movement: Movement, field: str, time: float) -> np.ndarray:
+def _colours_of(movement: Movement, field: str) -> Colours:
     style = FIELDS[field]
     if field == "velocity":
-        speed: np.ndarray = style.scale * np.linalg.norm(movement.velocities(time), axis=1)
-        return speed
+        return lambda time: style.scale * np.linalg.norm(movement.velocities(time), axis=1)
     if field == "strain":
-        return style.scale * _strain(movement, time)
-    return style.scale * movement.cell_data(style.stored, time)
+        strain = _axial_strain(movement)
+        return lambda time: style.scale * strain(time)
+    return lambda time: style.scale * movement.cell_data(style.stored, time)
 
 
-def _strain(movement: Movement, time: float) -> np.ndarray:
-    """Return the strain along the rod's axis ``(m,)``, zero in the barrier.
+def _axial_strain(movement: Movement) -> Colours:
+    """Return the strain along the rod's axis at a time, in the cells ``(m,)``; zero in the barrier.
 
     That of the cylinder's cells is stretch and bending of waves.h5, where the run stored it.
     """
-    fields = movement.fields
-    rod = fields.static["body"] == 0
-    cells, strain = fields.cells[rod], np.zeros(len(rod))
-    axis = axis_of(fields.points[np.unique(cells)])
-    strain[rod] = stretch(fields.points, movement.points(time), cells, axis) - 1.0
-    waves = movement.waves
+    fields, waves = movement.fields, movement.waves
+    rod = np.flatnonzero(fields.static["body"] == 0)
+    cells = fields.cells[rod]
+    axis, body = axis_of(fields.points[np.unique(cells)]), np.zeros(len(rod), bool)
     if waves is not None:
-        arm = fields.points[fields.cells].mean(axis=1) - waves.origin
+        arm = fields.points[cells].mean(axis=1) - waves.origin
         along, across = arm @ waves.axis, arm @ np.array([waves.axis[2], 0.0, -waves.axis[0]])
-        body = rod & (along > waves.position[0])
-        rows = waves.strain(np.array([time]))
-        mean, bent = (np.interp(along[body], waves.position, row[0]) for row in rows)
-        strain[body] = mean + bent * across[body] / waves.radius
-    return strain
+        body = along > waves.position[0]
+        along, across = along[body], across[body]
+    corners = cells[~body]
+    weights = fibres(fields.points, corners, axis)
+
+    def at(time: float) -> np.ndarray:
+        strain = np.zeros(len(fields.cells))
+        strain[rod[~body]] = stretch(weights, movement.points(time)[corners]) - 1.0
+        if waves is not None:
+            rows = waves.strain(np.array([time]))
+            mean, bent = (np.interp(along, waves.position, row[0]) for row in rows)
+            strain[rod[body]] = mean + bent * across / waves.radius
+        return strain
+
+    return at
 
 
 def _ranges(
-    movement: Movement, field: str, times: np.ndarray, distance: np.ndarray, rod: np.ndarray
+    movement: Movement, field: str, sizes: np.ndarray, distance: np.ndarray, rod: np.ndarray
 ) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return the colour ranges of the close-up and the whole rod, from ``sizes`` at each looked time.
+
+    A rod without any, such as one that yields at its tip alone, has those of the close-up.
+    """
     in_cells, signed, cells = field != "velocity", FIELDS[field].signed, movement.fields.cells
     place = distance[cells].mean(axis=1) if in_cells else distance
     on_rod = rod[cells].all(axis=1) if in_cells else rod
-    tops = np.array([_tops(np.abs(_colours(movement, field, time)), place, on_rod) for time in times])
-    near, far = (float(top) for top in np.maximum(tops.max(axis=0), 1e-12))
+    near, far = np.max([_tops(one, place, on_rod) for one in sizes], axis=0).tolist()
+    near = max(near, 1e-12)
+    far = far if far > 1e-6 * near else near
     return (-near if signed else 0.0, near), (-far if signed else 0.0, far)
 
 

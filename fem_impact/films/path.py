@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+from PIL import Image
 
-from fem_impact.arrays import Array
 from fem_impact.errors import ResultError
 from fem_impact.figures.runs import body_line, flies, placed, state_at
 from fem_impact.figures.still import PALETTE, new_figure
@@ -86,8 +86,8 @@ def _between(begin: FlightState, end: FlightState, share: float) -> FlightState:
 
 def _drawn(
     frames: Sequence[_Frame], each: Sequence[StrikeRecord], shape: Outline, title: str, size: tuple[int, int]
-) -> Iterator[Array]:
-    """Yield the pictures (height, width, 3), uint8."""
+) -> Iterator[Image.Image]:
+    """Yield the pictures."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
     line = body_line(shape)
@@ -113,4 +113,4 @@ def _drawn(
         struck.set_data([1e3 * strike.along for strike in each[: one.struck]], [0.0] * one.struck)
         told.set_text(f"{1e3 * one.state.time:.4g} ms\n{one.words}")
         canvas.draw()
-        yield np.asarray(canvas.buffer_rgba())[:, :, :3].copy()
+        yield Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")

@@ -12,7 +12,7 @@ from fem_impact.files.atomic import write_text
 from fem_impact.films.film import RenderResult, context
 from fem_impact.films.motion import FIELDS, FilmData, prepare, to_points
 from fem_impact.films.movement import Span, film_times, read_movement
-from fem_impact.films.views import outer_surface
+from fem_impact.films.views import on_symmetry, outer_quads
 from fem_impact.pages.html import live_figure, page, sources
 
 FRAMES = 24
@@ -94,11 +94,9 @@ def _skin(motion: FilmData) -> tuple[np.ndarray, np.ndarray]:
 
     The points of the mirrored half follow those of the half. Faces on the plane of motion lie inside.
     """
-    surface = outer_surface(motion).triangulate()
-    faces = np.asarray(surface.point_data["vtkOriginalPointIds"])[surface.regular_faces]
-    across = motion.fields.points[:, 1]
-    inside = (np.abs(across[faces]) < 1e-9 * motion.span).all(axis=1)
-    nodes, flat = np.unique(faces[~inside], return_inverse=True)
+    quads, _ = outer_quads(motion)
+    faces = quads[~on_symmetry(motion, quads)][:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)
+    nodes, flat = np.unique(faces, return_inverse=True)
     half = flat.reshape(-1, 3)
     return nodes, np.concatenate([half, half[:, ::-1] + len(nodes)])
 
