@@ -139,12 +139,10 @@ def _run(
 
     result, notes = run_study(module, request, meter, executor), []
     if result.runs:
-        from fem_impact.films.movement import QUICK_FRAMES, STUDY_FRAMES
         from fem_impact.pages.write import present
 
-        frames = QUICK_FRAMES if request.quick else STUDY_FRAMES
         presenter = None if options.scheduler else executor  # workers of a cluster may not see the files
-        notes = present(result.runs, request.out, meter, frames, presenter)
+        notes = present(result.runs, request.out, meter, presenter)
     meter.close()
     if page:
         write_study_page(page, request.command(options.name), result.text, request.out)

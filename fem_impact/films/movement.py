@@ -127,8 +127,8 @@ PASSES = 2
 FRAMES = 144
 """Frames of a film of three parts: 24 while a stretching wave runs once along the rod."""
 
-STUDY_FRAMES, QUICK_FRAMES = 60, 30
-"""Frames of the film of each run of a study, and of a quick one."""
+STUDY_FRAMES = 60
+"""Frames of the film of each run of a study."""
 
 FPS = 20
 """Frames a second of a film."""

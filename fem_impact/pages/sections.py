@@ -13,7 +13,7 @@ from fem_impact.figures.runs import comparison_picture, force_picture, ledger_pi
 from fem_impact.figures.still import percent
 from fem_impact.files.atomic import make_directory
 from fem_impact.files.waves import read_waves
-from fem_impact.films.movement import FRAMES, QUICK_FRAMES, STUDY_FRAMES
+from fem_impact.films.movement import FRAMES, STUDY_FRAMES
 from fem_impact.outcome.groups import WRONG_NUMBERS, EffectChoice, LimitationKind, texts
 from fem_impact.outcome.keys import Key, Unknown, or_none
 from fem_impact.outcome.record import KEYS, Outcome
@@ -26,7 +26,7 @@ from fem_impact.tables.table import DASH, Cell, Marked, Missing, Table, number
 from fem_impact.tables.text import markup, with_band
 
 LENGTHS = (
-    f"The film of a run of a study has {STUDY_FRAMES} pictures, of a quick study {QUICK_FRAMES}; "
+    f"The film of a run of a study has {STUDY_FRAMES} pictures; "
     f"`fem-impact render` with the folder of the run makes one of {FRAMES}."
 )
 

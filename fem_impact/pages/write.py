@@ -9,7 +9,7 @@ from pathlib import Path
 from fem_impact.errors import FemImpactError, ResultError
 from fem_impact.files.atomic import write_text
 from fem_impact.films.film import render
-from fem_impact.films.movement import Span
+from fem_impact.films.movement import STUDY_FRAMES, Span
 from fem_impact.jobs.executors import LocalProcesses, cores
 from fem_impact.pages.run_page import run_page
 from fem_impact.pages.study_page import draw_study, study_page
@@ -48,7 +48,7 @@ def write_report(result_dir: str | Path, again: bool = True) -> Path:
 
 
 def present(
-    runs: Iterable[Path], study: Path, progress: ProgressMeter, frames: int, executor: Executor | None = None
+    runs: Iterable[Path], study: Path, progress: ProgressMeter, executor: Executor | None = None
 ) -> list[str]:
     """Write film and page of each run and the page of the study; return what could not be made.
 
@@ -56,13 +56,12 @@ def present(
     ----------
     runs, study : folders
     progress : called after the page of each run
-    frames : number of pictures of a film
     executor : processes on this machine, which have the libraries of the runs loaded; new ones when None
     """
     folders, notes = list(runs), list[str]()
     few = max(1, min(cores(), len(folders)))
     with LocalProcesses(few) if executor is None else nullcontext(executor) as pool:
-        films = [pool.submit(film, run, frames) for run in folders]  # the longest work first
+        films = [pool.submit(film, run) for run in folders]  # the longest work first
         figures = pool.submit(_attempt, study, draw_study)  # its notes are repeated when the page is written
         pages = []
         for run, future in zip(folders, films, strict=True):
@@ -81,11 +80,11 @@ def page(folder: Path) -> list[str]:
     return _attempt(folder, write_report)
 
 
-def film(run: Path, frames: int) -> list[str]:
+def film(run: Path) -> list[str]:
     """Write the film of a run that stored its motion; return notes on it, or why it could not be made."""
     if not (run / "fields.vtkhdf").is_file():
         return []
-    return _attempt(run, lambda folder: render(folder, span=Span(frames=frames)).notes)
+    return _attempt(run, lambda folder: render(folder, span=Span(frames=STUDY_FRAMES)).notes)
 
 
 def _notes(run: Path, drawn: Future[list[str]]) -> list[str]:

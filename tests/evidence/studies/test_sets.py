@@ -45,12 +45,14 @@ def test_a_set_is_a_run_with_bands_and_a_table(tmp_path):
     assert json.loads((tmp_path / "study.json").read_text())["rows"] == [row]
     assert (tmp_path / "comparison.csv").is_file()
     assert "**0.300 ± 0.010** / 0.327" in found.text
-    assert found.runs == (tmp_path / "t5b",)
+    assert found.runs == ()
+    assert study(tmp_path, "t5b", quick=False).runs == (tmp_path / "t5b",)
 
 
 def test_levels_run_at_two_places_of_the_grid_unless_quick(tmp_path):
     full, quick = (set_job("t5b", quick, tmp_path) for quick in (False, True))
     assert (full.scene.accuracy.offsets, quick.scene.accuracy.offsets) == (2, None)
+    assert (full.scene.accuracy.tip_size, quick.scene.accuracy.tip_size) == (None, 0.7e-3)
     assert full.way == quick.way == simulate
     assert full.out == tmp_path / "t5b"
 

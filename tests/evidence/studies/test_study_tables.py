@@ -93,14 +93,14 @@ def test_a_missing_library_costs_a_film_only(tmp_path, monkeypatch):
         raise MissingLibraryError("install libegl1")
 
     monkeypatch.setattr("fem_impact.pages.write.render", no_film)
-    assert film(run, 3) == ["t4: install libegl1"]
+    assert film(run) == ["t4: install libegl1"]
 
 
 def test_several_runs_are_drawn_in_processes_and_what_lacks_is_told_once(tmp_path):
     runs = [tmp_path / name for name in ("t4", "t5b")]
     for run in runs:
         run.mkdir()
-    notes = present(runs, tmp_path, NullMeter(), 3)
+    notes = present(runs, tmp_path, NullMeter())
     assert [note.partition(": ")[0] for note in notes] == ["t4", "t5b", tmp_path.name]
     assert all("outcome.json" in note for note in notes[:2])
 
@@ -110,17 +110,17 @@ def test_the_processes_of_the_runs_draw_films_first_and_a_page_after_its_film(tm
 
     class Here(Executor):
         def submit(self, work, *args):
-            calls.append((work.__name__, args[0].name, *args[1:2]))
+            calls.append((work.__name__, args[0].name))
             future = Future()
             future.set_result(work(*args))
             return future
 
     runs = [tmp_path / name for name in ("t4", "t5b")]
-    present(runs, tmp_path, NullMeter(), 7, Here())
-    pages = [(name, run) for name, run, *_ in calls if name in ("film", "page")]
-    assert calls[:2] == [("film", "t4", 7), ("film", "t5b", 7)]
+    present(runs, tmp_path, NullMeter(), Here())
+    pages = [(name, run) for name, run in calls if name in ("film", "page")]
+    assert calls[:2] == [("film", "t4"), ("film", "t5b")]
     assert pages[2:] == [("page", "t4"), ("page", "t5b")]
-    assert [name for name, *_ in calls].count("_attempt") == 2
+    assert [name for name, _ in calls].count("_attempt") == 2
 
 
 def test_a_panel_with_one_place_along_x_is_not_shown(tmp_path):
