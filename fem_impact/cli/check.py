@@ -12,7 +12,7 @@ from fem_impact.case.cells import ADVISED, ERROR, advice, contact_radius, expect
 from fem_impact.case.size import RunSize, about, time_class
 from fem_impact.cli.parser import Options
 from fem_impact.cli.paths import shown_path
-from fem_impact.cli.scene_options import changed_scene, say_kept
+from fem_impact.cli.scene_options import asked_scene, say_kept
 from fem_impact.cli.statement import statement_of
 from fem_impact.cli.terminal import headed, limitation_lines, print_json, size_text
 from fem_impact.errors import UsageError
@@ -50,7 +50,7 @@ def check(options: Options) -> int:
     if drawing is not None and drawing.suffix not in DRAWINGS:
         problem, remedy = "is no picture that can be drawn.", "Name a file such as projectile.svg or .png."
         raise UsageError(problem, key="--drawing", value=str(drawing), remedy=remedy)
-    case = compiled(changed_scene(options.scene, options.changes), "solid")
+    case = compiled(asked_scene(options), "solid")
     tests = _tests_lines(case.scene)  # before the rest: a file of tests that cannot be read is refused
     say_kept(case.scene, options)
     if drawing:

@@ -17,9 +17,9 @@ from fem_impact.answers.cost.measure import (
 from fem_impact.answers.refine.quantities import chosen
 from fem_impact.answers.report import Request, StudyReport, publish
 from fem_impact.cli.page import asked_page, write_study_page
-from fem_impact.cli.parser import Options, stated_budget
+from fem_impact.cli.parser import PAPER, Options, stated_budget
 from fem_impact.cli.paths import checked_out
-from fem_impact.cli.scene_options import changed_scene, command_line
+from fem_impact.cli.scene_options import asked_scene, changed_scene, command_line
 from fem_impact.cli.terminal import chosen_meter, print_answer
 from fem_impact.errors import RunError, SceneError, UsageError
 from fem_impact.evidence.studies.cost_report import answers, paper_report, scene_report
@@ -29,7 +29,7 @@ from fem_impact.scene.types import MEASURED_SETS, Scene
 from fem_impact.scene.units import parse_share
 from fem_impact.tables.text import wrapped
 
-PAPER, PAGE = "paper", "report.html"
+PAGE = "report.html"
 STATED = ("target", "budget", "of", "finer")
 """Options that the page repeats."""
 
@@ -44,7 +44,7 @@ def cost(options: Options) -> int:
         raise UsageError("are about one scene.", key="--target, --budget", remedy=remedy)
     if options.scene == PAPER:
         return _paper(options, chosen(asked))
-    scene = changed_scene(options.scene, options.changes)
+    scene = asked_scene(options)
     names = chosen(asked, scene)
     if options.page:
         raise UsageError("shows all sets.", key="--page", remedy="Leave it out, or run `cost paper`.")

@@ -6,7 +6,7 @@ from math import inf
 
 from fem_impact.answers.hardness import Hardness, SkinPoint, hardnesses
 from fem_impact.cli.parser import Options
-from fem_impact.cli.scene_options import changed_scene
+from fem_impact.cli.scene_options import asked_scene
 from fem_impact.cli.terminal import print_answer
 from fem_impact.errors import UsageError
 from fem_impact.tables.table import Table
@@ -17,7 +17,7 @@ def hardness(options: Options) -> int:
     """Print the layers that meet the hardness of each material."""
     loads = [_number("--loads", text) for text in options.loads.split(",")] if options.loads else []
     scatter = _number("--scatter", options.scatter) if options.scatter else 0.0
-    found = list(hardnesses(changed_scene(options.scene, options.changes), loads, scatter))
+    found = list(hardnesses(asked_scene(options), loads, scatter))
     lines = [line for one in found for line in _lines(one)] or wrapped("No material states a hardness.")
     print_answer(options, [_document(one) for one in found], "\n".join(lines) + "\n")
     return 0

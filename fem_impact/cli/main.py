@@ -10,7 +10,7 @@ import sys
 import threading
 from collections.abc import Callable, Sequence
 
-from fem_impact.cli.parser import Options, build_parser, read_line
+from fem_impact.cli.parser import PAPER, Options, build_parser, read_line
 from fem_impact.cli.terminal import print_json, printable_streams
 from fem_impact.errors import EXIT_CODES, FemImpactError, OutputPathError, RunError, UsageError, in_options
 from fem_impact.version import __version__
@@ -47,6 +47,10 @@ def _called(argv: Sequence[str] | None) -> int:
 def _guarded(handler: Callable[[Options], int], options: Options) -> int:
     """Call the handler; errors of the user and of the disk become one message and an exit code."""
     try:
+        if options.scene not in ("", PAPER):  # before what computes is imported, which takes a second
+            from fem_impact.cli.scene_options import asked_scene
+
+            asked_scene(options)
         code = handler(options)
         sys.stdout.flush()
         return code

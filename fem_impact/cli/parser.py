@@ -9,10 +9,17 @@ from importlib import import_module
 from importlib.resources import files
 from pathlib import Path
 from textwrap import fill
-from typing import Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from fem_impact.errors import EXIT_CODES, UsageError, did_you_mean
 from fem_impact.options import CHECKPOINT_INTERVAL
+
+if TYPE_CHECKING:
+    from fem_impact.scene.types import Scene
+
+
+PAPER = "paper"
+"""In place of a scene: all sets of the paper."""
 
 
 class Options(argparse.Namespace):
@@ -24,6 +31,8 @@ class Options(argparse.Namespace):
     quiet: bool = False
     scene: str = ""
     changes: Sequence[str] = ()
+    asked: "Scene | None" = None
+    read_s: float = 0.0
     vary: Sequence[str] = ()
     columns: str = ""
     fidelity: str = ""

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from fem_impact.cli.parser import Options, stated_budget
 from fem_impact.cli.paths import checked_out, shown_path, told_kept
-from fem_impact.cli.scene_options import changed_scene, say_kept
+from fem_impact.cli.scene_options import asked_scene, say_kept
 from fem_impact.cli.terminal import chosen_meter, headed, limitation_lines, print_table, size_text
 from fem_impact.errors import RunError, UsageError
 from fem_impact.files.run_directory import is_resumable
@@ -42,10 +42,8 @@ LONG = 600.0
 
 def run(options: Options) -> int:
     """Compute one scene, write its results and print them."""
-    if options.until:
-        options.changes = [*options.changes, f"impact.until={options.until}"]
-    begun = perf_counter()  # a large mesh file takes seconds to read, a busy machine to import what computes
-    scene = changed_scene(options.scene, options.changes)
+    begun = perf_counter()  # a busy machine takes seconds to import what computes
+    scene = asked_scene(options)
     if options.resume and options.fidelity in ("rigid", "modal"):
         problem = f"is for finite elements only: a {options.fidelity} run takes seconds."
         raise UsageError(problem, key="--resume", remedy="Leave it out.")
@@ -66,8 +64,8 @@ def run(options: Options) -> int:
     try:
         with told_kept(out, options), closing(chosen_meter(options)) as meter:
             run_options = RunOptions(out, meter, options.resume, options.checkpoint)
-            fidelity = options.fidelity or None
-            outcome = simulate(scene, fidelity, run_options, cores(), budget, case, perf_counter() - begun)
+            fidelity, read_s = options.fidelity or None, options.read_s + perf_counter() - begun
+            outcome = simulate(scene, fidelity, run_options, cores(), budget, case, read_s)
     except KeyboardInterrupt:
         way = (
             "--resume goes on from the last checkpoint."

@@ -8,6 +8,7 @@ import sys
 import tomllib
 from collections.abc import Sequence
 from pathlib import Path
+from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 from fem_impact.cli.parser import Options
@@ -24,6 +25,17 @@ SLOWED = 0.5
 """Share of the old speed of approach below which a fall along the axis is no other way to state it."""
 SHAPE = ("tip", "tip_radius")
 """Options of a steel rod that have a default."""
+
+
+def asked_scene(options: Options) -> Scene:
+    """Return the scene that the options name, changed as they say; it is read once, in ``options.read_s``."""
+    if options.asked is None:
+        begun = perf_counter()
+        if options.until:
+            options.changes = [*options.changes, f"impact.until={options.until}"]
+        options.asked = changed_scene(options.scene, options.changes)
+        options.read_s = perf_counter() - begun
+    return options.asked
 
 
 def changed_scene(id_or_path: str, changes: Sequence[str]) -> Scene:
@@ -145,7 +157,7 @@ def named_scene(options: Options, needed: Sequence[str]) -> Scene | None:
         if given:
             remedy = "A scene states its rod and impact itself: change it with --set key=value."
             raise UsageError("describes a rod, but a scene is named too.", key=given[0], remedy=remedy)
-        return changed_scene(options.scene, options.changes)
+        return asked_scene(options)
     missing = [f"--{name}" for name in needed if not getattr(options, name)]
     if options.changes or missing:
         what = (

@@ -13,7 +13,7 @@ from fem_impact.answers.sweep_results import require_columns
 from fem_impact.answers.vary import cases
 from fem_impact.cli.parser import Options
 from fem_impact.cli.paths import checked_out, told_kept
-from fem_impact.cli.scene_options import changed_scene, command_line, read_changes
+from fem_impact.cli.scene_options import asked_scene, command_line, read_changes
 from fem_impact.cli.terminal import chosen_meter, print_json, print_markdown
 from fem_impact.cli.values import read_values
 from fem_impact.errors import RunError, SceneError, UsageError
@@ -34,7 +34,7 @@ def sweep(options: Options) -> int:
         raise UsageError("is varied twice.", key="--vary", value=twice, remedy="Give all its values at once.")
     vary = dict(pairs)
     _refuse_both(read_changes(options.changes), vary)
-    scene = changed_scene(options.scene, options.changes)
+    scene = asked_scene(options)
     cases(scene, vary)  # refuses what cannot run before a directory is made
     fidelity, workers = options.fidelity or FIDELITY, options.workers or cores()
     about = cases_digest(scene, vary, fidelity)

@@ -8,7 +8,7 @@ from fem_impact.answers.validate import validate as validated
 from fem_impact.case.case import Case
 from fem_impact.case.size import time_class
 from fem_impact.cli.parser import Options
-from fem_impact.cli.scene_options import changed_scene, command_line
+from fem_impact.cli.scene_options import asked_scene, command_line
 from fem_impact.cli.terminal import chosen_meter, print_answer
 from fem_impact.cli.values import read_values
 from fem_impact.errors import UsageError
@@ -22,7 +22,7 @@ ERRORS = ("number", "model S", "tests D", "S - D", "u_num", "u_input", "u_D", "v
 
 def validate(options: Options) -> int:
     """Compare a scene with its tests and print errors, their uncertainties and what these are made of."""
-    scene = changed_scene(options.scene, options.changes)
+    scene = asked_scene(options)
     pairs = [read_values(text) for text in options.uncertain]
     intervals: dict[str, Any] = dict(pairs)
     if options.samples < 2 or options.samples & (options.samples - 1):

@@ -53,7 +53,8 @@ class _View:
         self.motion, self.span, self.quads = motion, span, quads
         shades = colormaps[FIELDS[motion.field].colours](np.arange(SHADES))
         self.palette = 255.0 * shades[:, :3]
-        self.window, self.renderer = vtkRenderWindow(), vtkRenderer()
+        self.window: Any = vtkRenderWindow()
+        self.renderer = vtkRenderer()
         self.window.SetOffScreenRendering(1)
         self.window.SetMultiSamples(0)
         self.window.SetSize(*(FINER * side for side in size))

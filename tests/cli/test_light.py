@@ -35,7 +35,13 @@ HELPS = [[name, "--help"] for name in COMMANDS]
 
 
 @pytest.mark.parametrize(
-    "words", [["--help"], *HELPS, ["study", "gamma", "--help"], ["run", "no-such-scene"]]
+    "words",
+    [
+        ["--help"],
+        *HELPS,
+        ["study", "gamma", "--help"],
+        *([name, "no-such-scene"] for name in ("run", "assess")),
+    ],
 )
 def test_no_heavy_module_is_imported(words):
     done = subprocess.run([sys.executable, "-c", PROBE, *words], capture_output=True, text=True, check=True)
