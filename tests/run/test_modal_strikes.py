@@ -1,14 +1,12 @@
 """Strikes of the reduced model one after the other."""
 
 import math
-from functools import partial
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
 from fem_impact.case.case import Case
-from fem_impact.modal.impact import solve
 from fem_impact.outcome.groups import texts
 from fem_impact.run.certain import _agree
 from fem_impact.run.modal_strikes import ModalCourse, modal_loss
@@ -79,8 +77,9 @@ def test_the_books_of_the_rattle_close(rattle):
     assert "strikes are computed with modes" in told
 
 
-def test_without_losses_motion_and_vibration_keep_the_energy(monkeypatch):
-    changes = FLOOR | {"effects": ELASTIC, "impact.until": "4 strikes", "impact.angle": "60 deg"}
+@pytest.mark.parametrize("angle", [60, 75])
+def test_without_losses_motion_and_vibration_keep_the_energy(angle):
+    changes = FLOOR | {"effects": ELASTIC, "impact.until": "4 strikes", "impact.angle": f"{angle} deg"}
     scene = replace_all(load("quick"), changes | {"impact.v_n": "-1 m/s", "impact.v_t": "0 m/s"})
     assert modal_loss(Case.of(scene, "modal")) == 0.0
     s = simulate(scene, "modal").strikes
@@ -88,11 +87,8 @@ def test_without_losses_motion_and_vibration_keep_the_energy(monkeypatch):
     assert [one.fidelity for one in s.each] == ["modal"] * 4
     assert s.friction == s.plastic == 0.0
     assert abs(s.damping) < 1e-12 * E_0
-    assert abs(E_0 + s.gravity - s.left) < 1e-7 * E_0
-    assert max(one.taken for one in s.each) > 1e-3 * E_0  # a strike meets the vibration of the one before
-    monkeypatch.setattr("fem_impact.run.modal_strikes.closed", partial(solve, step=1.0 / 16.0))
-    s = simulate(scene, "modal").strikes
     assert abs(E_0 + s.gravity - s.left) < 1e-9 * E_0
+    assert max(one.taken for one in s.each) > 1e-3 * E_0  # a strike meets the vibration of the one before
 
 
 def test_a_strike_may_take_vibration_back_into_motion():
