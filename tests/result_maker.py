@@ -155,7 +155,7 @@ def history(rows=600):
         "E_strain_barrier_J": 0.02 * E_0 * share + 0.08 * E_0 * normal / PEAKS[0],
         "E_plastic_barrier_J": 0.40 * E_0 * share**1.5,
         "W_friction_J": 0.29 * E_0 * share**0.8,
-        "W_closing_J": 0.001 * E_0 * share,
+        "W_contact_dissipation_J": 0.001 * E_0 * share,
         "W_radiated_J": 0.004 * E_0 * share,
     }
     table = dict.fromkeys(HISTORY, np.zeros(rows))
@@ -177,7 +177,7 @@ NUMBERS = {
     "W_skin_rod_over_E_0": 0.01, "W_skin_barrier_over_E_0": 0.11,
     "E_plastic_rod_over_E_0": 0.03,
     "E_plastic_barrier_over_E_0": 0.57, "E_locked_rod_over_E_0": 0.021, "E_locked_barrier_over_E_0": 0.0236,
-    "W_radiated_over_E_0": 0.004, "W_closing_over_E_0": 0.001, "residual_over_E_0": 2e-6,
+    "W_radiated_over_E_0": 0.004, "W_contact_dissipation_over_E_0": 0.001, "residual_over_E_0": 2e-6,
     "marker_V_n_m_per_s": 0.315, "marker_V_t_m_per_s": -0.409, "marker_Omega_rad_per_s": 5.2,
     "marker_V_cn_m_per_s": 0.47, "marker_V_ct_m_per_s": -0.31, "wall_s": 81.5, "cpu_s": 84.2,
     "setup_wall_s": 9.1, "setup_cpu_s": 9.0,

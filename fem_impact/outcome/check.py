@@ -11,7 +11,7 @@ from fem_impact.errors import ResultError, did_you_mean
 from fem_impact.options import FIDELITIES
 from fem_impact.outcome.keys import Key, Kind
 
-SCHEMA_VERSION = 17
+SCHEMA_VERSION = 18
 """Raised whenever a key is renamed, removed, added or changes its meaning."""
 
 # JSON Schema of a value by its kind, and the text of the error message

@@ -178,7 +178,7 @@ class Energy:
     radiated: Num
     plate: Num
     barrier: Num
-    closing: Num
+    contact_dissipation: Num
     damping: Num
     contact: Num
     gravity: Num

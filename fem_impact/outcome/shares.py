@@ -56,7 +56,7 @@ SHARES = (
     _share("W_radiated", "radiated", "yellow", "figure", "comparison"),
     _share("W_plate", "bending of the plate", "brown", "figure"),
     _share("E_barrier", "motion of the barrier", "olive", "figure"),
-    _share("W_closing", "numerical loss at contact", "grey", "figure"),
+    _share("W_contact_dissipation", "numerical loss at contact", "grey", "figure"),
     _share("W_damping", "damping", "sand", "figure"),
     _share("E_contact", "held by the contact", "grey"),
 )
@@ -107,7 +107,7 @@ ACCOUNTS = (
     LedgerAccount("E_kinetic_barrier_J", "kinetic barrier", "sand"),
     LedgerAccount("W_radiated_J", "radiated", "yellow"),
     LedgerAccount("W_damping_J", "damping", "night"),
-    LedgerAccount("W_closing_J", "numerical loss at contact", "grey"),
+    LedgerAccount("W_contact_dissipation_J", "numerical loss at contact", "grey"),
 )
 """Accounts of history.csv from bottom to top of the stacked figure, without gravity and the residual."""
 

@@ -121,7 +121,7 @@ def _energy(case: Case, result: ModalResult) -> Energy:
         radiated=result.waves / E_0 if result.laid else UNSENT,
         plate=result.plate / E_0 if case.slots.plate else common.UNBENT,
         barrier=result.barrier / E_0 if case.scene.barrier.mass else common.MASSIVE,
-        closing=Unknown("the reduced model has no contact nodes"),
+        contact_dissipation=Unknown("the reduced model has no contact nodes"),
         damping=result.viscous / E_0 if case.slots.contact_loss else UNDAMPED,
         contact=result.stored / E_0 if result.stored else Unknown("nothing touches at the end"),
         gravity=result.fallen / E_0 if case.slots.gravity else Unknown("the gravity effect is off"),

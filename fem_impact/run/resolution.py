@@ -40,7 +40,7 @@ def unresolved(result: SolidResult) -> str:
             f"{advice(bodies, min(radius, contact_radius(bodies)))}"
         )
         return f'{NOT_RESOLVED} {too_narrow}, or accuracy.unresolved = "report"'
-    lost = result.accounts["closing"] / result.E_0
+    lost = result.accounts["contact_dissipation"] / result.E_0
     if lost > LOST:
         half = 0.5e3 * result.model.geometry.tip_size
         return (

@@ -206,7 +206,7 @@ def _energy(result: SolidResult, moved: RodMotion) -> Energy:
         radiated=share(a["radiated"]),
         plate=share(a["plate"] + held * bending) if result.case.slots.plate or bending else UNBENT,
         barrier=share(given) if barrier.mass else MASSIVE,
-        closing=share(a["closing"]),
+        contact_dissipation=share(a["contact_dissipation"]),
         damping=_if_on(("material-damping", "contact-loss"), result, share(a["damping"])),
         contact=Unknown("what a contact holds is strain energy of the meshed bodies"),
         gravity=_if_on(("gravity",), result, share(kinetic - result.motion.kinetic - a["gravity"])),

@@ -22,7 +22,7 @@ ACCOUNTS = (
     "strain_barrier",
     "plastic_barrier",
     "friction",
-    "closing",
+    "contact_dissipation",
     "radiated",
     "damping",
     "gravity",

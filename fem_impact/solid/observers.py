@@ -20,7 +20,7 @@ from fem_impact.tables.history import HistoryWriter
 QUIET = 20e-6  # s without contact before the free flight is evaluated: waves cross the block a few times
 GROWTH = 1e-2  # of E_0, growth of the total energy at which a run stops as unstable
 
-TAKEN = {"friction", "closing", "radiated", "damping", "plate"}
+TAKEN = {"friction", "contact_dissipation", "radiated", "damping", "plate"}
 
 
 def history_column(account: str) -> str:

@@ -24,7 +24,7 @@ HISTORY = (
     "E_strain_barrier_J",
     "E_plastic_barrier_J",
     "W_friction_J",
-    "W_closing_J",
+    "W_contact_dissipation_J",
     "W_radiated_J",
     "W_damping_J",
     "E_gravity_J",

@@ -66,7 +66,13 @@ def shares(outcome: Outcome) -> float:
     energy = outcome.energy
     vibration = energy.vibration if isinstance(energy.vibration_check, Unknown) else energy.vibration_check
     parts = (energy.rigid, vibration, energy.friction, energy.plastic_rod, energy.plastic_barrier)
-    rest = (energy.locked_rod, energy.locked_barrier, energy.radiated, energy.closing, energy.damping)
+    rest = (
+        energy.locked_rod,
+        energy.locked_barrier,
+        energy.radiated,
+        energy.contact_dissipation,
+        energy.damping,
+    )
     others = (energy.plate, energy.barrier, energy.contact)
     return sum(or_none(part) or 0.0 for part in (*parts, *rest, *others)) + energy.residual
 

@@ -130,7 +130,7 @@ def test_a_rod_that_slides_through_its_crater_loses_nothing_but_friction():
     """Along the barrier's own normals, which lag behind the round tip, closing takes 5e-4 of E_0."""
     result = scenes.run(*FLOWS, length=0.12, v_n=-2.0, v_t=-8.0, f=0.16)
     assert result.model.geometry.conforming
-    assert abs(result.accounts["closing"]) < 1e-4 * result.E_0
+    assert abs(result.accounts["contact_dissipation"]) < 1e-4 * result.E_0
     assert result.worst < 1e-6 * result.E_0
 
 

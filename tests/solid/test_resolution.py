@@ -37,7 +37,15 @@ def test_a_contact_narrower_than_an_element_has_no_coefficients_and_no_shares(re
     outcome = reduce(result)
     assert result.peak_nodes < 4
     withheld = {name for name, why in outcome.reasons.items() if "the contact was not resolved" in why}
-    shares = ("E_r", "E_vib", "E_vib_check", "W_friction", "E_plastic_rod", "E_plastic_barrier", "W_closing")
+    shares = (
+        "E_r",
+        "E_vib",
+        "E_vib_check",
+        "W_friction",
+        "E_plastic_rod",
+        "E_plastic_barrier",
+        "W_contact_dissipation",
+    )
     assert {f"{share}_over_E_0" for share in shares} <= withheld
     assert {"friction_power_W", "flash_rise_K", "flash_temperature_K", "flash_bound_K"} <= withheld
     assert {"mu", "e_edge", "e_m_edge", "e_impulse", "E_ln_edge_over_E_0", "peak_force_N"} <= withheld
@@ -77,7 +85,7 @@ def test_a_contact_that_loses_energy_by_its_mesh_is_not_resolved(result):
     """A sharp edge on coarse cells that meets the barrier at 16 m/s lost 17 % of E_0 without a word."""
     pressed = replace(result, peak_nodes=4)
     for lost, known in ((0.019, True), (0.021, False)):
-        accounts = {**result.accounts, "closing": lost * result.E_0}
+        accounts = {**result.accounts, "contact_dissipation": lost * result.E_0}
         outcome = reduce(replace(pressed, accounts=accounts))
         assert isinstance(outcome.restitution.edge.e, float) == known
         assert any("lost 2.1 % of E_0" in words for words in texts(outcome.validity.limitations)) != known

@@ -95,7 +95,7 @@ def test_vibration_is_null_with_its_reason(sliding):
     found = reduce(sliding)
     assert isinstance(found.energy.vibration, Unknown)
     assert "vibration effect is off" in found.energy.vibration.reason
-    shares = ("E_r", "W_friction", "E_locked_rod", "W_closing", "residual")
+    shares = ("E_r", "W_friction", "E_locked_rod", "W_contact_dissipation", "residual")
     assert sum(found.to_dict()[f"{name}_over_E_0"] for name in shares) == pytest.approx(1.0, abs=1e-5)
 
 

@@ -64,7 +64,13 @@ def test_what_rests_on_the_last_separation_is_null_with_the_reason(run):
     assert outcome.restitution.edge.d_c > 0
     energy = outcome.energy
     parts = (energy.rigid, energy.vibration, energy.friction, energy.plastic_rod, energy.plastic_barrier)
-    more = (energy.locked_rod, energy.locked_barrier, energy.radiated, energy.closing, energy.residual)
+    more = (
+        energy.locked_rod,
+        energy.locked_barrier,
+        energy.radiated,
+        energy.contact_dissipation,
+        energy.residual,
+    )
     assert sum((*parts, *more)) == pytest.approx(1.0, abs=1e-4)  # less what vibrates above the modes
     assert not any(told.startswith(("e =", "mu =")) for told in texts(outcome.validity.limitations))
     assert "e=not known, mu=not known, Omega=not known" in repr(outcome)
@@ -80,7 +86,7 @@ def test_what_gravity_adds_closes_the_sum():
     }
     outcome = simulate(replace_all(load("quick"), slow))
     parts = ("E_r", "E_vib_check", "W_friction", "E_plastic_rod", "E_plastic_barrier", "E_locked_rod")
-    parts += ("E_locked_barrier", "W_closing", "residual")
+    parts += ("E_locked_barrier", "W_contact_dissipation", "residual")
     total = sum(outcome.to_dict()[f"{part}_over_E_0"] for part in parts)
     assert outcome.energy.gravity > 0.01
     assert total == pytest.approx(1 + outcome.energy.gravity, abs=1e-10)

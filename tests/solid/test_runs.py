@@ -60,7 +60,15 @@ def test_elastic_frictionless_long_rod_touches_twice_and_grazes_between(elastic)
 
 def test_rigid_and_vibrating_parts_are_all_the_energy(elastic):
     found = _outcome(elastic)
-    parts = ("E_r", "E_vib_check", "W_closing", "E_locked_rod", "E_locked_barrier", "W_radiated", "residual")
+    parts = (
+        "E_r",
+        "E_vib_check",
+        "W_contact_dissipation",
+        "E_locked_rod",
+        "E_locked_barrier",
+        "W_radiated",
+        "residual",
+    )
     assert sum(found.to_dict()[f"{part}_over_E_0"] for part in parts) == pytest.approx(1, abs=1e-10)
     assert found.restitution.mu == pytest.approx(0.0, abs=1e-7)
     assert abs(found.energy.locked_rod) < 3e-4
@@ -128,7 +136,7 @@ def test_yielding_rod_and_plate(yielding):
     assert found.energy.plastic_barrier > found.energy.plastic_rod > 0.03
     assert found.energy.friction > 0.1
     assert 0 < found.energy.radiated < 0.01
-    assert abs(found.energy.closing) < 1e-3
+    assert abs(found.energy.contact_dissipation) < 1e-3
     lost = 1 - found.energy.rigid - found.energy.vibration_check
     parts = [
         "W_friction",
@@ -137,7 +145,7 @@ def test_yielding_rod_and_plate(yielding):
         "E_locked_rod",
         "E_locked_barrier",
         "W_radiated",
-        "W_closing",
+        "W_contact_dissipation",
     ]
     assert sum(found.to_dict()[f"{p}_over_E_0"] for p in parts) == pytest.approx(lost, abs=1e-5)
 

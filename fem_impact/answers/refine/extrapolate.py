@@ -37,8 +37,12 @@ def held_back(run: Outcome) -> dict[str, float]:
     modes, whole = or_none(energy.vibration), or_none(energy.vibration_check)
     if modes is None or whole is None or above_modes(energy) <= modes:
         return {}
-    taken = whole + (or_none(energy.closing) or 0.0)
-    changes = {"E_r_over_E_0": taken, "E_vib_over_E_0": -modes, "W_closing_over_E_0": -(taken - whole)}
+    taken = whole + (or_none(energy.contact_dissipation) or 0.0)
+    changes = {
+        "E_r_over_E_0": taken,
+        "E_vib_over_E_0": -modes,
+        "W_contact_dissipation_over_E_0": -(taken - whole),
+    }
     for name in ARMS:
         arms = getattr(restitution, name)
         e, lost = or_none(arms.e), or_none(arms.E_ln)

@@ -313,7 +313,7 @@ def _one_strike(p: Values, exact: BarImpact) -> tuple[list[Check], int, int]:
     energy = setups.Until(model.ledger(), FOLLOWED * exact.duration)
     march(model, state, [force, energy])
     plateau = force.mean(WINDOW[0] * exact.duration, WINDOW[1] * exact.duration, force.span[0])
-    closing = energy.ledger.sample(state)["closing"] / energy.ledger.start
+    closing = energy.ledger.sample(state)["contact_dissipation"] / energy.ledger.start
     spans = model.book.intervals
     chain = chain_restitution(slices, model.step * slices * bar_speed(p["E"], p["rho"]) / p["length"])
     checks = [

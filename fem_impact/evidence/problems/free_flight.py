@@ -82,7 +82,7 @@ def momentum(p: Values) -> Solved:
     turned = 1e-4 * max(abs(moment), motion.inertia * abs(motion.Omega - impact.omega))
     # of a run that is not over only the modes are known
     ringing = sum(result.vibration_check or (result.flight.energy,))
-    kept = (motion.kinetic + ringing + result.accounts["closing"]) / result.E_0
+    kept = (motion.kinetic + ringing + result.accounts["contact_dissipation"]) / result.E_0
     checks = (
         Check("mass", "kg", motion.mass, rod.mass, 1e-6),
         Check("normal momentum gained", "N s", motion.mass * (motion.V_n - impact.v_n), impulse, SMALL),

@@ -267,4 +267,6 @@ def run_strike(model: Model, end: float, expected: float) -> TipImpact:
     peak = force.peak(SMOOTHING * expected)
     spent = energy.ledger.sample(state)
     motion = rigid_of(model, state)
-    return TipImpact(peak, stop - start, motion, spent["radiated"], spent["closing"], energy.most, state)
+    return TipImpact(
+        peak, stop - start, motion, spent["radiated"], spent["contact_dissipation"], energy.most, state
+    )

@@ -30,7 +30,7 @@ class MovingPlane:
     """
 
     effect: ClassVar[str] = "contact"
-    accounts: ClassVar[tuple[str, ...]] = ("friction", "closing")
+    accounts: ClassVar[tuple[str, ...]] = ("friction", "contact_dissipation")
     every: ClassVar[int] = 1
     moving: ClassVar[tuple[str, ...]] = ("points.memory", *MOVING)
     nodes: Ints

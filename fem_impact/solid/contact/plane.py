@@ -23,7 +23,7 @@ class PlaneContact:
     """
 
     effect: ClassVar[str] = "contact"
-    accounts: ClassVar[tuple[str, ...]] = ("friction", "closing")
+    accounts: ClassVar[tuple[str, ...]] = ("friction", "contact_dissipation")
     every: ClassVar[int] = 1
     moving: ClassVar[tuple[str, ...]] = MOVING
     nodes: Ints

@@ -48,7 +48,7 @@ class SurfaceContact:
     """
 
     effect: ClassVar[str] = "contact"
-    accounts: ClassVar[tuple[str, ...]] = ("friction", "closing")
+    accounts: ClassVar[tuple[str, ...]] = ("friction", "contact_dissipation")
     every: ClassVar[int] = 1
     moving: ClassVar[tuple[str, ...]] = ("last", "points.memory", *MOVING)
     rod: Patch
