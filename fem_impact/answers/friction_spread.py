@@ -44,8 +44,8 @@ def friction_spread(scene: Scene, fidelity: str, outcome: Outcome | None = None)
     if surface.friction_low < surface.friction_high:
         for model in ("rigid",) if fidelity == "rigid" else ("modal", "rigid"):
             try:
-                stated = outcome if outcome and fidelity == model and scene.impact.until == FIRST else None
-                stated = stated or _at(scene, surface.friction, model)
+                nominal = outcome if outcome and fidelity == model and scene.impact.until == FIRST else None
+                nominal = nominal or _at(scene, surface.friction, model)
                 ends = [_at(scene, f, model) for f in (surface.friction_low, surface.friction_high)]
             except FemImpactError:
                 continue
@@ -53,7 +53,7 @@ def friction_spread(scene: Scene, fidelity: str, outcome: Outcome | None = None)
             interval = (
                 f"f = {surface.friction_low:g} to {surface.friction_high:g} instead of {surface.friction:g}"
             )
-            return FrictionSpread(f"At the right: what {interval} changes, by {by}.", _changes(stated, ends))
+            return FrictionSpread(f"At the right: what {interval} changes, by {by}.", _changes(nominal, ends))
     return FrictionSpread("", {})
 
 
@@ -72,14 +72,14 @@ def _at(scene: Scene, friction: float, model: str) -> Outcome:
     return simulate(changed, model)
 
 
-def _changes(stated: Outcome, ends: list[Outcome]) -> dict[Key, tuple[float, float]]:
+def _changes(nominal: Outcome, ends: list[Outcome]) -> dict[Key, tuple[float, float]]:
     """Return least and largest change of each number that all three know."""
-    found = {}
+    changes = {}
     for key in KEYS:
-        values = [or_none(key.of(one)) for one in (stated, *ends)] if key.banded else [None]
+        values = [or_none(key.of(outcome)) for outcome in (nominal, *ends)] if key.banded else [None]
         numbers = [value for value in values if value is not None]
         if len(numbers) == 1 + len(ends):
             low, high = min(numbers) - numbers[0], max(numbers) - numbers[0]
             if high - low > max(LEAST * abs(numbers[0]), ROUND_OFF):
-                found[key] = low, high
-    return found
+                changes[key] = low, high
+    return changes

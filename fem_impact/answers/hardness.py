@@ -72,10 +72,10 @@ def hardnesses(scene: Scene, loads: Sequence[float] = (), scatter: float = 0.0) 
             bulk = tuple(vickers(metal.E, law, friction) for friction in FRICTIONS)
         except ValueError as error:
             raise SceneError(str(error), key=f"hardness of {metal.name}", value=metal.hardness) from None
-        stated = (metal.skin.load,) if metal.skin and metal.skin.load else LOADS
+        usual = (metal.skin.load,) if metal.skin and metal.skin.load else LOADS
         points = tuple(
             _point(metal, metal.hardness, load, factor, scatter)
-            for load in loads or stated
+            for load in loads or usual
             for factor in sorted({*FACTORS, *([skin.factor] if skin else [])})
         )
         yield Hardness(place, metal.name, metal.hardness, bulk, skin.depth if skin else None, points)

@@ -110,11 +110,11 @@ def _without_mesh(scene: Scene, spare_s: float) -> str:
             outcome = run.simulate(scene, fidelity)
         except FemImpactError:
             continue
-        told = []
+        numbers = []
         for name, key in TOLD.items():
             value, half = outcome.estimate(key)
             if not isinstance(value, Unknown):
-                told.append(f"{name} = {plain(value) if half is None else with_band(value, half)}")
+                numbers.append(f"{name} = {plain(value) if half is None else with_band(value, half)}")
         error = "" if or_none(outcome.half_widths) else ", of unknown error"
-        return f"Without a mesh, {model} says{error}: {', '.join(told)} (fidelity {fidelity})."
+        return f"Without a mesh, {model} says{error}: {', '.join(numbers)} (fidelity {fidelity})."
     return "No model without a mesh holds the scene."

@@ -116,8 +116,8 @@ def sweep(
         place = Path(out) if out is not None else Path(spare)
         make_directory(place)
         # an executor that is lent stays open; one run at a time needs no other process
-        own = ThreadPoolExecutor(1) if workers == 1 else LocalProcesses(workers)
-        with directory_lock(place), nullcontext(executor) if executor else own as engine:
+        local = ThreadPoolExecutor(1) if workers == 1 else LocalProcesses(workers)
+        with directory_lock(place), nullcontext(executor) if executor else local as engine:
             done = run_jobs(jobs, place / STORE, meter, engine)
             results = Results(vary, tuple(row_of(case, done.get(case.name)) for case in every))
             if out is not None:
@@ -247,8 +247,8 @@ def _pictures(results: Results, drawn: Sequence[str]) -> list[Picture]:
     label = f"{key}, {unit}" if unit else key
     panels = [_panel(results, name, label, along, curves) for name in drawn]
     shown = tuple(panel for panel in panels if panel.series)
-    left_out = "" if len(curves) <= MOST_CURVES else f" The first {MOST_CURVES} of {len(curves)} curves."
-    return [Picture("sweep", f"What changes with {key}.{left_out}", shown)] if shown else []
+    omitted = "" if len(curves) <= MOST_CURVES else f" The first {MOST_CURVES} of {len(curves)} curves."
+    return [Picture("sweep", f"What changes with {key}.{omitted}", shown)] if shown else []
 
 
 def _panel(

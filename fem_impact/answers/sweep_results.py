@@ -175,7 +175,9 @@ class Results(Sequence[SweepRow]):
         require_columns(columns)
         bands = {name for row in self.rows if row.outcome for name in known_bands(row.outcome)}
         listed = [
-            one for name in columns for one in (name, name + LOW, name + HIGH)[: 3 if name in bands else 1]
+            column
+            for name in columns
+            for column in (name, name + LOW, name + HIGH)[: 3 if name in bands else 1]
         ]
         units = {key: measure(values[0])[1] for key, values in self.vary.items()}
         heads = [f"{key} [{unit}]" if unit else key for key, unit in units.items()]
@@ -198,14 +200,16 @@ class Results(Sequence[SweepRow]):
             A name is no column of an outcome.
         """
         require_columns(columns)
-        stated, whole = self.table(()), self.table(SHORT)
+        of_cases, whole = self.table(()), self.table(SHORT)
         names = columns or [name for name in SHORT if any(whole.texts(name))]
-        kept = [at for at, name in enumerate(stated.names) if name != "reason" or any(stated.texts(name))]
-        rows = [
-            [*(cells[at] for at in kept), *(row.told(name) for name in names)]
-            for row, cells in zip(self, stated.rows, strict=True)
+        shown = [
+            at for at, name in enumerate(of_cases.names) if name != "reason" or any(of_cases.texts(name))
         ]
-        return Table.of((*(stated.names[at] for at in kept), *names), rows)
+        rows = [
+            [*(cells[at] for at in shown), *(row.told(name) for name in names)]
+            for row, cells in zip(self, of_cases.rows, strict=True)
+        ]
+        return Table.of((*(of_cases.names[at] for at in shown), *names), rows)
 
     def to_dataframe(self, columns: Sequence[str] = COLUMNS) -> pandas.DataFrame:
         """Return the table as a data frame of pandas, of every column of an outcome or of chosen ones.
@@ -225,10 +229,10 @@ class Results(Sequence[SweepRow]):
         return frame.astype(dict.fromkeys(numbers, "float64"))
 
 
-def _same(stated: Any, wanted: Any) -> bool:
+def _same(value: Any, wanted: Any) -> bool:
     """Return whether two values are one, to the precision of a change of units."""
-    unit = measure(stated)[1]
-    a, b = in_unit(stated, unit), in_unit(wanted, unit)
+    unit = measure(value)[1]
+    a, b = in_unit(value, unit), in_unit(wanted, unit)
     if isinstance(a, str) or isinstance(b, str):
         return a == b
     return abs(a - b) <= 1e-9 * max(abs(a), abs(b))

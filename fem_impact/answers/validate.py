@@ -127,8 +127,8 @@ def validate(
     tests = tests_of(scene)
     if tests is None:
         raise SceneError("is missing: there is nothing to compare with.", key="measured", remedy=_TESTS)
-    stated = _friction(scene) if uncertain is None else uncertain
-    intervals = [interval_of(scene, key, ends) for key, ends in stated.items()]
+    uncertainties = _friction(scene) if uncertain is None else uncertain
+    intervals = [interval_of(scene, key, ends) for key, ends in uncertainties.items()]
     for corner in islice(product((0.0, 1.0), repeat=len(intervals)), CORNERS):
         at_place(scene, intervals, np.array(corner))
     quick = inputs_by or ("rigid" if fidelity == "rigid" else "modal")
@@ -140,11 +140,11 @@ def validate(
     with watched(options.progress) as meter:
         options = replace(options, progress=meter)
         compared, nominal = (simulate(scene, by, options) for by in (fidelity, quick))
-        found = [measured_value(compared, key) for key in keys]
+        computed = [measured_value(compared, key) for key in keys]
         varied = [measured_value(nominal, key)[0] for key in keys]
         unknown = {
             name: why
-            for name, one, moved in zip(names, found, varied, strict=True)
+            for name, one, moved in zip(names, computed, varied, strict=True)
             if (why := _not_compared(*one, fidelity) or _not_varied(moved, quick))
         }
         seen = [i for i, name in enumerate(names) if name not in unknown]
@@ -159,7 +159,7 @@ def validate(
     moved = drawn - np.array([known(varied[i]) for i in seen])[:, None]
     statistics = tests.statistics()
     comparisons = tuple(
-        _comparison(scene.id, names[i], found[i], statistics[names[i]], float(np.sqrt(np.mean(change**2))))
+        _comparison(scene.id, names[i], computed[i], statistics[names[i]], float(np.sqrt(np.mean(change**2))))
         for i, change in zip(seen, moved, strict=True)
     )
     follow = {*FOLLOWS, *(MOVES if {"e", "mu"} & set(names) else MOVES[2:] if "V_t" in names else ())}
@@ -266,17 +266,17 @@ def interval_of(scene: Scene, key: str, ends: Ends) -> Interval:
 
 def _about(scene: Scene, key: str, text: str) -> Interval:
     """Return the interval of a text such as ``+-2 %`` or ``+-0.1 m/s`` about the scene's value of a key."""
-    stated: Any = to_dict(scene)
+    value_there: Any = to_dict(scene)
     for name in key.split("."):
-        stated = stated.get(name, "") if isinstance(stated, dict) else ""
-    value, unit = measure(stated)
+        value_there = value_there.get(name, "") if isinstance(value_there, dict) else ""
+    value, unit = measure(value_there)
     half, of = measure(text.strip().lstrip("+-\u00b1"))
     if of == "%" and not isinstance(half, str) and not isinstance(value, str):
         half = abs(value) * half / 100
     elif of or unit:
         half = in_unit(f"{half} {of}", unit)
     if isinstance(value, str) or isinstance(half, str) or not half > 0:
-        where = f"value, {named(stated)}" if stated != "" else "value: it states none"
+        where = f"value, {named(value_there)}" if value_there != "" else "value: it states none"
         problem = f"gives no interval about the scene's {where}."
         raise UsageError(problem, key=key, value=text, remedy=f"Write {key}=LOW,HIGH with one unit.")
     return key, value - half, value + half, unit
@@ -320,8 +320,8 @@ def _refused(
 
 
 def _comparison(
-    scene: str, name: str, found: tuple[Any, float | None], measured: Statistic, u_input: float
+    scene: str, name: str, computed: tuple[Any, float | None], measured: Statistic, u_input: float
 ) -> Comparison:
-    value, band = found
+    value, band = computed
     u_D = float(np.hypot(measured.sd / np.sqrt(measured.n), measured.systematic))
     return Comparison(scene, name, float(value), measured.mean, (band or 0.0) / COVERAGE, u_input, u_D)

@@ -37,13 +37,13 @@ def listed(vary: Mapping[str, Iterable[Any]]) -> dict[str, list[Any]]:
     UsageError
         One is a text, or no list at all.
     """
-    found = {}
+    by_key = {}
     for key, values in vary.items():
         if isinstance(values, str | Mapping) or not isinstance(values, Iterable):
             remedy = "Give a list, such as ['15 deg', '30 deg']."
             raise UsageError("is one value, not a list of them.", key=key, value=values, remedy=remedy)
-        found[key] = plain_value(list(values))
-    return found
+        by_key[key] = plain_value(list(values))
+    return by_key
 
 
 def cases(scene: Scene, vary: Mapping[str, Iterable[Any]]) -> list[Variation]:

@@ -22,9 +22,9 @@ def read_stated(place: str) -> dict[str, dict[str, Any]]:
     return tomllib.loads(read_data(place))
 
 
-def scene_keys(stated: Mapping[str, Any], above: str = "") -> dict[str, Any]:
+def scene_keys(table: Mapping[str, Any], above: str = "") -> dict[str, Any]:
     """Return what a scene file states by its keys, such as ``impact.angle``."""
     keys: dict[str, Any] = {}
-    for name, value in stated.items():
+    for name, value in table.items():
         keys |= scene_keys(value, f"{above}{name}.") if isinstance(value, dict) else {above + name: value}
     return keys

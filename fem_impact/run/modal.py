@@ -48,7 +48,7 @@ def reduce(case: Case, result: ModalResult) -> Outcome:
     """Return the Outcome of a modal impact."""
     barrier, base = case.scene.barrier, (result.V_bn, result.V_bt)
     turns = barrier.inertia is not None
-    left_out = common.flow_left_out(case)
+    omitted = common.flow_left_out(case)
     end = ImpactEnd(
         V_n=result.V_n,
         V_t=result.V_t,
@@ -79,15 +79,15 @@ def reduce(case: Case, result: ModalResult) -> Outcome:
             "model",
             *ASSUMPTIONS,
             *_dent(case),
-            left_out,
+            omitted,
             LAID if result.laid else "",
             LEVEL if turns else "",
             tilted if turned > TILT_TOLD else "",
         ),
     )
     said = outcome.validity
-    if left_out:
-        reason = Unknown(f"how wrong these numbers are is not known. {left_out}")
+    if omitted:
+        reason = Unknown(f"how wrong these numbers are is not known. {omitted}")
         return replace(outcome, validity=replace(said, model_band=reason))
     place = place_of(case, outcome)
     said = replace(

@@ -114,22 +114,22 @@ def front(judged: Sequence[Judged], names: Sequence[str]) -> list[Judged]:
     """Return the settings that no other beats in both time and worst error, in order of time."""
     optimal: list[Judged] = []
     best = inf
-    compared = [one for one in judged if one.kind != "variant"]
-    for one in sorted(compared, key=lambda j: (j.cpu_s, worst(j, names))):
-        if worst(one, names) < best:
-            best = worst(one, names)
-            optimal.append(one)
+    compared = [setting for setting in judged if setting.kind != "variant"]
+    for setting in sorted(compared, key=lambda j: (j.cpu_s, worst(j, names))):
+        if worst(setting, names) < best:
+            best = worst(setting, names)
+            optimal.append(setting)
     return optimal
 
 
 def cheapest(settings: Sequence[Judged], names: Sequence[str], target: float) -> Judged | None:
     """Return the quickest setting whose worst error is at most the target, None if there is none."""
-    return next((one for one in front(settings, names) if worst(one, names) <= target), None)
+    return next((setting for setting in front(settings, names) if worst(setting, names) <= target), None)
 
 
 def best_within(settings: Sequence[Judged], names: Sequence[str], budget: float) -> Judged | None:
     """Return the most accurate setting that takes at most ``budget`` s, None if there is none."""
-    return next((one for one in reversed(front(settings, names)) if one.cpu_s <= budget), None)
+    return next((setting for setting in reversed(front(settings, names)) if setting.cpu_s <= budget), None)
 
 
 def advice(
@@ -160,14 +160,14 @@ def advice(
 
 def default_sentence(settings: Sequence[Judged], names: Sequence[str]) -> str:
     """Say what the default run costs and errs, where it is among the settings."""
-    for one in settings:
-        if one.default:
-            errors = [(name, one.error[name]) for name in names]
-            told = " and ".join(
+    for setting in settings:
+        if setting.default:
+            errors = [(name, setting.error[name]) for name in names]
+            bands = " and ".join(
                 f"{plain(100 * error, 2)} % of {name}" for name, error in errors if error is not None
             )
-            took = f"The default run takes {plain(one.cpu_s, 2)} s of processor time"
-            return f"{took}; its bands are {told}." if told else f"{took} and tells no band."
+            took = f"The default run takes {plain(setting.cpu_s, 2)} s of processor time"
+            return f"{took}; its bands are {bands}." if bands else f"{took} and tells no band."
     return ""
 
 

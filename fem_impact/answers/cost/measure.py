@@ -98,7 +98,7 @@ def jobs_of(scene: Scene, finer: int, budget_s: float) -> list[Work[Outcome | Le
         stiff = [name for name in active if name != "vibration"]
         variants = VARIANTS | ({STIFF: {"effects": stiff}} if "vibration" in active else {})
         changed = {name: replace_all(scene, changes) for name, changes in variants.items()}
-        jobs += [LevelsJob(f"{scene.id}: {name}", one) for name, one in changed.items()]
+        jobs += [LevelsJob(f"{scene.id}: {name}", variant) for name, variant in changed.items()]
     return jobs
 
 
@@ -168,17 +168,19 @@ def conclude(scene: Scene, results: CostRuns) -> CostStudy:
         for name, result in named.items()
         if isinstance(result, Failure)
     ]
-    levels = {n: found for n, kind in PLACES.items() if isinstance(found := named.get(kind), Levels)}
-    told = [limits for found in levels.values() if (limits := quantity_limits(found.meshes))]
-    if not told:
+    levels = {
+        n: run_levels for n, kind in PLACES.items() if isinstance(run_levels := named.get(kind), Levels)
+    }
+    limits_at = [limits for run_levels in levels.values() if (limits := quantity_limits(run_levels.meshes))]
+    if not limits_at:
         reasons = " ".join(dict.fromkeys(failure["reason"] for failure in failures))
         raise RunError(
             f"{scene.id}: no two levels gave a result that resolves the contact. {reasons}".strip()
         )
-    finest, judged = told[-1], list[Judged]()
-    for places, found in levels.items():
-        for n in range(2, len(found.meshes) + 1):
-            first, is_default = found.meshes[:n], places == 1 and n == found.default
+    finest, judged = limits_at[-1], list[Judged]()
+    for places, run_levels in levels.items():
+        for n in range(2, len(run_levels.meshes) + 1):
+            first, is_default = run_levels.meshes[:n], places == 1 and n == run_levels.default
             called = f"{n} levels to {1e3 * first[-1].size:.3g} mm" + ", two places" * (places == 2)
             judged.append(judged_levels(called, PLACES[places], first, finest, is_default))
     default = quantity_limits(levels[1].meshes[: levels[1].default]) if 1 in levels else {}
@@ -187,10 +189,10 @@ def conclude(scene: Scene, results: CostRuns) -> CostStudy:
             judged.append(judged_model("rigid" if name == "rigid" else "modal", result, finest))
         elif isinstance(result, Levels) and name in (*VARIANTS, STIFF):
             judged.append(judged_levels(f"default run {name}", "variant", result.meshes, default))
-    fronts = {q.name: {one.name for one in front(judged, [q.name])} for q in QUANTITIES}
+    fronts = {q.name: {setting.name for setting in front(judged, [q.name])} for q in QUANTITIES}
     marked = [
-        replace(one, front=[name for name, members in fronts.items() if one.name in members])
-        for one in sorted(judged, key=lambda one: one.cpu_s)
+        replace(setting, front=[name for name, members in fronts.items() if setting.name in members])
+        for setting in sorted(judged, key=lambda setting: setting.cpu_s)
     ]
     return CostStudy(scene, finest, levels, marked, failures, results)
 
@@ -219,9 +221,9 @@ def write_cost(cost: CostStudy, out: Path) -> None:
     """Write cost.json, cost.csv and cost.txt."""
     write_text(out / "cost.json", json.dumps(cost.to_dict(), indent=1, allow_nan=False) + "\n")
     rows: list[list[Cell]] = []
-    for one in cost.settings:
-        numbers = (values.get(name) for values in (one.value, one.error) for name in NAMES)
-        rows.append([*(getattr(one, key) for key in SCALARS), *numbers, " ".join(one.front)])
+    for setting in cost.settings:
+        numbers = (values.get(name) for values in (setting.value, setting.error) for name in NAMES)
+        rows.append([*(getattr(setting, key) for key in SCALARS), *numbers, " ".join(setting.front)])
     write_text(out / "cost.txt", text_table(cost) + "\n")
     write_text(out / "cost.csv", Table.of(COLUMNS, rows).csv())
 
@@ -248,14 +250,14 @@ def cost_tables(cost: CostStudy, names: Sequence[str] = NAMES) -> list[tuple[str
     """
     listed = [name for name in NAMES if name in names and name in cost.limits]
     columns = (*COST_COLUMNS, *map(Column, listed))
-    settings = [one for one in cost.settings if one.kind != "variant"]
+    settings = [setting for setting in cost.settings if setting.kind != "variant"]
     tables = (
         (
             "errors",
             "Errors in %; of levels the band that they tell, or their distance from the limit if that is "
             "more; *: no other setting is both quicker and more accurate",
             columns,
-            [*_limit_rows(cost, listed), *(_line(one, listed) for one in settings)],
+            [*_limit_rows(cost, listed), *(_line(setting, listed) for setting in settings)],
         ),
         (
             "levels",
@@ -267,7 +269,7 @@ def cost_tables(cost: CostStudy, names: Sequence[str] = NAMES) -> list[tuple[str
             "variants",
             "Changes of the default run, in %",
             columns,
-            [_line(one, listed) for one in cost.settings if one.kind == "variant"],
+            [_line(setting, listed) for setting in cost.settings if setting.kind == "variant"],
         ),
     )
     return [(name, caption, Table(head, tuple(rows))) for name, caption, head, rows in tables if rows]

@@ -244,10 +244,10 @@ class LevelChain:
     def forecast_s(self, splits: int) -> float:
         """Return about the wall time, s, of a level whose mesh is not made yet, from that of the last one."""
         last = self.done[-1]
-        took_s = forecast.longest_s([one.cost.whole_wall for one in last.outcomes], self.workers)
-        one = took_s / forecast.turns(len(last.outcomes), self.workers)
+        took_s = forecast.longest_s([run_s.cost.whole_wall for run_s in last.outcomes], self.workers)
+        run_s = took_s / forecast.turns(len(last.outcomes), self.workers)
         return float(
-            one * forecast.MIDDLE ** (splits - last.splits) * forecast.turns(self._runs, self.workers)
+            run_s * forecast.MIDDLE ** (splits - last.splits) * forecast.turns(self._runs, self.workers)
         )
 
     def _run_level(self, splits: int) -> None:
@@ -264,7 +264,7 @@ class LevelChain:
         scenes = [*places[:1], *(replace(one, save=still) for one in places[1:])]
         scenes += [replace(self.twin, accuracy=accuracy)] if self.twin else []
         begun, room, took_s, earlier = forecast.now(), 1.0, 0.0, [0.0] * len(scenes)
-        kept: LevelRun | None = None
+        smaller: LevelRun | None = None
         for repeats in range(MOST_REPEATS + 1):
             planned = [] if self.done or repeats else [self.meshes.pilot]
             cases = planned + [Case.of(one, "solid", before) for one in scenes[len(planned) :]]
@@ -275,11 +275,11 @@ class LevelChain:
             try:
                 runs = forecast.in_turns(work, self.workers)
             except (SceneError, RunError) as late:
-                if kept is None:  # what ended in smaller zones is better than none
+                if smaller is None:  # what ended in smaller zones is better than none
                     raise
-                level = replace(kept, wall_s=forecast.now() - begun, late=str(late))
+                level = replace(smaller, wall_s=forecast.now() - begun, late=str(late))
                 break
-            outcomes, record = tuple(one for one, _ in runs), together([found for _, found in runs])
+            outcomes, record = tuple(one for one, _ in runs), together([recorded for _, recorded in runs])
             ended = all(outcome.validity.finished for outcome in outcomes)
             size = contact_edge(cases[0].bodies)  # as it came out, which is not always as asked for
             # without a first compilation of the kernels, and with what ran before an interruption
@@ -292,7 +292,7 @@ class LevelChain:
                 continue
             if not record.left or record.crushed or (ended and not last) or repeats == MOST_REPEATS:
                 break
-            known, kept = (record, level) if ended else (known, kept)
+            known, smaller = (record, level) if ended else (known, smaller)
             known, room = replace(known, crushed=before.crushed), 2.0 * room
             before = known.wider(room)  # a record has the room of a first run
         self.done.append(level)
@@ -339,8 +339,8 @@ class LevelChain:
         if self.scene.accuracy.target:
             errors = self._errors
             reached = [f"{name} is known to {plain(100 * error, 2)} %" for name, error in errors.items()]
-            told, wanted = " and ".join(reached) or why.reason, 100 * self.scene.accuracy.target
-            missed = f"The wanted {wanted:.3g} % is not reached: {told}. {self.advice()[0]}"
+            known_to, wanted = " and ".join(reached) or why.reason, 100 * self.scene.accuracy.target
+            missed = f"The wanted {wanted:.3g} % is not reached: {known_to}. {self.advice()[0]}"
             missed = "" if self._reached(errors) else missed
             said = replace(
                 said,
@@ -390,8 +390,8 @@ class LevelChain:
         """
         number = len(self.done) + 1
         if self.refused:
-            told = f"Level {number}, finer, gave no result: {self.refused}"
-            return told, forecast.budget_of(self.refused, before_s)
+            reason = f"Level {number}, finer, gave no result: {self.refused}"
+            return reason, forecast.budget_of(self.refused, before_s)
         then = self.following
         if then is None:
             return f"No finer level is tried: {self._finer}.", None

@@ -165,7 +165,7 @@ def quantity_limits(levels: Sequence[MeshRuns]) -> dict[str, QuantityLimit]:
     limits, bands = level_limits(levels)
     if isinstance(limits, Unknown) or isinstance(bands, Unknown):
         return {}
-    found = {}
+    by_name = {}
     for quantity in QUANTITIES:
         names = [key.name for key in quantity.keys if key.name in bands]
         finest = levels[-1].mean(quantity.keys)
@@ -173,8 +173,8 @@ def quantity_limits(levels: Sequence[MeshRuns]) -> dict[str, QuantityLimit]:
             value, band = (sum(of[name] for name in names) for of in (limits, bands))
             # the larger of limit and finest value, so that a limit near zero does not inflate the errors
             scale = quantity.scale(max(abs(value), abs(finest)), levels[-1].runs[0])
-            found[quantity.name] = QuantityLimit(value, band, scale)
-    return found
+            by_name[quantity.name] = QuantityLimit(value, band, scale)
+    return by_name
 
 
 def level_limits(levels: Sequence[MeshRuns]) -> tuple[MeshNumbers, MeshNumbers]:
@@ -205,8 +205,8 @@ def level_limits(levels: Sequence[MeshRuns]) -> tuple[MeshNumbers, MeshNumbers]:
         bands[name] = max(bands[name], SHARE * max(bands[other] for other in taken))
     for name, change in held_back(levels[-1].runs[0]).items():
         if name in bands:
-            own = levels[-1].mean([KEY_TABLE[name]]) or 0.0
-            bands[name] = max(bands[name], abs(own + change - limits[name]))
+            finest = levels[-1].mean([KEY_TABLE[name]]) or 0.0
+            bands[name] = max(bands[name], abs(finest + change - limits[name]))
     return limits, bands
 
 

@@ -94,8 +94,8 @@ def budget_of(refused: SceneError | RunError | None, before_s: float = 0.0) -> i
 class OverBudgetError(RunError):
     """A level that takes longer than its budget allows; ``enough_s`` is one, s, that holds it, if known."""
 
-    def __init__(self, told: str, enough_s: int | None = None) -> None:
-        super().__init__(told)
+    def __init__(self, reason: str, enough_s: int | None = None) -> None:
+        super().__init__(reason)
         self.enough_s = enough_s
 
 
@@ -123,8 +123,8 @@ def require_pilot(pilot: Case, limit_s: float) -> None:
     size = pilot.size
     setup_s = setup_time(pilot.bodies, pilot.slots.vibrating, size.rod, size.rod + size.barrier)
     if max(PILOT * size.time, OWN[0] * setup_s) > limit_s:
-        told, enough = f"The coarsest level would take about {about_s(size.time)}", _for_two_s(size.time)
-        raise OverBudgetError(f"{told}: it is not begun. {FOR_TWO.format(enough)}", enough)
+        reason, enough = f"The coarsest level would take about {about_s(size.time)}", _for_two_s(size.time)
+        raise OverBudgetError(f"{reason}: it is not begun. {FOR_TWO.format(enough)}", enough)
 
 
 def enough_s(used_s: float, level_s: float) -> int:
@@ -140,8 +140,8 @@ def advice(number: int, used_s: float, each_s: Sequence[float]) -> tuple[str, in
     if len(each_s) == 1:
         return f"Level {number}, finer, takes about {more} more: for it give a budget of {enough} s.", enough
     last = number + len(each_s) - 1
-    told = f"An error about halves on each level: levels {number} to {last} take about {more} more"
-    return f"{told}, for which give a budget of {enough} s.", enough
+    sentence = f"An error about halves on each level: levels {number} to {last} take about {more} more"
+    return f"{sentence}, for which give a budget of {enough} s.", enough
 
 
 FOR_TWO = "For it and a finer one, which tell the error of each number, give a budget of {} s."
@@ -200,17 +200,17 @@ class LevelProgress:
             self._require_time(self._left_s(progress))
         if self.halvings is None or left_s is None:
             return self._tell(replace(progress, note=self.name, eta_s=None))
-        own = [left_s + (self.turns - 1) * self.own_s] * len(OWN)
+        this_level = [left_s + (self.turns - 1) * self.own_s] * len(OWN)
         if progress.step == 0:
-            own = [share * self.turns * self.own_s for share in OWN]
+            this_level = [share * self.turns * self.own_s for share in OWN]
         later = later_s(self.turns * self.own_s, self.halvings)
-        least, about, most = (of + after for of, after in zip(own, later, strict=True))
-        told = replace(progress, note=self.name, eta_s=about, eta_range_s=(least, most))
-        self._tell(told)
+        least, about, most = (of + after for of, after in zip(this_level, later, strict=True))
+        estimated = replace(progress, note=self.name, eta_s=about, eta_range_s=(least, most))
+        self._tell(estimated)
         if progress.step == 0 and about > WORTH:
             dear = now() - self.begun + about > self.limit_s
             more = f" For all of it give a budget of {enough_s(self.used_s, about)} s." * dear
-            self._tell(Notice(f"{self.name}: {left_text(told)}.{more}"))
+            self._tell(Notice(f"{self.name}: {left_text(estimated)}.{more}"))
 
     def _tell(self, progress: Progress | Notice) -> None:
         if self.show is not None:
@@ -242,10 +242,10 @@ class LevelProgress:
         spent_s = now() - self.begun
         if spent_s + least_s <= self.limit_s:
             return
-        told = f"It was given up after {about_s(spent_s)}, as the budget does not hold it: it takes about"
+        reason = f"It was given up after {about_s(spent_s)}, as the budget does not hold it: it takes about"
         whole_s = spent_s + left_s
         enough = enough_s(self.used_s, whole_s) if self.duration_s else _for_two_s(whole_s)
         more = f"For it give a budget of {enough} s."
         if not self.duration_s:
             more = f"The coarsest level gave no number. {FOR_TWO.format(enough)}"
-        raise OverBudgetError(f"{told} {about_s(whole_s)}. {more}", enough)
+        raise OverBudgetError(f"{reason} {about_s(whole_s)}. {more}", enough)

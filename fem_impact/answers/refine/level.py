@@ -93,19 +93,23 @@ class LevelRun:
     @property
     def cut_off(self) -> list[Outcome]:
         """Its runs that did not see the bodies part."""
-        return [one for one in self.outcomes if isinstance(one.motion.V_n, Unknown)]
+        return [outcome for outcome in self.outcomes if isinstance(outcome.motion.V_n, Unknown)]
 
     @property
     def withheld(self) -> Outcome:
         """Its outcome, without the numbers that a contact gives which is not resolved."""
-        told = [one.text for one in self.outcome.validity.limitations if one.text.startswith(NOT_RESOLVED)]
-        resolved = self.record.resolved or not told
-        return self.outcome if resolved else without(self.outcome, Unknown(told[0]))
+        unresolved = [
+            limitation.text
+            for limitation in self.outcome.validity.limitations
+            if limitation.text.startswith(NOT_RESOLVED)
+        ]
+        resolved = self.record.resolved or not unresolved
+        return self.outcome if resolved else without(self.outcome, Unknown(unresolved[0]))
 
     @property
     def stopped(self) -> str:
         """Why the first of `cut_off` ended, empty where there is none."""
-        return next((one.validity.stopped_because for one in self.cut_off), "")
+        return next((outcome.validity.stopped_because for outcome in self.cut_off), "")
 
     @property
     def runs(self) -> MeshRuns:

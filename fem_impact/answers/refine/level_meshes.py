@@ -55,23 +55,23 @@ class LevelMeshes:
             return max(least, self.usual - (JUMP if self._levels > JUMP else 1))
         return max(least, min(1, self.wanted(patch_radius(expected)) - 1))
 
-    def last(self, found: ContactRecord | None) -> int:
+    def last(self, contact: ContactRecord | None) -> int:
         """Return the splits of the last level: as stated, or those that resolve the contact that was found.
 
         As many levels as wanted reach it, or it is not reached: the contact of a sharp edge is narrower on
-        each finer mesh. ``found`` is what the finest level so far recorded, None before the first.
+        each finer mesh. ``contact`` is what the finest level so far recorded, None before the first.
         """
-        if self.is_sized or found is None:
+        if self.is_sized or contact is None:
             wanted = self.usual
         else:  # levels that were asked for are run, however well the pilot resolves its contact
-            wanted = max(self.wanted(patch_radius(found.rod)), self.first + 1)
+            wanted = max(self.wanted(patch_radius(contact.rod)), self.first + 1)
         least = self.first + (0 if self.is_sized else LEVELS - 1)
         more = max(self._levels - LEVELS, 0) if self.is_sized else self._levels - LEVELS
         return min(max(wanted, least) + more, self.first + JUMP * max(self._levels - 2, 0) + 1)
 
-    def lacking(self, splits: int, found: ContactRecord, finest: int) -> str:
+    def lacking(self, splits: int, contact: ContactRecord, finest: int) -> str:
         """Say how often cells that are split so often would be halved for the contact found; empty: never."""
-        radius = patch_radius(found.rod)
+        radius = patch_radius(contact.rod)
         wanted = self.wanted(radius) - splits
         if wanted <= 0 or (self.is_sized and splits >= finest):
             return ""

@@ -82,13 +82,13 @@ def momentum(p: Values) -> Solved:
     turned = 1e-4 * max(abs(moment), motion.inertia * abs(motion.Omega - impact.omega))
     # of a run that is not over only the modes are known
     ringing = sum(result.vibration_check or (result.flight.energy,))
-    kept = (motion.kinetic + ringing + result.accounts["contact_dissipation"]) / result.E_0
+    accounted = (motion.kinetic + ringing + result.accounts["contact_dissipation"]) / result.E_0
     checks = (
         Check("mass", "kg", motion.mass, rod.mass, 1e-6),
         Check("normal momentum gained", "N s", motion.mass * (motion.V_n - impact.v_n), impulse, SMALL),
         Check("tangential velocity", "m/s", motion.V_t, impact.v_t, SMALL * p["v_n"], "absolute"),
         Check("angular momentum gained", "N m s", motion.spin - before, moment, turned, "absolute"),
-        Check("energy kept / E_0", "1", kept, 1.0, 2e-5 if result.vibration_check else 5e-4, "absolute"),
+        Check("energy kept / E_0", "1", accounted, 1.0, 2e-5 if result.vibration_check else 5e-4, "absolute"),
         Check("energy ledger / E_0", "1", result.worst / result.E_0, 0.0, 1e-5, "at most"),
     )
     return Solved(checks, result.steps, len(result.model.geometry.rod.mesh.cells))

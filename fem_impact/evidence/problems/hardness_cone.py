@@ -99,8 +99,8 @@ def press(p: Values, law: Hardening, friction: float, cells: int) -> tuple[Inden
     march(model, state, [force, guard, watch])
     if guard.reason:
         raise RunError(guard.reason)
-    found = Indentation([speed * t for t in force.times], force.values, sorted(watch.touched))
-    return found, state.step, len(model.geometry.barrier.cells) if model.geometry.barrier else 0
+    indentation = Indentation([speed * t for t in force.times], force.values, sorted(watch.touched))
+    return indentation, state.step, len(model.geometry.barrier.cells) if model.geometry.barrier else 0
 
 
 def metal_of(p: Values, law: Hardening) -> Metal:
@@ -134,12 +134,12 @@ def _vickers(p: Values, friction: float) -> list[Check]:
         law, cells = hardening_of(of), int(p["cells"]) // 2
         steel_metal = metal_of({"E": of.E, "nu": of.nu, "rho": of.rho}, law.power)
         pressure, _ = _reference(steel_metal, p["angle"], friction, cells)
-        found = FACES * pressure / KGF_PER_MM2
+        hardness = FACES * pressure / KGF_PER_MM2
         if of.hardness:
-            checks.append(Check.shown(f"HV {at}", "1", found, of.hardness, TENSILE))
+            checks.append(Check.shown(f"HV {at}", "1", hardness, of.hardness, TENSILE))
         if p["angle"] != PYRAMID or friction not in FRICTIONS:
             continue
-        checks.append(Check(f"closed form, HV {at}", "1", vickers(of.E, law, friction), found, BARE))
+        checks.append(Check(f"closed form, HV {at}", "1", vickers(of.E, law, friction), hardness, BARE))
         for skin in LAYERS if friction == FRICTION else ():
             layered, wide = _reference(steel_metal, PYRAMID, friction, cells, skin)
             part = share(law, skin, wide * MIDDLE / tan(PYRAMID))
@@ -175,12 +175,12 @@ def solve(p: Values) -> Solved:
     frictions = (0.0, p["f"]) if p["f"] else (0.0,)
     for f in frictions:
         coarse, fine = (press(p, law, f, n) for n in (cells // 2, cells))
-        found = _limit(coarse[0].coefficients(), fine[0].coefficients())
+        limits = _limit(coarse[0].coefficients(), fine[0].coefficients())
         exact, at = _reference(metal_of(p, law), p["angle"], f, cells // 2), f"f = {f:g}"
         flow = float(law.flow_stress(TABOR_STRAIN))
         checks += [
-            Check(f"mean pressure, {at}", "Pa", float(found[0]), exact[0], PRESSURE),
-            Check(f"contact radius / depth, {at}", "1", float(found[1]), exact[1], RADIUS),
+            Check(f"mean pressure, {at}", "Pa", float(limits[0]), exact[0], PRESSURE),
+            Check(f"contact radius / depth, {at}", "1", float(limits[1]), exact[1], RADIUS),
             Check.shown(f"HV / flow stress at 8 %, {at}", "1", FACES * exact[0] / flow, TABOR, RULE),
             *_vickers(p, f),
         ]

@@ -163,8 +163,8 @@ class Problem:
             if name not in known:
                 hint = did_you_mean(name, known, f"Known are: {', '.join(known)}.")
                 raise SceneError(f"is no parameter of {self.name}.", key=name, remedy=hint)
-        stated = {key: p.read(changes[key]) for key, p in known.items() if key in changes}
-        return {key: p.default for key, p in known.items() if p.default is not None} | stated
+        given = {key: p.read(changes[key]) for key, p in known.items() if key in changes}
+        return {key: p.default for key, p in known.items() if p.default is not None} | given
 
 
 # by name: words, function that solves it, parameters; its module is imported when a problem is asked for
@@ -176,8 +176,11 @@ PROBLEMS = tuple(_STATED)
 
 def parameters_of(name: str) -> tuple[Parameter, ...]:
     """Return the parameters of a problem as stated."""
-    stated = _STATED[name]["parameters"].items()
-    return tuple(Parameter(key, **{"dimension": ""} | _SHARED.get(key, {}) | own) for key, own in stated)
+    parameters = _STATED[name]["parameters"].items()
+    return tuple(
+        Parameter(key, **{"dimension": ""} | _SHARED.get(key, {}) | particular)
+        for key, particular in parameters
+    )
 
 
 def defaults(name: str) -> dict[str, float]:
@@ -217,27 +220,27 @@ def verify(name: str, changes: Mapping[str, float | str] | None = None) -> Verif
 HEAD = ["problem", "passed", "nearest to its limit", "computed", "reference", "error", "allowed", "CPU s"]
 
 
-def _row(found: Verification) -> list[str]:
-    judged = [check for check in found.checks if check.judged]
+def _row(verification: Verification) -> list[str]:
+    judged = [check for check in verification.checks if check.judged]
     nearest = max(judged, key=lambda check: check.used)
     unit = "" if nearest.unit == "1" else f" {nearest.unit}"
     return [
-        f"`{found.name}`",
+        f"`{verification.name}`",
         f"{sum(check.passed for check in judged)} of {len(judged)}",
         nearest.name,
         f"{nearest.computed:.5g}{unit}",
         f"{nearest.reference:.5g}{unit}",
         f"{nearest.error:+.1e}",
         f"{nearest.tolerance:.3g} {nearest.kind}",
-        f"{found.cost.cpu_s:.0f}",
+        f"{verification.cost.cpu_s:.0f}",
     ]
 
 
 def page(done: Sequence[Verification]) -> str:
     """Return counts and cost, and a row for every problem."""
-    every = [check for found in done for check in found.checks]
+    every = [check for verification in done for check in verification.checks]
     checks = [check for check in every if check.judged]
-    wall = sum(found.cost.wall_s for found in done)
+    wall = sum(verification.cost.wall_s for verification in done)
     line = (
         f"All parameters at their defaults: {sum(check.passed for check in checks)} of {len(checks)} "
         f"checks passed, {len(every) - len(checks)} more are only shown, {wall / 60:.1f} minutes."

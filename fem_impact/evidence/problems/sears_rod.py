@@ -104,23 +104,23 @@ def solve(p: Values) -> Solved:
         p["E"], p["rho"], p["length"], R, lambda d: float(np.interp(d, approach, force)), p["speed"]
     )
     model, edge = rod_model(p, touch)
-    found = setups.run_strike(model, AFTER * plain.duration, plain.duration)
-    n, state = model.layout.rod_size, found.state
+    strike = setups.run_strike(model, AFTER * plain.duration, plain.duration)
+    n, state = model.layout.rod_size, strike.state
     evaluate(model, state)
     free = flight(modes_of(model), state.v[:n], state.force[:n]).energy
-    vibration = free / (0.5 * found.motion.mass * p["speed"] ** 2)
+    vibration = free / (0.5 * strike.motion.mass * p["speed"] ** 2)
     # force goes as stiffness to 2/5 where the rod moves as a whole, and less where it is long; the inertia of
     # the nose, which the end law leaves out, is a share of R / (c0 t_c)
     nose = R / (bar_speed(p["E"], p["rho"]) * exact.duration)
     of_force = min(FORCE, 0.4 * contact_error(edge, touch) + nose)
     note = f"for a / R far below 1, here {2 * touch / p['diameter']:.3f}"
     checks = (
-        Check("largest force", "N", found.force, exact.force, of_force),
-        Check("contact time", "s", found.duration, exact.duration, TIME),
+        Check("largest force", "N", strike.force, exact.force, of_force),
+        Check("contact time", "s", strike.duration, exact.duration, TIME),
         Check("vibration / E_0", "1", vibration, exact.vibration, VIBRATION, "absolute"),
-        Check.shown("force, plain Sears", "N", found.force, plain.force, note),
-        Check.shown("contact time, plain Sears", "s", found.duration, plain.duration, note),
+        Check.shown("force, plain Sears", "N", strike.force, plain.force, note),
+        Check.shown("contact time, plain Sears", "s", strike.duration, plain.duration, note),
         Check.shown("vibration / E_0, plain Sears", "1", vibration, plain.vibration, note),
-        Check("largest energy / E_0", "1", found.most, 1.0, 1e-3, "at most"),
+        Check("largest energy / E_0", "1", strike.most, 1.0, 1e-3, "at most"),
     )
-    return Solved(checks, found.state.step, len(model.geometry.rod.mesh.cells))
+    return Solved(checks, strike.state.step, len(model.geometry.rod.mesh.cells))

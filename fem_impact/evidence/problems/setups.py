@@ -212,8 +212,8 @@ class Until:
 
     def observe(self, state: State) -> bool:
         """Sample; stop at the end."""
-        found = self.ledger.sample(state)
-        self.most = max(self.most, sum(found[name] for name in self.names) / self.ledger.start)
+        accounts = self.ledger.sample(state)
+        self.most = max(self.most, sum(accounts[name] for name in self.names) / self.ledger.start)
         return state.time >= self.end or self.done()
 
 

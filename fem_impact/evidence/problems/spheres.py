@@ -233,15 +233,15 @@ class SphereErrors:
         return share * heard + 0.4 * discretisation.end_error(self.touch, self.reach)
 
 
-def _radiated(p: Values, found: setups.TipImpact, errors: SphereErrors) -> Check:
+def _radiated(p: Values, strike: setups.TipImpact, errors: SphereErrors) -> Check:
     """Compare what left through the block's boundary with the half-space's, or nothing on a plane."""
     E_0, name = 0.5 * ball_mass(p) * p["speed"] ** 2, "radiated energy / E_0"
     if not p["block"]:
-        return Check(name, "1", found.radiated / E_0, 0.0, 0.0, "absolute")
+        return Check(name, "1", strike.radiated / E_0, 0.0, 0.0, "absolute")
     if errors.radiation > RADIATED:
         far = FAR.format(errors.reach / errors.wave)
-        return Check.shown(name, "1", found.radiated / E_0, errors.radiated, far)
-    return Check(name, "1", found.radiated / E_0, errors.radiated, errors.radiation)
+        return Check.shown(name, "1", strike.radiated / E_0, errors.radiated, far)
+    return Check(name, "1", strike.radiated / E_0, errors.radiated, errors.radiation)
 
 
 def solve_hertz(p: Values) -> Solved:
@@ -255,22 +255,22 @@ def solve_hertz(p: Values) -> Solved:
     small_contact(p)
     v = p["speed"]
     plain = plain_hertz(p, v)
-    own = contact_modulus(p["E"], p["nu"])
-    exact = ball_impact(modulus(p), own, p["nu"], p["radius"], ball_mass(p), v, setups.SMOOTHING)
+    of_ball = contact_modulus(p["E"], p["nu"])
+    exact = ball_impact(modulus(p), of_ball, p["nu"], p["radius"], ball_mass(p), v, setups.SMOOTHING)
     model = sphere_model(p, plain, v)
-    found = setups.run_strike(model, AFTER * plain.duration, plain.duration)
+    strike = setups.run_strike(model, AFTER * plain.duration, plain.duration)
     errors = SphereErrors.of(p, exact)
     note = f"for a / R far below 1, here {plain.radius / p['radius']:.3f}"
     checks = (
-        Check("largest force", "N", found.force, exact.force, errors.force),
-        Check("contact time", "s", found.duration, exact.duration, errors.time),
-        Check.shown("largest force, Hertz", "N", found.force, plain.force, note),
-        Check.shown("contact time, Hertz", "s", found.duration, plain.duration, note),
-        _radiated(p, found, errors),
-        Check("rebound + radiated energy / E_0", "1", found.kept(v), 1.0, ENERGY, "absolute"),
-        Check("largest energy / E_0", "1", found.most, 1.0, ENERGY, "at most"),
+        Check("largest force", "N", strike.force, exact.force, errors.force),
+        Check("contact time", "s", strike.duration, exact.duration, errors.time),
+        Check.shown("largest force, Hertz", "N", strike.force, plain.force, note),
+        Check.shown("contact time, Hertz", "s", strike.duration, plain.duration, note),
+        _radiated(p, strike, errors),
+        Check("rebound + radiated energy / E_0", "1", strike.kept(v), 1.0, ENERGY, "absolute"),
+        Check("largest energy / E_0", "1", strike.most, 1.0, ENERGY, "at most"),
     )
-    return Solved(checks, found.state.step, len(model.geometry.rod.mesh.cells))
+    return Solved(checks, strike.state.step, len(model.geometry.rod.mesh.cells))
 
 
 RESTITUTION, SLIPPED = 0.02, 0.05  # of a blow that sticks
@@ -318,8 +318,8 @@ def solve_oblique(p: Values) -> Solved:
     plain = oblique_sphere(modulus(p), *blow)
     exact = oblique_ball(modulus(p), contact_modulus(p["E"], p["nu"]), *blow)
     model = sphere_model(p, normal, v_n, v_t, p["f"])
-    found = setups.run_strike(model, AFTER * normal.duration, normal.duration)
-    m = found.motion
+    strike = setups.run_strike(model, AFTER * normal.duration, normal.duration)
+    m = strike.motion
     mu = (m.V_t + v_t) / (m.V_n + v_n)
     slides = exact.ratio > SLIDING * p["f"]
     pressure = 2 * modulus(p) * normal.radius / (pi * R)
@@ -344,6 +344,6 @@ def solve_oblique(p: Values) -> Solved:
         compared[0],
         Check.shown("tangential restitution, plain", "1", back, plain.centre_t / v_t, note),
         *compared[1:],
-        Check("largest energy / E_0", "1", found.most, 1.0, 1e-3, "at most"),
+        Check("largest energy / E_0", "1", strike.most, 1.0, 1e-3, "at most"),
     )
-    return Solved(checks, found.state.step, len(model.geometry.rod.mesh.cells))
+    return Solved(checks, strike.state.step, len(model.geometry.rod.mesh.cells))

@@ -86,8 +86,11 @@ def strike(p: Values, slices: float) -> tuple[Array, float, State, int]:
 
 def _beside(shape: Array, exact: Array, near: Array, note: str = "") -> list[Check]:
     names = (f"{name}{note}" for name in ("final length", "foot radius"))
-    found = zip(names, shape.tolist(), exact.tolist(), near.tolist(), strict=True)
-    return [Check(name, "m", here, there, apart, "absolute") for name, here, there, apart in found]
+    numbers = zip(names, shape.tolist(), exact.tolist(), near.tolist(), strict=True)
+    return [
+        Check(name, "m", computed, reference, apart, "absolute")
+        for name, computed, reference, apart in numbers
+    ]
 
 
 def _reference(p: Values, cells: int) -> Array:

@@ -48,12 +48,12 @@ def free_bar(p: Values, across: int) -> Model:
 def frequencies(model: Model) -> dict[str, Array]:
     """Return bending and longitudinal frequencies, Hz, told apart by what the axis does."""
     points, places = model.geometry.rod.mesh.points, model.layout.rod
-    found = modes_of(model, COUNT)
+    modes = modes_of(model, COUNT)
     axis = np.hypot(points[:, 0], points[:, 1]) < 1e-9
-    across, along = (abs(found.shape[places[axis, c]]).max(axis=0) for c in (0, 2))
+    across, along = (abs(modes.shape[places[axis, c]]).max(axis=0) for c in (0, 2))
     return {
-        "bending": found.frequency[across > 10 * along],
-        "longitudinal": found.frequency[along > 10 * across],
+        "bending": modes.frequency[across > 10 * along],
+        "longitudinal": modes.frequency[along > 10 * across],
     }
 
 
@@ -71,12 +71,12 @@ def _torsion(p: Values, rod: meshes.RodMesh) -> float:
     plain = assemble(points, cells, lame, "incompatible", T)
     fixed = np.zeros(n, dtype=bool)
     fixed[layout.rod[np.abs(points[:, 1]) < 1e-12][:, [0, 2]]] = True
-    found = rod_modes(
+    modes = rod_modes(
         drawn.reduced((plain,), layout.body_shape[1]), assemble_mass(masses, cells, T), fixed, COUNT
     )
     axis = layout.rod[np.hypot(points[:, 0], points[:, 1]) < 1e-9, 1]
-    turns = abs(found.shape[axis]).max(axis=0) < 0.1 * abs(found.shape).max(axis=0)
-    return float(found.frequency[turns][0])
+    turns = abs(modes.shape[axis]).max(axis=0) < 0.1 * abs(modes.shape).max(axis=0)
+    return float(modes.frequency[turns][0])
 
 
 def _ring(p: Values, model: Model) -> tuple[float, float, State]:
@@ -120,14 +120,14 @@ def solve_modes(p: Values) -> Solved:
     mesh = BarMesh(p["nu"], p["across"], p["diameter"] / 2, slices.slice_length)
     # a scene's cells are as high as they are wide: in a stubby bar more of them lie across
     model = free_bar(p, 2 * ceil(0.5 * p["diameter"] / slab - 1e-9))
-    found = frequencies(model)
+    computed = frequencies(model)
     stretching = [pi * i / p["length"] for i in (1, 2)]
     wanted = {
         "bending": (exact.bending, [mesh.bending_error(k / p["length"]) for k in BENDING]),
         "longitudinal": (exact.longitudinal, [mesh.stretching_error(wave) for wave in stretching]),
     }
     checks = [
-        Check(f"{kind} {i + 1}", "Hz", float(found[kind][i]), float(values[i]), min(allowed, MOST))
+        Check(f"{kind} {i + 1}", "Hz", float(computed[kind][i]), float(values[i]), min(allowed, MOST))
         for kind, (values, errors) in wanted.items()
         for i, allowed in enumerate(errors)
     ]
@@ -208,11 +208,11 @@ def solve_waves(p: Values) -> Solved:
             FLEXURAL: ("flexural", flexural_speed(ratio, p["nu"])),
         }
         for component, (name, speed) in exact.items():
-            found = bar.frequency(k, component) / k / c0
+            phase_speed = bar.frequency(k, component) / k / c0
             label = f"{name} c/c0 at radius/wavelength {ratio:.3g}"
             checks.append(
-                Check(label, "1", found, speed, WAVES_TOLERANCE, "absolute")
+                Check(label, "1", phase_speed, speed, WAVES_TOLERANCE, "absolute")
                 if ratio <= JUDGED
-                else Check.shown(label, "1", found, speed, SHORT)
+                else Check.shown(label, "1", phase_speed, speed, SHORT)
             )
     return Solved(tuple(checks), 0, bar.cells)

@@ -74,10 +74,10 @@ class _Places:
         slope = np.einsum("gak,gikm->gaim", SLOPE, inverse.reshape(J.shape))
         r = np.einsum("ga,am->gm", SHAPE, x[:, 0])
         hoop, volume = SHAPE[:, :, None] / r[:, None], 2 * pi * r * det
-        own = slope.copy()
-        own[:, :, 0] += hoop
-        mean = np.einsum("gm,gaim->aim", volume / volume.sum(axis=0), own)
-        return cls(slope, hoop, volume, (mean - own) / 3)
+        gradient = slope.copy()
+        gradient[:, :, 0] += hoop
+        mean = np.einsum("gm,gaim->aim", volume / volume.sum(axis=0), gradient)
+        return cls(slope, hoop, volume, (mean - gradient) / 3)
 
 
 def _turned(stress: Array, angle: Array) -> Array:
@@ -280,7 +280,7 @@ def indent(
     lines = _lines(cells)
     x, corners = grid(lines, -lines[::-1])
     factors = _factors(-x[corners, 1], strength) if strength else 1.0
-    body, found = Body(metal, x, np.zeros_like(x), corners, factors), Indentation()
+    body, indentation = Body(metal, x, np.zeros_like(x), corners, factors), Indentation()
     speed, depth = cone_speed(metal), 1 / tan(angle)
     face, axis = np.arange(len(x) - len(lines), len(x)), x[:, 0] == 0.0
     far = (x[:, 0] == lines[-1]) | (x[:, 1] == -lines[-1])
@@ -289,15 +289,15 @@ def indent(
     def stop(body: Body) -> None:
         body.v[far], body.v[axis, 0] = 0.0, 0.0
         touched, force = _meet(body, face, speed, angle, friction)
-        found.depth.append(speed * body.time)
-        found.force.append(force)
+        indentation.depth.append(speed * body.time)
+        indentation.force.append(force)
         now = np.flatnonzero(touched & free)
-        found.touched += [(speed * body.time, float(body.x[face[i], 0])) for i in now]
+        indentation.touched += [(speed * body.time, float(body.x[face[i], 0])) for i in now]
         free[touched] = False
 
     while speed * body.time < depth:
         body.advance(stop)
-    return found
+    return indentation
 
 
 def _factors(under: Array, strength: Strength) -> Array:

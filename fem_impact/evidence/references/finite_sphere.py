@@ -204,8 +204,8 @@ def ball_modes(nu: float, a: float) -> tuple[Array, Array]:
     (2.645, 0.9)
     """
     radial, polar = pole_load(a, ORDERS)
-    found = [modes_of_order(n, nu, radial[n], polar[n]) for n in range(ORDERS)]
-    omega, phi = (np.concatenate(part) for part in zip(*found, strict=True))
+    by_order = [modes_of_order(n, nu, radial[n], polar[n]) for n in range(ORDERS)]
+    omega, phi = (np.concatenate(part) for part in zip(*by_order, strict=True))
     heard = (omega > 1e-2) & (omega < HIGHEST)  # slower is the translation of order 1
     return omega[heard], phi[heard]
 
@@ -296,10 +296,10 @@ def _bounce(
     start[1] = speed
     small = PRECISE * speed * np.concatenate([[time, 1], np.full(n, time), np.ones(n)]) * 1e-3
     small[2:] *= sqrt(mass)
-    found = solve_ivp(
+    solution = solve_ivp(
         rates, (0.0, 2 * time), start, "DOP853", events=gap, rtol=PRECISE, atol=small, dense_output=True
     )
-    return found.sol
+    return solution.sol
 
 
 STEPS = 4000  # time steps over the contact time

@@ -194,24 +194,24 @@ class _Contact:
         row = self.row
         closer, along, self.depth, self.way = depth - self.depth, way - self.way, depth, way
         ahead = self.waves[0] * row.stiffness(depth) * closer / dt
-        own = self._depth(depth + ahead - self.give[0, 1] * self.shear)
-        self.normal = row.normal(own)
-        ahead = self.waves[1] * row.grip(own) * along / dt
+        approach = self._depth(depth + ahead - self.give[0, 1] * self.shear)
+        self.normal = row.normal(approach)
+        ahead = self.waves[1] * row.grip(approach) * along / dt
         moved = way + ahead + self.give[0, 1] * self.normal
-        self._slide(own, moved - self.moved)
+        self._slide(approach, moved - self.moved)
         self.moved = moved
         return self.normal, self.shear
 
     def _depth(self, depth: float) -> float:
         """Return the springs' part of an approach, by Newton's rule."""
-        own = depth
+        approach = depth
         for _ in range(TRIES):
-            slope = 1 + self.give[0, 0] * self.row.stiffness(own)
-            change = (own + self.give[0, 0] * self.row.normal(own) - depth) / slope
-            own -= change
+            slope = 1 + self.give[0, 0] * self.row.stiffness(approach)
+            change = (approach + self.give[0, 0] * self.row.normal(approach) - depth) / slope
+            approach -= change
             if abs(change) < STILL:
                 break
-        return own
+        return approach
 
     def _slide(self, depth: float, step: float) -> None:
         """Move the springs by their part of a step; the force against it is piecewise linear in it."""

@@ -56,8 +56,8 @@ def _start(edge: float) -> tuple[Array, Ints]:
     points = np.stack(np.meshgrid(np.unique(r), z, indexing="ij")).reshape(2, -1)
     number = np.arange(points.shape[1]).reshape(-1, len(z))
     corners = ((0, 0), (1, 0), (0, 1), (1, 1))
-    here, out, up, both = (number[i : len(number) - 1 + i, j : len(z) - 1 + j].ravel() for i, j in corners)
-    return points, np.concatenate([[here, out, up], [out, both, up]], axis=1)
+    inner, out, up, both = (number[i : len(number) - 1 + i, j : len(z) - 1 + j].ravel() for i, j in corners)
+    return points, np.concatenate([[inner, out, up], [out, both, up]], axis=1)
 
 
 def _rounded(mesh: skfem.MeshTri, edge: float) -> skfem.MeshTri:
@@ -133,9 +133,9 @@ class _Patch:
 
         @skfem.LinearForm
         def form(v, w):  # type: ignore[no-untyped-def]
-            less, here, more = (self._spread(w.x, abs(k)) for k in (order - 1, order, order + 1))
+            less, same, more = (self._spread(w.x, abs(k)) for k in (order - 1, order, order + 1))
             sideways = 0.5 * ((less + more) * v[R] - (less - more) * v[AROUND])
-            return w.x[0] * (across * sideways + along * here * v[Z])
+            return w.x[0] * (across * sideways + along * same * v[Z])
 
         load: Array = form.assemble(skin)
         return load
@@ -230,5 +230,7 @@ def edge_excess(
         total += body.displaced(order, np.concatenate(loads, axis=1))
     lost = lost_length(edge)
     beam = free_bar_flexibility(nu, LENGTH - lost, angle, (float(touch[0]), float(touch[1]) - lost))
-    own = [total[2 * i : 2 * i + 2, 2 * i : 2 * i + 2] for i in range(len(patches))]
-    return tuple(C - beam - np.diag(patch_compliance(nu, *p)) for C, p in zip(own, patches, strict=True))
+    compliances = [total[2 * i : 2 * i + 2, 2 * i : 2 * i + 2] for i in range(len(patches))]
+    return tuple(
+        C - beam - np.diag(patch_compliance(nu, *p)) for C, p in zip(compliances, patches, strict=True)
+    )

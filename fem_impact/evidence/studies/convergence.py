@@ -171,14 +171,14 @@ def convergence_rows(name: str, levels: Levels) -> list[Row]:
     """Return one row per quantity; none with fewer than `LEAST` levels.
 
     Levels that do not resolve their contact are left out where as many others remain.
-    ``told`` are limit and half-width that the levels of the default run tell, None where they tell none.
+    ``numbers`` are limit and half-width that the levels of the default run tell, None where they tell none.
     """
     resolved = [mesh for mesh in levels.meshes if mesh.resolved]
     meshes = resolved if len(resolved) >= LEAST else levels.meshes
     if len(meshes) < LEAST:
         return []
     sizes, rows = [mesh.size for mesh in meshes], []
-    limits, bands = (or_none(told) or {} for told in level_limits(levels.meshes[: levels.default]))
+    limits, bands = (or_none(numbers) or {} for numbers in level_limits(levels.meshes[: levels.default]))
     for quantity, key in QUANTITIES.items():
         values = [[known(key.of(run)) for run in mesh.runs] for mesh in meshes]
         means = [fmean(on_mesh) for on_mesh in values]
@@ -190,7 +190,7 @@ def convergence_rows(name: str, levels: Levels) -> list[Row]:
             "default": levels.default - 1 - len(levels.meshes),
             "apart": [max(on_mesh) - min(on_mesh) for on_mesh in values],
             "fit": limit(sizes, means),
-            "told": (limits[key.name], bands[key.name]) if key.name in bands else None,
+            "default_band": (limits[key.name], bands[key.name]) if key.name in bands else None,
         }
         rows.append(row)
     return rows
@@ -230,15 +230,15 @@ def _sentence(row: Row) -> str:
 
 def _held(rows: Sequence[Row]) -> list[str]:
     """Return the sentence on how many bands of the default levels hold the limit of all, or overlap it."""
-    told = [(*row["told"], row["fit"]) for row in rows if row["told"]]
-    if not told:
+    banded = [(*row["default_band"], row["fit"]) for row in rows if row["default_band"]]
+    if not banded:
         return []
-    off = [abs(value - fit.value) - 1e-9 * abs(value) for value, _, fit in told]
-    inside = sum(away <= half for away, (_, half, _) in zip(off, told, strict=True))
-    near = sum(away <= half + fit.band for away, (_, half, fit) in zip(off, told, strict=True))
+    off = [abs(value - fit.value) - 1e-9 * abs(value) for value, _, fit in banded]
+    inside = sum(away <= half for away, (_, half, _) in zip(off, banded, strict=True))
+    near = sum(away <= half + fit.band for away, (_, half, fit) in zip(off, banded, strict=True))
     return [
-        f"{inside} of {len(told)} bands that the levels of a default run tell at two places of the grid hold "
-        f"the limit of all levels; {near} overlap its band."
+        f"{inside} of {len(banded)} bands that the levels of a default run tell at two places of the grid "
+        f"hold the limit of all levels; {near} overlap its band."
     ]
 
 

@@ -61,8 +61,8 @@ def answers(
         for name in names if len(names) > 1 else ():
             if cheapest(cost.settings, (name,), wanted) != together:
                 listed += advice(cost.settings, (name,), wanted, None)
-    told = default_sentence(cost.settings, names)
-    return [*listed, *([told] if told else [])]
+    of_default = default_sentence(cost.settings, names)
+    return [*listed, *([of_default] if of_default else [])]
 
 
 def paper_report(costs: Mapping[str, CostStudy]) -> StudyReport:
@@ -86,7 +86,9 @@ def paper_report(costs: Mapping[str, CostStudy]) -> StudyReport:
 
 
 def _failed(cost: CostStudy) -> list[str]:
-    return [f"Not judged: {cost.scene.id}, {one['setting']}: {one['reason']}" for one in cost.failures]
+    return [
+        f"Not judged: {cost.scene.id}, {failure['setting']}: {failure['reason']}" for failure in cost.failures
+    ]
 
 
 def _picture(
@@ -97,30 +99,32 @@ def _picture(
         f"better. Below the dashed line the error is less than {100 * WANTED:g} %."
     )
     rows: list[tuple[Cell, ...]] = [
-        (scene, name, one.name, one.cpu_s, error, name in one.front)
+        (scene, name, setting.name, setting.cpu_s, error, name in setting.front)
         for scene, judged in settings.items()
         for name in names
-        for one in judged
-        if one.kind in LOOKS and (error := one.error[name]) is not None
+        for setting in judged
+        if setting.kind in LOOKS and (error := setting.error[name]) is not None
     ]
     numbers = Table.of(("scene", "quantity", "setting", "cpu_s", "error", "on_front"), rows, left=range(3))
     return Picture(FIGURE, caption, tuple(panels), 2, numbers)
 
 
 def _panel(settings: Sequence[Judged], name: str, title: str) -> Panel:
-    known = [one for one in settings if one.error[name] and one.kind in LOOKS]
+    known = [setting for setting in settings if setting.error[name] and setting.kind in LOOKS]
     best = Series(FRONT, *_points(front(known, [name]), name), "line", "grey")
     series = [best]
     for kind, (label, look, colour) in LOOKS.items():
-        if of := [one for one in known if one.kind == kind]:
-            texts = tuple(one.name for one in of)
+        if of := [setting for setting in known if setting.kind == kind]:
+            texts = tuple(setting.name for setting in of)
             series.append(Series(label, *_points(of, name), look, colour, texts=texts))
     level = (Mark(100 * WANTED),)
     return Panel(title, "computing time, s", "error, %", tuple(series), levels=level, logarithmic=True)
 
 
 def _points(settings: Sequence[Judged], name: str) -> tuple[list[float], list[float]]:
-    return [one.cpu_s for one in settings], [100 * (one.error[name] or 0.0) for one in settings]
+    return [setting.cpu_s for setting in settings], [
+        100 * (setting.error[name] or 0.0) for setting in settings
+    ]
 
 
 def _quickest(cost: CostStudy, name: str, error: float) -> Judged | None:
@@ -129,17 +133,17 @@ def _quickest(cost: CostStudy, name: str, error: float) -> Judged | None:
     It takes three at least, at two places of the grid.
     """
     met = [
-        one
-        for one in cost.settings
-        if one.kind == PLACES[2] and one.levels >= LEVELS
-        if (told := one.error[name]) is not None and told <= error
+        setting
+        for setting in cost.settings
+        if setting.kind == PLACES[2] and setting.levels >= LEVELS
+        if (relative := setting.error[name]) is not None and relative <= error
     ]
-    return min(met, key=lambda one: one.two_cores_s, default=None)
+    return min(met, key=lambda setting: setting.two_cores_s, default=None)
 
 
 def _reached(name: str, costs: Mapping[str, CostStudy]) -> str:
     """Say in how many sets levels know a quantity as well as `WANTED`, and how long that takes."""
-    met = [one.two_cores_s for cost in costs.values() if (one := _quickest(cost, name, WANTED))]
+    met = [setting.two_cores_s for cost in costs.values() if (setting := _quickest(cost, name, WANTED))]
     least = " (or to 1e-4 of E_0)" if name == "E_vib" else ""
     took = f", in {plain(min(met))} to {plain(max(met))} s on two cores" if met else ""
     return f"Levels give {name} to {100 * WANTED:g} %{least} in {len(met)} of {len(costs)} sets{took}."
@@ -147,42 +151,45 @@ def _reached(name: str, costs: Mapping[str, CostStudy]) -> str:
 
 def _defaults(costs: Mapping[str, CostStudy]) -> str:
     """Say what the default run costs and tells over the sets."""
-    runs = [one for cost in costs.values() for one in cost.settings if one.default]
+    runs = [setting for cost in costs.values() for setting in cost.settings if setting.default]
     if not runs:
         return "No default run tells a band."
-    times = [one.cpu_s for one in runs]
-    found = {
-        name: [100 * error for one in runs if (error := one.error[name]) is not None] for name in TARGETED
+    times = [setting.cpu_s for setting in runs]
+    by_quantity = {
+        name: [100 * error for setting in runs if (error := setting.error[name]) is not None]
+        for name in TARGETED
     }
-    told = " and ".join(
+    medians = " and ".join(
         f"{plain(median(errors), 2)} % of {name} ({plain(min(errors), 2)} to {plain(max(errors), 2)} %)"
-        for name, errors in found.items()
+        for name, errors in by_quantity.items()
         if errors
     )
     return (
         f"The default run takes {plain(min(times))} to {plain(max(times))} s on one core; its bands have a "
-        f"median of {told}."
+        f"median of {medians}."
     )
 
 
 def _variants(costs: Mapping[str, CostStudy]) -> list[str]:
     """Say of each change of the default run what it changes at most, and how much longer it takes."""
-    found: dict[str, list[tuple[Judged, Judged]]] = {}
+    by_variant: dict[str, list[tuple[Judged, Judged]]] = {}
     for cost in costs.values():
-        default = next((one for one in cost.settings if one.default), None)
-        for one in cost.settings:
-            if one.kind == "variant" and default is not None:
-                found.setdefault(one.name, []).append((default, one))
+        default = next((setting for setting in cost.settings if setting.default), None)
+        for setting in cost.settings:
+            if setting.kind == "variant" and default is not None:
+                by_variant.setdefault(setting.name, []).append((default, setting))
     sentences = []
-    for name, pairs in found.items():
-        ratios = [one.cpu_s / default.cpu_s for default, one in pairs]
-        changes = {of: [error for _, one in pairs if (error := one.error[of]) is not None] for of in TARGETED}
-        told = " and ".join(
+    for name, pairs in by_variant.items():
+        ratios = [setting.cpu_s / default.cpu_s for default, setting in pairs]
+        changes = {
+            of: [error for _, setting in pairs if (error := setting.error[of]) is not None] for of in TARGETED
+        }
+        most = " and ".join(
             f"{of} by at most {plain(100 * max(errors), 2)} %" for of, errors in changes.items() if errors
         )
         sentences.append(
             f"The {name} takes {plain(min(ratios), 2)} to {plain(max(ratios), 2)} times as long and changes "
-            f"{told or 'nothing that has a band'} ({len(pairs)} sets)."
+            f"{most or 'nothing that has a band'} ({len(pairs)} sets)."
         )
     return sentences
 
@@ -193,7 +200,9 @@ def _price_sheet(costs: Mapping[str, CostStudy]) -> Sheet:
     for error in ERRORS:
         cells: list[Cell] = []
         for name in TARGETED:
-            times = [one.two_cores_s for cost in costs.values() if (one := _quickest(cost, name, error))]
+            times = [
+                setting.two_cores_s for cost in costs.values() if (setting := _quickest(cost, name, error))
+            ]
             cells += [plain(median(times)), plain(max(times))] if times else [None, None]
             cells.append(f"{len(times)} of {len(costs)}")
         rows.append((f"{100 * error:g}", *cells))
@@ -213,15 +222,19 @@ def _setting_sheet(costs: Mapping[str, CostStudy]) -> Sheet:
     cells: dict[str, dict[str, str]] = {}
     for name, cost in costs.items():
         row = cells.setdefault(name, {})
-        for one in (one for one in cost.settings if one.kind in LOOKS):
-            title = f"{one.levels} levels" + ", two places" * (one.kind == "two places")
-            title = title if one.levels else one.kind
+        for setting in (setting for setting in cost.settings if setting.kind in LOOKS):
+            title = f"{setting.levels} levels" + ", two places" * (setting.kind == "two places")
+            title = title if setting.levels else setting.kind
             columns += [title] if title not in columns else []
             errors = " / ".join(
-                "-" if (e := one.error[of]) is None else f"{100 * e:.2g}" if e < 0.995 else f"{100 * e:.0f}"
+                "-"
+                if (e := setting.error[of]) is None
+                else f"{100 * e:.2g}"
+                if e < 0.995
+                else f"{100 * e:.0f}"
                 for of in TARGETED
             )
-            row[title] = f"{errors}, {one.cpu_s:.2g} s" + " (default)" * one.default
+            row[title] = f"{errors}, {setting.cpu_s:.2g} s" + " (default)" * setting.default
     ordered = sorted(columns, key=lambda title: ("levels" in title, title))
     rows = [
         (
@@ -246,11 +259,11 @@ def _level_sheet(costs: Mapping[str, CostStudy]) -> Sheet:
         meshes = levels.meshes if (levels := cost.levels.get(2)) else ()
         for n, level in enumerate(meshes, 1):
             limits = quantity_limits(meshes[:n])
-            told = [
+            numbers = [
                 f"{limit.value:.4f} ± {limit.band:.4f}" if (limit := limits.get(of)) else None
                 for of in TARGETED
             ]
-            rows.append((name, n, f"{1e3 * level.size:.3g}", f"{level.cpu_s:.3g}", level.repeats, *told))
+            rows.append((name, n, f"{1e3 * level.size:.3g}", f"{level.cpu_s:.3g}", level.repeats, *numbers))
     head = ("set", "level", "cells, mm", "s", "repeats", *TARGETED)
     caption = (
         "Each level at two places of the grid (the first at one): cells at the contact, processor time, how "

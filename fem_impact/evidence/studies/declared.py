@@ -9,6 +9,7 @@ import pandas
 from fem_impact import Outcome, Scene
 from fem_impact.answers.report import Request, StudyReport
 from fem_impact.jobs.job import Job, JobResults
+from fem_impact.options import RunOptions
 
 Runs = Mapping[str, Mapping[str, Outcome]]
 """Outcomes by scene and variant; failed runs are left out."""
@@ -23,17 +24,19 @@ class DeclaredSweep:
     scenes : function of the request to the scenes by name
     variants : function of a scene's name and the scene to its variants by name: changed scene and fidelity
     report : function of the `Runs` to the study's report
+    way : as that of a `Job`
     """
 
     scenes: Callable[[Request], Mapping[str, Scene]]
     variants: Callable[[str, Scene], Mapping[str, tuple[Scene, str]]]
     report: Callable[[Runs], StudyReport]
+    way: Callable[[Scene, str, RunOptions], Outcome] | None = None
 
     def jobs(self, request: Request) -> dict[str, dict[str, Job]]:
         """Return the jobs by scene and variant."""
         return {
             name: {
-                variant: Job(f"{name}-{variant}", *changed)
+                variant: Job(f"{name}-{variant}", *changed, way=self.way)
                 for variant, changed in self.variants(name, scene).items()
             }
             for name, scene in self.scenes(request).items()

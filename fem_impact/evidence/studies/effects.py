@@ -44,7 +44,7 @@ def _impossible(scene: Scene) -> set[str]:
         "contact-loss": bool(viscous),
         "plate-bending": scene.barrier.bends,
     }
-    return {name for name, stated in has.items() if not stated}
+    return {name for name, possible in has.items() if not possible}
 
 
 def row(name: str, auto: Outcome, whole: Outcome) -> list[Cell]:

@@ -190,7 +190,7 @@ def conclude(request: Request, results: Results) -> StudyReport:
         [sentence for _, sentence in sentences],
         pictures(table, angles, rods, upright),
         [
-            *(Sheet(name, caption, made) for caption, (name, made) in shown.items() if len(made)),
+            *(Sheet(name, caption, content) for caption, (name, content) in shown.items() if len(content)),
             *(Sheet(name, caption, as_table(rows), shown=False) for caption, (name, rows) in files.items()),
         ],
         rests_on("gamma"),

@@ -88,7 +88,7 @@ def vibration(kinds: Mapping[str, DataFrame]) -> Picture:
         by_state = {x: lines(curve, x, "share", "f", STATE_NAMES) for x in ("gamma", "T1_over_tau")}
         other = {runs.OTHERS: "other diameters and speeds"}
         rings = lines(changed, "T1_over_tau", "share", "family", other, "rings", ("grey",))
-        own = {
+        measured = {
             x: lines(
                 sets,
                 x,
@@ -101,9 +101,9 @@ def vibration(kinds: Mapping[str, DataFrame]) -> Picture:
             for x in by_state
         }
         over_gamma.append(
-            panel(f"{kind}: over gamma", GAMMA, (*by_state["gamma"], *modes, *own["gamma"]), MARKS)
+            panel(f"{kind}: over gamma", GAMMA, (*by_state["gamma"], *modes, *measured["gamma"]), MARKS)
         )
-        by_group = (*by_state["T1_over_tau"], *rings, *own["T1_over_tau"])
+        by_group = (*by_state["T1_over_tau"], *rings, *measured["T1_over_tau"])
         over_group.append(panel(f"{kind}: over T1/tau", "T1/tau", by_group))
         partition.append(_partition(kind, rows))
     caption = (

@@ -194,6 +194,6 @@ def one_mesh(scene: Scene) -> Scene:
     does not resolve is reported all the same.
     """
     meshes = LevelMeshes(Case(scene))
-    stated = meshes.at(max(meshes.usual - 1, 0))
-    accuracy = replace(stated.accuracy, levels=1, offsets=None, unresolved="report")
-    return replace(stated, accuracy=accuracy, save=replace(stated.save, frames=0))
+    coarser = meshes.at(max(meshes.usual - 1, 0))
+    accuracy = replace(coarser.accuracy, levels=1, offsets=None, unresolved="report")
+    return replace(coarser, accuracy=accuracy, save=replace(coarser.save, frames=0))

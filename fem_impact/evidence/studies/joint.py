@@ -104,43 +104,43 @@ def plan(request: Request, results: JobResults) -> list[Job]:
 def conclude(request: Request, results: JobResults) -> StudyReport:
     """Return the study: each set's distance, and what it is made of."""
     of_sets = (of_set(name, request, results, stored_rows()[name]) for name in asked_sets(request))
-    return report_of([one for one in of_sets if one is not None])
+    return report_of([error for error in of_sets if error is not None])
 
 
-def report_of(found: Sequence[JointError]) -> StudyReport:
+def report_of(errors: Sequence[JointError]) -> StudyReport:
     """Return the study of sets."""
-    sentences = _sentences(found) if found else ["No set could be compared: see the failed runs."]
+    sentences = _sentences(errors) if errors else ["No set could be compared: see the failed runs."]
     rows = [
         (
-            *(one.set, *one.E, one.distance, one.p, "rejected" if one.p < LEVEL else "agrees"),
-            *(f"{one.alone} of {len(one.E)}", *one.shares),
+            *(error.set, *error.E, error.distance, error.p, "rejected" if error.p < LEVEL else "agrees"),
+            *(f"{error.alone} of {len(error.E)}", *error.shares),
         )
-        for one in found
+        for error in errors
     ]
     return StudyReport(
         "joint",
         "Validation of e, mu and Omega at once",
         sentences,
-        [_picture(found)] if found else (),
+        [_picture(errors)] if errors else (),
         [Sheet("joint", "Joint error of each set", Table.of(HEAD, rows))],
         rests_on("joint", LEVEL=LEVEL, COVERAGE=COVERAGE),
         conclusions=[("joint", sentence) for sentence in sentences],
     )
 
 
-def _sentences(found: Sequence[JointError]) -> list[str]:
+def _sentences(sets: Sequence[JointError]) -> list[str]:
     """Return how many sets are rejected, and where to the errors point."""
-    rejected = [one.set for one in found if one.p < LEVEL]
-    quiet = [one.set for one in found if one.p < LEVEL and one.alone == 0]
-    errors = np.array([one.E for one in found])
+    rejected = [error.set for error in sets if error.p < LEVEL]
+    quiet = [error.set for error in sets if error.p < LEVEL and error.alone == 0]
+    errors = np.array([error.E for error in sets])
     ways = ", ".join(
         f"{name} too low in {int((errors[:, at] < 0).sum())}, too high in {int((errors[:, at] > 0).sum())}"
         for at, name in enumerate(SHOWN)
     )
-    most = [SHOWN[int(one.shares.argmax())] for one in found if one.p < LEVEL]
+    most = [SHOWN[int(error.shares.argmax())] for error in sets if error.p < LEVEL]
     parts = ", ".join(f"{name} in {most.count(name)}" for name in SHOWN if name in most)
     return [
-        f"Taken together, e, mu and Omega of {len(rejected)} of {len(found)} sets do not agree with the "
+        f"Taken together, e, mu and Omega of {len(rejected)} of {len(sets)} sets do not agree with the "
         f"tests at {100 * LEVEL:.0f} % ({', '.join(rejected) or 'none'}): no values of the stated inputs, "
         "however combined, are likely to bring all three numbers of such a set to the measured ones. "
         f"{len(quiet)} of them show no error in any number alone.",
@@ -148,14 +148,16 @@ def _sentences(found: Sequence[JointError]) -> list[str]:
     ]
 
 
-def _picture(found: Sequence[JointError]) -> Picture:
+def _picture(errors: Sequence[JointError]) -> Picture:
     """Return the distances beside the errors of single numbers, over their uncertainties."""
     from scipy.stats import chi2
 
-    sets, at = tuple(one.set for one in found), np.arange(len(found), dtype=float)
+    sets, at = tuple(error.set for error in errors), np.arange(len(errors), dtype=float)
     limit = float(chi2.isf(LEVEL, len(SHOWN)))
-    alone = {name: [(i, one.E[k] / one.u[k]) for i, one in enumerate(found)] for k, name in enumerate(SHOWN)}
-    together = Series("D2", [one.distance for one in found], at, "points", 3)
+    alone = {
+        name: [(i, error.E[k] / error.u[k]) for i, error in enumerate(errors)] for k, name in enumerate(SHOWN)
+    }
+    together = Series("D2", [error.distance for error in errors], at, "points", 3)
     panels = (
         error_panel("One by one", sets, alone),
         Panel("Together", "D2", "", (together,), (Mark(limit, f"{100 * LEVEL:.0f} %"),), rows=sets),

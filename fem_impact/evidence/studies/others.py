@@ -109,7 +109,7 @@ def sphere_scene(angle: float) -> Scene:
     alumina = {"name": "alumina-of-kharaz", "E": "380 GPa", "nu": 0.23, "rho": "4000 kg/m3", **quoted}
     glass = {"name": "glass-of-kharaz", "E": "70 GPa", "nu": 0.25, "rho": "2500 kg/m3", **quoted}
     v_n, v_t = -SPEED * cos(radians(angle)), -SPEED * sin(radians(angle))
-    stated: dict[str, Any] = {
+    tables: dict[str, Any] = {
         "id": f"{KHARAZ}-{angle:.0f}",
         "projectile": {"shape": "ball", "diameter": f"{2 * RADIUS} m", "material": alumina},
         "barrier": {"material": glass},
@@ -117,7 +117,7 @@ def sphere_scene(angle: float) -> Scene:
         "impact": {"angle": "0 deg", "v_n": f"{v_n!r} m/s", "v_t": f"{v_t!r} m/s"},
         "save": {"frames": 0},
     }
-    return read_dict(stated)
+    return read_dict(tables)
 
 
 def plan(request: Request, results: Results) -> list[LevelsJob]:
@@ -140,7 +140,7 @@ class OthersSeries:
     @property
     def together(self) -> tuple[float, float]:
         """Return distance squared of all errors, and the probability of a larger one without error."""
-        return joint(np.array([one.E for one in self.comparisons]), self.C)
+        return joint(np.array([comparison.E for comparison in self.comparisons]), self.C)
 
 
 def compared_rods(tests: Sequence[Rod]) -> OthersSeries:
@@ -148,23 +148,25 @@ def compared_rods(tests: Sequence[Rod]) -> OthersSeries:
 
     The scatter of single tests is that about their own curve over rho v^2.
     """
-    found, scatter, comparisons, moved = {}, {}, [], []
+    lengths, scatter, comparisons, moved = {}, {}, [], []
     for name, column in (("final", 0), ("foot", 1)):
         scatter[name] = _scatter(tests, name)
         for at, rod in enumerate(tests):
             measured = getattr(rod, name)
             if np.isnan(measured):
                 continue
-            if at not in found:
+            if at not in lengths:
                 fine, coarse = rod.flattened(SLICES), rod.flattened(SLICES // 2)
-                found[at] = fine, coarse, rod.flattened(SLICES // 2, FASTER[rod.metal]) - coarse
-            S, coarse, change = (values[column] for values in found[at])
+                lengths[at] = fine, coarse, rod.flattened(SLICES // 2, FASTER[rod.metal]) - coarse
+            S, coarse, change = (values[column] for values in lengths[at])
             part = ("length", "foot")[column]
             label = f"{part} at {rod.speed:.0f} m/s, L/D {rod.length / rod.diameter:.1f}"
             u_num, moves = abs(S - coarse) / COVERAGE, change / sqrt(3)  # uniform from the nominal value
             comparisons.append(Comparison(rod.series, label, S, measured, u_num, abs(moves), scatter[name]))
             moved.append(moves)
-    C = np.outer(moved, moved) + np.diag([one.u_num**2 + one.u_D**2 for one in comparisons])
+    C = np.outer(moved, moved) + np.diag(
+        [comparison.u_num**2 + comparison.u_D**2 for comparison in comparisons]
+    )
     return OthersSeries(tests[0].series, tuple(comparisons), C)
 
 
@@ -196,7 +198,9 @@ def compared_spheres(request: Request, results: Results) -> OthersSeries | None:
         comparisons.append(Comparison(KHARAZ, name, S, measured, u_num, 0.0, READ[quantity]))
     if not comparisons:
         return None
-    return OthersSeries(KHARAZ, tuple(comparisons), np.diag([one.u_val**2 for one in comparisons]))
+    return OthersSeries(
+        KHARAZ, tuple(comparisons), np.diag([comparison.u_val**2 for comparison in comparisons])
+    )
 
 
 def conclude(request: Request, results: Results) -> StudyReport:
@@ -215,23 +219,30 @@ def conclude(request: Request, results: Results) -> StudyReport:
     )
 
 
-def report_of(found: Sequence[OthersSeries]) -> StudyReport:
+def report_of(every_series: Sequence[OthersSeries]) -> StudyReport:
     """Return the study of series."""
-    every = [one for series in found for one in series.comparisons]
+    every = [comparison for series in every_series for comparison in series.comparisons]
     table = [
         (
-            *(series.name, len(series.comparisons), sum(one.in_error for one in series.comparisons)),
-            *(float(np.mean([one.E / one.D for one in series.comparisons])), *series.together),
+            *(
+                series.name,
+                len(series.comparisons),
+                sum(comparison.in_error for comparison in series.comparisons),
+            ),
+            *(
+                float(np.mean([comparison.E / comparison.D for comparison in series.comparisons])),
+                *series.together,
+            ),
             "rejected" if series.together[1] < LEVEL else "agrees",
         )
-        for series in found
+        for series in every_series
     ]
-    sentences = [_sentence(series) for series in found]
+    sentences = [_sentence(series) for series in every_series]
     return StudyReport(
         "others",
         "Tests of other people: rods on anvils, spheres on glass (ASME V&V 20)",
         sentences,
-        [_picture(found)] if found else (),
+        [_picture(every_series)] if every_series else (),
         [
             Sheet(
                 "series",
@@ -246,9 +257,9 @@ def report_of(found: Sequence[OthersSeries]) -> StudyReport:
 
 
 def _sentence(series: OthersSeries) -> str:
-    wrong = [one for one in series.comparisons if one.in_error]
+    wrong = [comparison for comparison in series.comparisons if comparison.in_error]
     D2, p = series.together
-    worst = max(series.comparisons, key=lambda one: abs(one.E / one.u_val))
+    worst = max(series.comparisons, key=lambda comparison: abs(comparison.E / comparison.u_val))
     return (
         f"{series.name}: {len(wrong)} of {len(series.comparisons)} numbers show an error of the model; "
         f"together they {'do not agree' if p < LEVEL else 'agree'} with the tests (D2 = {D2:.3g}, "
@@ -257,10 +268,10 @@ def _sentence(series: OthersSeries) -> str:
     )
 
 
-def _picture(found: Sequence[OthersSeries]) -> Picture:
+def _picture(every_series: Sequence[OthersSeries]) -> Picture:
     errors = {
-        series.name: [(at, one.E / one.u_val) for one in series.comparisons]
-        for at, series in enumerate(found)
+        series.name: [(at, comparison.E / comparison.u_val) for comparison in series.comparisons]
+        for at, series in enumerate(every_series)
     }
     panel = error_panel("Errors", tuple(errors), errors)
     return Picture(

@@ -61,28 +61,34 @@ def _unhurried(scene: Scene, fidelity: str, options: RunOptions) -> Outcome:
 
 def conclude(request: Request, results: JobResults) -> StudyReport:
     """Return the study: each set's errors with every inputs, and how many sets they reject."""
-    found = {
+    errors = {
         name: {
-            inputs: one for inputs in (DEFAULT, *INPUTS) if (one := _joint(name, inputs, request, results))
+            inputs: error
+            for inputs in (DEFAULT, *INPUTS)
+            if (error := _joint(name, inputs, request, results))
         }
         for name in asked_sets(request)
     }
     rows = [
         (
             *(name, inputs),
-            *(number for at in range(len(SHOWN)) for number in (one.E[at] + D[at], one.E[at], one.u[at])),
-            *(one.distance, one.p, "rejected" if one.p < joint.LEVEL else "agrees"),
+            *(
+                number
+                for at in range(len(SHOWN))
+                for number in (error.E[at] + D[at], error.E[at], error.u[at])
+            ),
+            *(error.distance, error.p, "rejected" if error.p < joint.LEVEL else "agrees"),
         )
-        for name, of_inputs in found.items()
+        for name, of_inputs in errors.items()
         for D in [[row["D"] for row in joint.stored_rows()[name]]]
-        for inputs, one in of_inputs.items()
+        for inputs, error in of_inputs.items()
     ]
-    sentences = _sentences(found)
+    sentences = _sentences(errors)
     return StudyReport(
         "skin",
         "The measured sets with a hardened skin from their hardness",
         sentences,
-        [_picture(found)],
+        [_picture(errors)],
         [Sheet("skin", "Errors of each set with each of the inputs", Table.of(HEAD, rows))],
         [*rests_on("skin", LOAD=LOAD), *_left_out(results)],
         conclusions=[("skin", sentence) for sentence in sentences],
@@ -96,8 +102,10 @@ def _left_out(results: JobResults) -> list[str]:
         for name, run in results.items()
         if ", skin" in name and isinstance(run, Outcome) and EFFECT not in run.provenance.effects
     ]
-    told = f"The layer is too thin beside the contact to be an effect, and left out, in: {'; '.join(none)}."
-    return [told] if none else []
+    sentence = (
+        f"The layer is too thin beside the contact to be an effect, and left out, in: {'; '.join(none)}."
+    )
+    return [sentence] if none else []
 
 
 def _joint(name: str, inputs: str, request: Request, results: JobResults) -> joint.JointError | None:
@@ -116,35 +124,35 @@ def _joint(name: str, inputs: str, request: Request, results: JobResults) -> joi
     return joint.of_set(name, request, results, rows) if len(rows) == len(stored) else None
 
 
-def _sentences(found: Mapping[str, Mapping[str, joint.JointError]]) -> list[str]:
+def _sentences(errors: Mapping[str, Mapping[str, joint.JointError]]) -> list[str]:
     """Return of every inputs how many sets are rejected, and the mean distance of the numbers."""
-    told = []
+    sentences = []
     for inputs in (DEFAULT, *INPUTS):
-        of = [one[inputs] for one in found.values() if inputs in one]
+        of = [error[inputs] for error in errors.values() if inputs in error]
         if not of:
             continue
-        rejected = [one.set for one in of if one.p < joint.LEVEL]
-        away = np.sqrt(np.mean([(one.E / one.u) ** 2 for one in of], axis=0))
+        rejected = [error.set for error in of if error.p < joint.LEVEL]
+        away = np.sqrt(np.mean([(error.E / error.u) ** 2 for error in of], axis=0))
         parts = ", ".join(f"{name} {far:.2g}" for name, far in zip(SHOWN, away, strict=True))
-        told.append(
+        sentences.append(
             f"{inputs}: {len(rejected)} of {len(of)} sets are rejected ({', '.join(rejected) or 'none'}); "
             f"root mean square of E / u_val: {parts}."
         )
-    return told
+    return sentences
 
 
-def _picture(found: Mapping[str, Mapping[str, joint.JointError]]) -> Picture:
+def _picture(by_set: Mapping[str, Mapping[str, joint.JointError]]) -> Picture:
     """Return E / u_val of each number, a panel each, of every inputs by sets."""
     panels = []
     for at, name in enumerate(SHOWN):
         errors = {
             inputs: [
-                (k, one[inputs].E[at] / one[inputs].u[at])
-                for k, one in enumerate(found.values())
-                if inputs in one
+                (k, error[inputs].E[at] / error[inputs].u[at])
+                for k, error in enumerate(by_set.values())
+                if inputs in error
             ]
             for inputs in (DEFAULT, *INPUTS)
         }
-        panels.append(error_panel(name, tuple(found), errors))
+        panels.append(error_panel(name, tuple(by_set), errors))
     caption = "Errors over their uncertainty with each of the inputs; beyond 2 a number shows an error alone."
     return Picture("skin", caption, tuple(panels), columns=3)

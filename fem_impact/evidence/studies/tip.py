@@ -6,28 +6,25 @@ are a second reading: none of the thirteen sets, counted in none of their number
 (docs/explanation/measured-sets.md).
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
+from pandas import DataFrame
 
-from fem_impact import Outcome, load
+from fem_impact import Scene, load, simulate
 from fem_impact.answers.compare import MEASURED, compare
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.arrays import Array
+from fem_impact.evidence.studies.declared import DeclaredSweep, Runs
 from fem_impact.evidence.studies.sets import set_job
-from fem_impact.jobs.job import Job, JobResults
 from fem_impact.run.tests import tests_of
 from fem_impact.tables.table import Cell, Table
 from rigid.experiments import MeasuredSet, measured_set
 
 SETS = ("t3-machined", "t3-contaminated", "t3-cleaned")
-TIPS = {"B": "{}", "A": "{}-tip-a"}
-"""Names of the scenes by tip."""
+TIPS, TIP_A = ("B", "A"), "{}-tip-a"  # and the name of the scene of a set with tip A
 COUNTED = tuple(quantity.name for quantity in MEASURED)
-Compared = Mapping[tuple[str, str], Mapping[str, Any]]
-"""Rows of `compare` by set and quantity."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,46 +67,12 @@ def fitted_arms(sets: Sequence[MeasuredSet]) -> tuple[Array, Array]:
 def readings() -> tuple[Reading, ...]:
     """Return the arms by which Table 3 was worked out, and those of a rod with either tip."""
     printed, drawn = measured_set(SETS[0]), []
-    for tip, name in TIPS.items():
-        scene = load(name.format(SETS[0]))
+    for tip, name in zip(TIPS, (SETS[0], TIP_A.format(SETS[0])), strict=True):
+        scene = load(name)
         rod = scene.projectile.rigid_body
         d_c, d_d = rod.arms(scene.impact.angle)
         drawn.append(Reading(f"tip {tip}", float(d_c), float(d_d), float(rod.k2)))
     return Reading("as printed", float(printed.arms.d_c), float(printed.arms.d_d), printed.k2), *drawn
-
-
-def plan(request: Request, results: JobResults) -> list[Job]:
-    """Return the runs of Table 3 with either tip; of one set if quick."""
-    return [set_job(TIPS[tip].format(name), request.quick) for tip in TIPS for name in _sets(request)]
-
-
-def conclude(request: Request, results: JobResults) -> StudyReport:
-    """Return the study: rotation by momentum alone, and finite elements with either tip."""
-    rows: dict[str, Compared] = {tip: _compared(tip, request, results) for tip in TIPS}
-    sentences = [*_momentum_sentences(), *_model_sentences(rows)]
-    return StudyReport(
-        "tip",
-        "Table 3: tip A or tip B?",
-        sentences,
-        sheets=[_momentum_sheet(), _model_sheet(rows)],
-        assumptions=["Tip A is shown beside the thirteen sets, which have tip B, and counted nowhere."],
-        conclusions=[("", sentence) for sentence in sentences],
-    )
-
-
-def _sets(request: Request) -> tuple[str, ...]:
-    return SETS[:1] if request.quick else SETS
-
-
-def _compared(tip: str, request: Request, results: JobResults) -> Compared:
-    """Return the counted quantities of the sets with a tip, beside the tests."""
-    return {
-        (name, str(row["quantity"])): row
-        for name in _sets(request)
-        if isinstance(run := results[set_job(TIPS[tip].format(name), request.quick).name], Outcome)
-        for row in compare(run, tests_of(load(TIPS[tip].format(name))))
-        if row["quantity"] in COUNTED
-    }
 
 
 def _momentum_sentences() -> list[str]:
@@ -149,42 +112,68 @@ def _momentum_sheet() -> Sheet:
     return Sheet("momentum", caption, Table.of(head, rows))
 
 
-def _model_sentences(rows: Mapping[str, Compared]) -> list[str]:
+def _model_sentences(rows: DataFrame) -> list[str]:
     """Return how many numbers each tip meets, and e, mu and Omega of the machined rod."""
     parts = []
-    for tip, compared in rows.items():
-        verdicts = [row["verdict"] for row in compared.values()]
-        inside, missed = verdicts.count("inside"), sum(v.startswith("miss") for v in verdicts)
-        if verdicts:
-            within = f"{inside} of {len(verdicts)} lie inside the 95 % interval"
-            parts.append(f"with tip {tip} {within} and {missed} miss it")
+    for tip, verdicts in rows.groupby("tip", sort=False).verdict:
+        inside, missed = (verdicts == "inside").sum(), verdicts.str.startswith("miss").sum()
+        within = f"{inside} of {len(verdicts)} lie inside the 95 % interval"
+        parts.append(f"with tip {tip} {within} and {missed} miss it")
     machined = [
-        f"{quantity} {row['model']:.3g} with tip {tip}, {row['measured_mean']:.3g} measured"
+        f"{row.quantity} {row.model:.3g} with tip {row.tip}, {row.measured_mean:.3g} measured"
         for quantity in ("e", "mu", "Omega")
-        for tip, compared in rows.items()
-        if (row := compared.get((SETS[0], quantity)))
+        for row in rows[(rows.set == SETS[0]) & (rows.quantity == quantity)].itertuples()
     ]
-    if not parts:
-        return []
     return [
         f"Finite elements, both counted alike: {'; '.join(parts)}.",
         f"The machined rod: {'; '.join(machined)}.",
     ]
 
 
-def _model_sheet(rows: Mapping[str, Compared]) -> Sheet:
-    model, measured = ("model", "band", "verdict"), ("measured_mean", "measured_low", "measured_high")
-    table = [
-        (
-            *key,
-            *(row[name] for name in model),
-            *(rows["A"].get(key, {}).get(name) for name in model),
-            *(row[name] for name in measured),
-        )
-        for key, row in rows["B"].items()
-    ]
+def _model_sheet(rows: DataFrame) -> Sheet:
+    model, measured = ["model", "band", "verdict"], ["measured_mean", "measured_low", "measured_high"]
+    of_tip = {tip: same.set_index(["set", "quantity"]) for tip, same in rows.groupby("tip", sort=False)}
+    table = of_tip["B"][model].join([of_tip["A"][model].add_suffix(" A"), of_tip["B"][measured]])
     head = ("set", "quantity", "tip B", "band B", "verdict B", "tip A", "band A", "verdict A")
     caption = (
         "Finite elements with tip B, as the caption says, and with tip A; measured mean and its 95 % interval"
     )
-    return Sheet("tips", caption, Table.of((*head, "measured", "low", "high"), table))
+    cells = table.reset_index().astype(object).where(table.reset_index().notna(), None)
+    return Sheet("tips", caption, Table.of((*head, "measured", "low", "high"), cells.to_numpy().tolist()))
+
+
+def _scenes(request: Request) -> dict[str, Scene]:
+    """Return the sets of Table 3, one if quick, as the study of the sets runs them."""
+    return {name: set_job(name, request.quick).scene for name in (SETS[:1] if request.quick else SETS)}
+
+
+def _with_either_tip(name: str, scene: Scene) -> dict[str, tuple[Scene, str]]:
+    tip_a = replace(load(TIP_A.format(name)), accuracy=scene.accuracy, save=scene.save)
+    return {"B": (scene, "solid"), "A": (tip_a, "solid")}
+
+
+def _report(runs: Runs) -> StudyReport:
+    """Return the study: rotation by momentum alone, and finite elements with either tip."""
+    rows = DataFrame(
+        [
+            {**row, "set": name, "tip": tip}
+            for tip in TIPS
+            for name, by_tip in runs.items()
+            if tip in by_tip
+            for row in compare(by_tip[tip], tests_of(load(name)))
+            if row["quantity"] in COUNTED
+        ]
+    )
+    sentences = [*_momentum_sentences(), *(_model_sentences(rows) if len(rows) else [])]
+    return StudyReport(
+        "tip",
+        "Table 3: tip A or tip B?",
+        sentences,
+        sheets=[_momentum_sheet(), *([_model_sheet(rows)] if {*TIPS} <= {*rows.get("tip", ())} else [])],
+        assumptions=["Tip A is shown beside the thirteen sets, which have tip B, and counted nowhere."],
+        conclusions=[("", sentence) for sentence in sentences],
+    )
+
+
+_SWEEP = DeclaredSweep(_scenes, _with_either_tip, _report, simulate)
+plan, conclude = _SWEEP.plan, _SWEEP.conclude

@@ -77,8 +77,8 @@ def fit(unit: Array, values: Array) -> ResponseSurface:
         raise RunError(f"{runs} finished runs are too few for {inputs} uncertain inputs.")
     q, r = np.linalg.qr(terms)
     coefficients = np.linalg.solve(r, q.T @ values)
-    left_out = (values - terms @ coefficients) / (1 - np.sum(q**2, axis=1))[:, None]
-    return ResponseSurface(coefficients, order, np.sqrt(np.mean(left_out**2, axis=0)))
+    omitted = (values - terms @ coefficients) / (1 - np.sum(q**2, axis=1))[:, None]
+    return ResponseSurface(coefficients, order, np.sqrt(np.mean(omitted**2, axis=0)))
 
 
 def _terms(unit: Array, order: int) -> Array:
@@ -254,30 +254,30 @@ class Reach:
         ends = {0.0: "at its lower end", 1.0: "at its upper end"}
         where = ends.get(self.place, f"at {100 * self.place:.0f} % of its interval")
         unit = " rad/s" if self.missed.quantity == "Omega" else ""
-        told = (
+        causes = (
             f"{self.missed.quantity} is off by {self.missed.E:+.2g}{unit}; {self.name} {where} alone changes "
             f"it by {self.change:+.2g}, all inputs together by {self.low:+.2g} to {self.high:+.2g}"
         )
-        return f"{told}, which leaves {self.left:+.2g} to what is not among them" if self.left else told
+        return f"{causes}, which leaves {self.left:+.2g} to what is not among them" if self.left else causes
 
 
-def misses(found: ValidatedSet) -> list[Comparison]:
+def misses(validated: ValidatedSet) -> list[Comparison]:
     """Return comparisons of e, mu and Omega that show an error of the model or miss the scatter."""
     return [
-        c for c in found.comparisons if c.quantity in SHOWN and (c.in_error or c.scatter.startswith(MISS))
+        c for c in validated.comparisons if c.quantity in SHOWN and (c.in_error or c.scatter.startswith(MISS))
     ]
 
 
-def reach(found: ValidatedSet, missed: Comparison) -> Reach:
+def reach(validated: ValidatedSet, missed: Comparison) -> Reach:
     """Return what the inputs of a set, each inside its interval, can do about a missed quantity."""
-    at, nominal = NAMES.index(missed.quantity), nominal_place(found.name)
-    before = found.surface(nominal)[0, at]
+    at, nominal = NAMES.index(missed.quantity), nominal_place(validated.name)
+    before = validated.surface(nominal)[0, at]
     single = np.repeat(nominal, len(UNCERTAIN_INPUTS) * len(PLACES), axis=0)
     for i in range(len(UNCERTAIN_INPUTS)):
         single[i * len(PLACES) : (i + 1) * len(PLACES), i] = PLACES
-    changes = found.surface(single)[:, at] - before
+    changes = validated.surface(single)[:, at] - before
     best = int(np.abs(missed.E + changes).argmin())
-    every = found.all_inputs[:, at] - before
+    every = validated.all_inputs[:, at] - before
     return Reach(
         missed,
         UNCERTAIN_INPUTS[best // len(PLACES)].name,
@@ -288,7 +288,7 @@ def reach(found: ValidatedSet, missed: Comparison) -> Reach:
     )
 
 
-def reach_sentences(found: ValidatedSet) -> list[str]:
+def reach_sentences(validated: ValidatedSet) -> list[str]:
     """Return one sentence on the missed quantities of a set; none where nothing is missed."""
-    parts = [reach(found, missed).sentence for missed in misses(found)]
-    return [f"{found.name}: {'; '.join(parts)}."] if parts else []
+    parts = [reach(validated, missed).sentence for missed in misses(validated)]
+    return [f"{validated.name}: {'; '.join(parts)}."] if parts else []

@@ -48,7 +48,7 @@ def validated_sets(request: Request, results: JobResults) -> list[validated.Vali
         )
         for name in asked_sets(request)
     ]
-    return [one for one in sets if one]
+    return [compared for compared in sets if compared]
 
 
 def _sample(name: str, request: Request) -> list[Job]:
