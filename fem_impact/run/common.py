@@ -54,7 +54,7 @@ def strikes_again(case: Case, V_n: float, Omega: float) -> str:
     return f"The rod turns another part down faster than it rises, so that it strikes again {when}."
 
 
-def flow_left_out(case: Case) -> str:
+def flow_omitted(case: Case) -> str:
     """Return what a model without a mesh leaves out of a body that would yield elsewhere, else nothing."""
     gives = gives_elsewhere(case.bodies)
     return f"Left out: {gives}." if gives else ""

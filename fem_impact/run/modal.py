@@ -48,7 +48,7 @@ def reduce(case: Case, result: ModalResult) -> Outcome:
     """Return the Outcome of a modal impact."""
     barrier, base = case.scene.barrier, (result.V_bn, result.V_bt)
     turns = barrier.inertia is not None
-    omitted = common.flow_left_out(case)
+    omitted = common.flow_omitted(case)
     end = ImpactEnd(
         V_n=result.V_n,
         V_t=result.V_t,

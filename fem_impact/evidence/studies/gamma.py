@@ -38,12 +38,7 @@ from rigid import LIMIT
 from rigid.slenderness import EXPONENT
 
 SETS = ("t3-machined", "t4", "t5b")  # tip B at 45 degrees, one of each rod
-FEWER = (
-    15.0,
-    LIMIT,
-    57.3,
-    90.0,
-)  # gammas where diameters, speeds and the reading of the strength are changed
+FEWER = (15.0, LIMIT, 57.3, 90.0)  # gammas of rods with another diameter, speed or flow curve
 OTHER_DIAMETERS, OTHER_SPEEDS = (0.010, 0.030), (1.3, 4.2)  # m and m/s, beside those of the curve
 OTHER_ANGLES = (5.0, 15.0, 25.0, 35.0, 60.0, 75.0)  # degrees, beside that of the curve
 
@@ -96,12 +91,12 @@ def measured(name: str) -> DroppedRod:
     return DroppedRod(rod.length, angle, scene.surface.friction, True, rod.diameter, rod.tip_radius, speed)
 
 
-def over_angles(rod: DroppedRod, quick: bool) -> list[DroppedRod]:
-    """Return rods like a given one of every size and angle; the paper's rods are among those of 19 mm."""
+def over_angles(quick: bool) -> list[DroppedRod]:
+    """Return elastic rods of every size and angle; the paper's rods are among those of 19 mm."""
     lengths = {d: [length_of(g, d) for g in GAMMAS[quick]] for d in DIAMETERS[quick]}
     lengths[BODY] += PAPER_RODS.values()
     return [
-        replace(rod, length=length, diameter=d, angle=angle)
+        DroppedRod(length, angle, diameter=d)
         for d in lengths
         for length in sorted(lengths[d])
         for angle in ANGLES[quick]
@@ -113,20 +108,7 @@ def families(quick: bool) -> dict[str, list[RodRun]]:
     line, places = curve(quick), PLACES[quick]
     lengths = sorted({*map(length_of, REDUCED[quick]), *(rod.length for rod in line)})
     states = sorted({(rod.friction, rod.yields) for rod in line})
-    angled = {
-        runs.HERTZ[0]: DroppedRod(0.1, tip_radius=TIP),
-        runs.HERTZ[1]: DroppedRod(0.1),
-        runs.YIELDING: DroppedRod(0.1, yields=True),
-        runs.SPRING: DroppedRod(0.1),
-    }
-    meshed = {
-        runs.BY_MESHES[state]: [
-            DroppedRod(length_of(g), angle, STATES[state], True)
-            for g in MESHED_GAMMAS[quick]
-            for angle in MESHED_ANGLES[quick]
-        ]
-        for state in SURFACES[quick]
-    } | {runs.ENDS: [DroppedRod(length_of(g)) for g in END_GAMMAS[quick]]}
+    inclined = over_angles(quick)
     return {
         runs.CURVE: [RodRun(rod, "solid", places) for rod in line],
         runs.OTHERS: [] if quick else [RodRun(rod, "solid", places) for rod in other_inputs()],
@@ -135,11 +117,19 @@ def families(quick: bool) -> dict[str, list[RodRun]]:
         runs.BLIND: [
             RodRun(DroppedRod(l, friction=float(f))) for l in PAPER_RODS.values() for f in FRICTIONS[quick]
         ],
+        runs.HERTZ[0]: [RodRun(replace(rod, tip_radius=TIP)) for rod in inclined],
+        runs.HERTZ[1]: [RodRun(rod) for rod in inclined],
+        runs.YIELDING: [RodRun(replace(rod, yields=True)) for rod in inclined],
+        runs.SPRING: [RodRun(rod, "spring") for rod in inclined],
         **{
-            name: [RodRun(r, "spring" if name == runs.SPRING else "modal") for r in over_angles(rod, quick)]
-            for name, rod in angled.items()
+            runs.BY_MESHES[state]: [
+                RodRun(DroppedRod(length_of(g), angle, STATES[state], True), "pair")
+                for g in MESHED_GAMMAS[quick]
+                for angle in MESHED_ANGLES[quick]
+            ]
+            for state in SURFACES[quick]
         },
-        **{name: [RodRun(rod, "pair") for rod in rods] for name, rods in meshed.items()},
+        runs.ENDS: [RodRun(DroppedRod(length_of(g)), "pair") for g in END_GAMMAS[quick]],
     }
 
 

@@ -1,6 +1,6 @@
 """What the study of slenderness says: on vibration, on the change of e by it, and what the limit is worth."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -36,18 +36,17 @@ def findings(
     ``upright`` the yielding rods by modes up to `STEEPEST`, with ``e_static_give``.
     """
     points = table[table.way == "solid"]
-    by_kind = {kind: points[points.contact == kind] for kind in PLAIN}
     body = dict(iter(rods[rods.diameter_m == BODY].groupby("family", sort=False)))
     by_picture = {
         "vibration": [
             *what_the_limit_says(points),
-            *(sentence for of in by_kind.values() for sentence in where_it_peaks(of)),
-            *(sentence for of in by_kind.values() for sentence in modes_less_elements(of)),
+            *(sentence for kind in PLAIN for sentence in where_it_peaks(points, kind)),
+            *(sentence for kind in PLAIN for sentence in modes_less_elements(points, kind)),
             how_sure(points),
         ],
         "onset": [
             *answer(body),
-            *meshed_onsets(body, [name for name in runs.BY_MESHES.values() if (table.family == name).any()]),
+            *meshed_onsets(body),
             *confirmed(table[table.family == runs.ENDS], angles[angles.family == runs.HERTZ[1]]),
         ],
         "angles": spread(body),
@@ -61,11 +60,6 @@ def findings(
 def plain_line(points: DataFrame, kind: str) -> DataFrame:
     """Return the points of the curve in the state of `PLAIN`, by slenderness."""
     return among(points, family=runs.CURVE, contact=kind, f=STATES[PLAIN[kind]])
-
-
-def known_points(points: DataFrame) -> list[Any]:
-    """Return the points whose vibration is known, each with the columns as attributes."""
-    return list(points[points[VIBRATION].notna()].itertuples())
 
 
 def share(point: Any) -> str:
@@ -83,8 +77,8 @@ def what_the_limit_says(points: DataFrame) -> list[str]:
     rigid = ", ".join(name for name, length in PAPER_RODS.items() if DroppedRod(length).gamma <= LIMIT)
     sentences = [f"The limit gamma <= {LIMIT} calls the {rigid} rod rigid and the longer ones not."]
     for kind, state in PLAIN.items():
-        line = known_points(plain_line(points, kind))
-        for p in [p for p in line if abs(p.gamma - LIMIT) < 1e-6]:
+        line = plain_line(points, kind).dropna(subset=[VIBRATION])
+        for p in line[(line.gamma - LIMIT).abs() < 1e-6].itertuples():
             change = f" and e is {p.e_edge:.3f} where a rod that cannot vibrate has {p.e_edge_rigid:.3f}"
             sentences.append(
                 f"{kind.capitalize()}, {state}: vibration there takes {share(p)} of E_0"
@@ -93,22 +87,16 @@ def what_the_limit_says(points: DataFrame) -> list[str]:
     return [" ".join(sentences)] if len(sentences) > 1 else []
 
 
-def _passes(points: Sequence[Any]) -> str:
+def _passes(line: DataFrame) -> str:
     """Return from which slenderness on vibration takes more than `ONE_PERCENT`, by linear interpolation."""
-    first = points[0]
-    if first.E_vib_over_E_0 > ONE_PERCENT:
-        return (
-            f"it takes more than {ONE_PERCENT:.0%} of E_0 from gamma {first.gamma:.0f} on, the shortest rod"
-        )
-    gamma = crossing(DataFrame(points), ONE_PERCENT, VIBRATION)
-    if gamma is None:
-        return f"it never reaches {ONE_PERCENT:.0%} of E_0"
-    return f"it passes {ONE_PERCENT:.0%} of E_0 at gamma {gamma:.1f}"
+    gamma, part = crossing(line, ONE_PERCENT, VIBRATION), f"{ONE_PERCENT:.0%} of E_0"
+    if line[VIBRATION].iloc[0] > ONE_PERCENT:
+        return f"it takes more than {part} from gamma {line.gamma.iloc[0]:.0f} on, the shortest rod"
+    return f"it never reaches {part}" if gamma is None else f"it passes {part} at gamma {gamma:.1f}"
 
 
-def where_it_peaks(points: DataFrame) -> list[str]:
+def where_it_peaks(points: DataFrame, kind: str) -> list[str]:
     """Return the slenderness of most vibration, and what makes it fall beyond."""
-    kind = points.contact.iloc[0]
     line = plain_line(points, kind)
     line = line[line[VIBRATION].notna() & line[f"{VIBRATION}_own_mesh"].notna()].reset_index()
     if len(line) < 2:
@@ -134,14 +122,14 @@ def where_it_peaks(points: DataFrame) -> list[str]:
     ]
 
 
-def modes_less_elements(points: DataFrame) -> list[str]:
+def modes_less_elements(points: DataFrame, kind: str) -> list[str]:
     """Return how far the modal fidelity lies from the points of the curve of a kind of contact."""
-    line = points[points.family == runs.CURVE]
+    line = among(points, family=runs.CURVE, contact=kind)
     apart = (line.by_modes - line[VIBRATION]).dropna().tolist()
     if not apart:
         return []
     return [
-        f"{line.contact.iloc[0].capitalize()} tips: vibration by modes less by finite elements, of E_0: root "
+        f"{kind.capitalize()} tips: vibration by modes less by finite elements, of E_0: root "
         f"mean square {100 * np.linalg.norm(apart) / len(apart) ** 0.5:.2g} %, largest "
         f"{100 * max(apart, key=abs):+.2g} %, over {len(apart)} points of the curve."
     ]
@@ -173,17 +161,15 @@ def answer(body: Families) -> list[str]:
     ]
 
 
-def meshed_onsets(body: Families, names: Sequence[str]) -> list[str]:
+def meshed_onsets(body: Families) -> list[str]:
     """Return, per family by finite elements, where the error passes each level, with the band of that."""
     sentences = []
-    for name in names:
-        if name not in body:
-            sentences.append(f"{name}, by finite elements: no rod was computed (see what failed).")
+    for name, rods in body.items():
+        if name not in runs.BY_MESHES.values():
             continue
-        rods = body[name]
         passed = [f"{level:.0%} {where}" for level in LEVELS if (where := _where(rods, level))]
         ends = [
-            f"{r.error_of_e:.3f} ± {r.error_high - r.error_of_e:.3f} at gamma {r.gamma:.0f}"
+            f"{r.error_of_e:.3f} ± {r.error_of_e_band:.3f} at gamma {r.gamma:.0f}"
             for r in rods.iloc[[0, -1]].itertuples()
         ]
         sentences.append(
@@ -207,12 +193,6 @@ def _band(rods: DataFrame, level: float, x: str) -> str:
     early, late = (crossing(rods, level, measure, x) for measure in ("error_high", "error_low"))
     first = "the first rod" if early is None else f"{early:.3g}"
     return f" ({first} to {'beyond the last' if late is None else f'{late:.3g}'})"
-
-
-def _passed(rods: DataFrame, measure: str = "error_of_e") -> str:
-    """Return from which slenderness a measure exceeds each level."""
-    onsets = [(level, crossing(rods, level, measure)) for level in LEVELS]
-    return ", ".join(f"{level:.0%} beyond gamma {gamma:.1f}" for level, gamma in onsets if gamma is not None)
 
 
 def confirmed(ends: DataFrame, by_modes: DataFrame) -> list[str]:
@@ -295,20 +275,15 @@ def independent(rods: DataFrame) -> list[str]:
     ]
 
 
-def over_friction(table: DataFrame, length: float) -> DataFrame:
-    """Return the elastic rods of a length, m, over friction, without the failed ones."""
-    return table[(table.family == runs.BLIND) & (table.length_m == length) & table[VIBRATION].notna()]
-
-
 def blind_directions(table: DataFrame) -> list[str]:
     """Return mu* of the paper's rods and the friction at which they vibrate least."""
     sentences = []
+    over_friction = table[(table.family == runs.BLIND) & table[VIBRATION].notna()]
     for rod, length in PAPER_RODS.items():
-        runs = over_friction(table, length)
-        if not runs.empty:
-            least = runs.loc[runs[VIBRATION].idxmin()]
+        of_rod = over_friction[over_friction.length_m == length]
+        for least in of_rod.nsmallest(1, VIBRATION).itertuples():
             sentences.append(
                 f"{rod} rod at 45 degrees: mu* = {blind_ratio(DroppedRod(length)):.2f}; elastic drops "
-                f"vibrate least at f = {least.f:.2f} ({100 * least[VIBRATION]:.2g} % of E_0)."
+                f"vibrate least at f = {least.f:.2f} ({100 * least.E_vib_over_E_0:.2g} % of E_0)."
             )
     return sentences

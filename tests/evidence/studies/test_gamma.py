@@ -390,5 +390,5 @@ def test_the_onset_has_the_ends_of_its_band():
     some = rods(*(angles_of(gamma, 0.019, 0.01 * (gamma - 10.0), 0.02) for gamma in (10.0, 20.0, 30.0)))
     onsets = [crossing(some, 0.1, measure) for measure in ("error_high", "error_of_e", "error_low")]
     assert onsets == pytest.approx([18.0, 20.0, 22.0])
-    (sentence,) = meshed_onsets({"any": some}, ["any"])
+    (sentence,) = meshed_onsets({BY_MESHES["machined"]: some})
     assert "10% beyond gamma 20.0 (18 to 22)" in sentence
