@@ -140,13 +140,13 @@ class Reduction:
         shown = () if withheld or cut else unusual(origin, self.motion, self.restitution, energy)
         again = strikes_again(case, end.leaving, end.Omega) if end.finished and not failed else ""
         alone = case.scene.impact.until == FIRST
-        told = named(again) if alone and not end.other_end else ""
-        next_one = told or (end.reason if alone and again else "")
+        named_again = named(again) if alone and not end.other_end else ""
+        next_one = named_again or (end.reason if alone and again else "")
         of_result = limitations("result", *shown, gravity, next_one)
         outcome = Outcome(
             provenance=origin,
             validity=_validity(
-                end, failed, told, unmeshed, case.said((*limited, *case.limitations, *of_result))
+                end, failed, named_again, unmeshed, case.said((*limited, *case.limitations, *of_result))
             ),
             motion=self.motion,
             barrier=self.barrier,

@@ -88,53 +88,55 @@ class Known:
 
 def with_spread(case: Case, strikes: Strikes, meshed: Sequence[Doubt | None] = ()) -> Strikes:
     """Return strikes with what is certain of them; ``meshed`` is what levels of meshes leave open of each."""
-    own = or_none(strikes.each)
-    if own is None:
+    followed = or_none(strikes.each)
+    if followed is None:
         return strikes
     try:
-        each = _each(case, own, meshed)
-        if not (_varies(case) or any(one.doubt for one in each)):
+        each = _each(case, followed, meshed)
+        if not (_varies(case) or any(strike.doubt for strike in each)):
             return _without(strikes, EXACT)
         plain = _run(case.scene, each)
         runs = [_run(scene, each, at) for scene, at in _drawn(case)]
     except SceneError as error:
         why = f"rigid theory does not follow the scene: its {error.key} {error.problem.rstrip('.')}"
         return _without(strikes, Unknown(why))
-    certain, length = _common([own, plain, *runs]), case.contact.body.length
+    certain, length = _common([followed, plain, *runs]), case.contact.body.length
     ends = [other_end(run, length) for run in runs]
     # a strike of a part that the run's own is not of comes by the law of rigid runs, without a force
-    forces = [one.force / one.impulse_n for one in own[:SEEN] if one.force and one.impulse_n]
-    push = max(forces) if len(forces) == len(own[:SEEN]) else 0.0
-    first, rubbed = other_end(plain, length), sum(one.friction for one in plain)
-    later = known(strikes.friction) - sum(one.friction for one in own[:SEEN])
+    forces = [
+        strike.force / strike.impulse_n for strike in followed[:SEEN] if strike.force and strike.impulse_n
+    ]
+    push = max(forces) if len(forces) == len(followed[:SEEN]) else 0.0
+    first, rubbed = other_end(plain, length), sum(strike.friction for strike in plain)
+    later = known(strikes.friction) - sum(strike.friction for strike in followed[:SEEN])
     return replace(
         strikes,
         certain=certain,
         spread=tuple(
-            _spread(number, struck, *([own[number - 1], plain[number - 1]] if number <= certain else []))
+            _spread(number, struck, *([followed[number - 1], plain[number - 1]] if number <= certain else []))
             for number, struck in _by_number(runs)
         ),
         holds=_holds(case, each),
-        hardest_agree=_agree(own, runs, lambda one: one.lost),
-        force_agree=_agree(own, runs, lambda one: one.force or one.impulse_n * push) if push else FORCELESS,
-        heat_agree=_agree(own, runs, lambda one: one.friction),
-        friction_half=later + _half([sum(one.friction for one in run) for run in runs], rubbed),
+        hardest_agree=_agree(followed, runs, lambda s: s.lost),
+        force_agree=_agree(followed, runs, lambda s: s.force or s.impulse_n * push) if push else FORCELESS,
+        heat_agree=_agree(followed, runs, lambda s: s.friction),
+        friction_half=later + _half([sum(strike.friction for strike in run) for run in runs], rubbed),
         other_end_low=_moved(strikes.other_end, first, _quantile(ends, INNER[0])),
         other_end_high=_moved(strikes.other_end, first, _quantile(ends, INNER[1])),
     )
 
 
 def _without(strikes: Strikes, why: Unknown) -> Strikes:
-    told = "certain", "spread", "holds", "friction_half", "other_end_low", "other_end_high"
+    names = "certain", "spread", "holds", "friction_half", "other_end_low", "other_end_high"
     agree = "hardest_agree", "force_agree", "heat_agree"
-    unknown: dict[str, Any] = dict.fromkeys((*told, *agree), why)
+    unknown: dict[str, Any] = dict.fromkeys((*names, *agree), why)
     return replace(strikes, **unknown)
 
 
-def _each(case: Case, own: Sequence[StrikeRecord], meshed: Sequence[Doubt | None] = ()) -> list[Known]:
+def _each(case: Case, followed: Sequence[StrikeRecord], meshed: Sequence[Doubt | None] = ()) -> list[Known]:
     """Return the first strikes with those of the law and with what their models leave open."""
-    found: list[Known] = []
-    for number, one in enumerate(own[:SEEN]):
+    records: list[Known] = []
+    for number, one in enumerate(followed[:SEEN]):
         body = Followed.of(case)
         body.upto = 1
         begin = body.touching(one.alpha, one.v_n, one.v_t, one.omega)
@@ -144,10 +146,10 @@ def _each(case: Case, own: Sequence[StrikeRecord], meshed: Sequence[Doubt | None
             doubt = _by_stored(case, body, begin, one)
         elif one.fidelity == "solid":
             doubt = meshed[number] if number < len(meshed) else None
-        elif finer := [old for old in found if old.own.fidelity != "rigid"]:
+        elif finer := [old for old in records if old.own.fidelity != "rigid"]:
             doubt = _apart(finer[-1], one)
-        found.append(Known(one, body.each[0], doubt))
-    return found
+        records.append(Known(one, body.each[0], doubt))
+    return records
 
 
 def _apart(finer: Known, of: StrikeRecord) -> Doubt:
@@ -262,11 +264,13 @@ def _run(scene: Scene, each: Sequence[Known], at: Sequence[Doubt] = ()) -> list[
             left.clear()  # from here on another sequence
             return strike
         one, at = left.pop(0)
-        doubt, own, law = one.doubt or KNOWN, one.own, one.law
+        doubt, record, law = one.doubt or KNOWN, one.own, one.law
         return strike.having(
-            max(0.0, strike.e + own.e - law.e + at.e * doubt.e),
-            strike.mu + own.mu - law.mu + at.mu * doubt.mu,
-            max(0.0, strike.friction + (own.friction - law.friction + at.friction * doubt.friction) / mass),
+            max(0.0, strike.e + record.e - law.e + at.e * doubt.e),
+            strike.mu + record.mu - law.mu + at.mu * doubt.mu,
+            max(
+                0.0, strike.friction + (record.friction - law.friction + at.friction * doubt.friction) / mass
+            ),
             body.pull.k2,
         )
 
@@ -285,15 +289,15 @@ def _divided(one: StrikeRecord, of: Known, at: Doubt) -> StrikeRecord:
     Vibration is the same share of the energy before, the force is as large over the impulse; what is not
     known of both is added, and plastic work takes what they leave of the loss.
     """
-    own, doubt = of.own, of.doubt or KNOWN
-    share, push = one.before / own.before, one.impulse_n / (own.impulse_n or one.impulse_n)
-    vibration = max(0.0, own.vibration * share + at.vibration * doubt.vibration)
-    rest = share * (own.lost - own.friction - own.vibration - own.plastic)
+    record, doubt = of.own, of.doubt or KNOWN
+    share, push = one.before / record.before, one.impulse_n / (record.impulse_n or one.impulse_n)
+    vibration = max(0.0, record.vibration * share + at.vibration * doubt.vibration)
+    rest = share * (record.lost - record.friction - record.vibration - record.plastic)
     return replace(
         one,
         vibration=vibration,
         plastic=one.lost - one.friction - vibration - rest,
-        force=own.force and own.force * push * exp(at.force * doubt.force),
+        force=record.force and record.force * push * exp(at.force * doubt.force),
     )
 
 
@@ -330,11 +334,13 @@ def _by_number(runs: Sequence[Sequence[StrikeRecord]]) -> Iterator[tuple[int, li
 
 
 def _agree(
-    own: Sequence[StrikeRecord], runs: Sequence[Sequence[StrikeRecord]], size: Callable[[StrikeRecord], float]
+    followed: Sequence[StrikeRecord],
+    runs: Sequence[Sequence[StrikeRecord]],
+    size: Callable[[StrikeRecord], float],
 ) -> int:
-    """Return how many runs have the same strike as the hardest by a size as the run's ``own``."""
-    hardest = [int(np.argmax([size(one) for one in run[:SEEN]])) for run in (own, *runs)]
-    return sum(one == hardest[0] for one in hardest[1:])
+    """Return how many runs have the same strike as the hardest by a size as the run's ``followed``."""
+    hardest = [int(np.argmax([size(strike) for strike in run[:SEEN]])) for run in (followed, *runs)]
+    return sum(strike == hardest[0] for strike in hardest[1:])
 
 
 def _half(values: Sequence[float], plain: float) -> float:
@@ -345,18 +351,18 @@ def _half(values: Sequence[float], plain: float) -> float:
 def _spread(
     number: int,
     struck: Sequence[StrikeRecord],
-    own: StrikeRecord | None = None,
+    record: StrikeRecord | None = None,
     plain: StrikeRecord | None = None,
 ) -> StrikeSpread:
     """Return what strikes in which of the runs as the strike of a ``number``, from 1.
 
-    Where it is of the same part in all of them, that lies about the run's ``own``, whose numbers have
+    Where it is of the same part in all of them, that lies about the run's ``record``, whose numbers have
     half-widths: the ways from the ``plain`` sequence, in which nothing is moved.
     """
     parts = Counter(one.part for one in struck)
     time, approach = (
         np.quantile([getattr(one, key) for one in struck], INNER)
-        + (getattr(own, key) - getattr(plain, key) if own and plain else 0.0)
+        + (getattr(record, key) - getattr(plain, key) if record and plain else 0.0)
         for key in ("time", "approach")
     )
     return StrikeSpread(
@@ -379,10 +385,10 @@ def _spread(
     )
 
 
-def _moved(own: Num, plain: Num, to: Num) -> Num:
+def _moved(value: Num, plain: Num, to: Num) -> Num:
     """Return a ratio moved as far as from that of the plain sequence ``to`` another, or why it is unknown."""
-    missing = next((one for one in (own, plain, to) if isinstance(one, Unknown)), None)
-    return missing if missing is not None else known(own) + known(to) - known(plain)
+    missing = next((one for one in (value, plain, to) if isinstance(one, Unknown)), None)
+    return missing if missing is not None else known(value) + known(to) - known(plain)
 
 
 def _quantile(ratios: Sequence[Num], share: float) -> Num:

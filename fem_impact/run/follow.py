@@ -36,9 +36,9 @@ def with_strikes(
 
     ``end`` is that of finite elements, whose later strikes tell their progress as the ``options`` say.
     """
-    strikes, told = _strikes_of(case, outcome, end, options)
+    strikes, sentences = _strikes_of(case, outcome, end, options)
     strikes = with_spread(case, strikes)
-    validity = replace(outcome.validity, limitations=(*outcome.validity.limitations, *told))
+    validity = replace(outcome.validity, limitations=(*outcome.validity.limitations, *sentences))
     return replace(outcome, strikes=strikes, validity=validity)
 
 

@@ -159,8 +159,8 @@ class Stored:
         """
         known, errors, ratios, widest = self._judged[of]
         halves = np.sort(ratios * _without_each(self._near(place)[known] + COMMON / len(errors), errors))
-        own = float(halves[min(ceil(HELD * (len(errors) + 1)), len(errors)) - 1])
-        return own + far * max(widest - own, 0.0)
+        typical = float(halves[min(ceil(HELD * (len(errors) + 1)), len(errors)) - 1])
+        return typical + far * max(widest - typical, 0.0)
 
     def far(self, place: Array) -> float:
         """Return how far a place (6,) lies beyond all stored ones, from 0 to 1 at `NEAR` spreads."""
@@ -268,13 +268,13 @@ def _beyond_friction(outcome: Outcome) -> float:
 
 def sentence(place: Place, outcome: Outcome) -> str:
     """Say what the half-widths are, and where they are wider as the scene is unlike the stored ones."""
-    told = (
+    text = (
         f"Half-widths hold nine in ten results of finite elements, by {len(stored().places)} scenes that "
         "both models computed; they say nothing of the change of a number by vibration."
     )
     in_what, far = unlike(place, outcome), 100 * farness(place, outcome)
     wider = "the widest count" if far == 100 else f"wider by {far:.2g} % of the way to the widest"
-    return f"{told} None of them is like this one in {', '.join(in_what)}: {wider}." if in_what else told
+    return f"{text} None of them is like this one in {', '.join(in_what)}: {wider}." if in_what else text
 
 
 @cache

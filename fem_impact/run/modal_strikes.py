@@ -138,16 +138,16 @@ class ModalCourse:
         self.followed.gravity += self.followed.work(self.state, before)
         self.swing_on(before)
         turn, omega, taken = before.alpha - self.case.scene.impact.angle, self.rod.omega, self.vibration
-        here = Arrival(
+        arrival = Arrival(
             *(before.V_n, before.V_t, before.Omega, turn, self.q, self.rate), before.along, self.dents
         )
         counts = len(self.followed.each) < SEEN and taken > LEAST * self.followed.kinetic(before)
         others = [
-            replace(here, q=c * self.q + s * self.rate / omega, rate=c * self.rate - s * omega * self.q)
+            replace(arrival, q=c * self.q + s * self.rate / omega, rate=c * self.rate - s * omega * self.q)
             for c, s in (QUARTERS if counts else ())
         ]
-        own, *moved = (closed(self.case, arrival=one, alone=False) for one in (here, *others))
-        self._enter(before, own, taken, moved)
+        nominal, *moved = (closed(self.case, arrival=one, alone=False) for one in (arrival, *others))
+        self._enter(before, nominal, taken, moved)
 
     def _touch(self) -> FlightState | None:
         """Return the rigid motion in which the vibrating rod touches next.
@@ -197,13 +197,13 @@ class ModalCourse:
         if result.met:
             self.followed.again.add(len(self.followed.each) + 1)
         self.dents = (*(dent for dent in self.dents if dent not in result.met), *result.dents)
-        own = self._record(before, result, taken)
-        others = [self._record(before, one, taken) for one in moved]
+        record = self._record(before, result, taken)
+        others = [self._record(before, other, taken) for other in moved]
         swings = {
-            f"{name}_phase": max(abs(getattr(one, name) - getattr(own, name)) for one in others)
+            f"{name}_phase": max(abs(getattr(other, name) - getattr(record, name)) for other in others)
             for name in (PHASED if others else ())
         }
-        self.followed.each.append(replace(own, **swings))
+        self.followed.each.append(replace(record, **swings))
         self.state, self.rod, self.q, self.rate = after, result.rod, last.q, last.rate
         self.strikes, self.finished, self.damped = self.strikes + 1, result.finished, 0.0
         self.swing_on(self.followed.leave_dent(after))

@@ -127,8 +127,8 @@ def _compute(case: Case, options: RunOptions) -> tuple[Outcome, ContactRecord | 
         case = _held_ready(case)
         end = solve(case, replace(options, stamp=stamp(case.scene)))
         outcome = _followed(case, reduce(end), end, options)
-    told = texts(outcome.validity.limitations, "resolution")
-    resolved = not any(sentence.startswith(NOT_RESOLVED) for sentence in told)
+    sentences = texts(outcome.validity.limitations, "resolution")
+    resolved = not any(sentence.startswith(NOT_RESOLVED) for sentence in sentences)
     return outcome, replace(end.record, resolved=resolved)
 
 

@@ -208,9 +208,9 @@ class SolidCourse:
         free = np.flatnonzero(~last.model.geometry.rod.mesh.is_hanging)
         nearest = [int(np.hypot(*(x[free][:, [0, 2]] - skin(rod.sites, s, 0.0)).T).argmin()) for s in sites]
         shape = turned(modes.shape[last.model.layout.rod[free[nearest]]], back)
-        own = np.concatenate([shape[:, 0], shape[:, 2]])
+        shapes = np.concatenate([shape[:, 0], shape[:, 2]])
         other = np.concatenate([rod.sites.along_t, rod.sites.along_n])
-        alike = (own / np.linalg.norm(own, axis=0)).T @ (other / np.linalg.norm(other, axis=0))
+        alike = (shapes / np.linalg.norm(shapes, axis=0)).T @ (other / np.linalg.norm(other, axis=0))
         alike[np.abs(np.log(rod.omega / modes.omega[:, None])) > NEAR] = 0.0
         q, rate = np.zeros(len(rod.omega)), np.zeros(len(rod.omega))
         for i, row in enumerate(alike):
@@ -231,8 +231,8 @@ class SolidCourse:
 
     def _touch(self) -> FlightState | None:
         """Return the rigid motion in which the rod touches next."""
-        found = next_touch(self.body.shape, self.state, self.body.pull.g_n)
-        return None if found is None else self.state.flown(found[0], self.body.pull.g_n, self.body.pull.g_t)
+        touch = next_touch(self.body.shape, self.state, self.body.pull.g_n)
+        return None if touch is None else self.state.flown(touch[0], self.body.pull.g_n, self.body.pull.g_t)
 
     def _beside(self, later: LaterStrike) -> float:
         """Return how far, m, a place lies beside what may touch of the rod's mesh; 0 or less on it."""
@@ -250,10 +250,10 @@ class SolidCourse:
         zones = self.case.zones
         accuracy = replace(self.case.scene.accuracy, tip_size=zones.tip_size, barrier_size=zones.barrier_size)
         scene = replace(self.case.scene, accuracy=accuracy, effects=self.case.active)
-        here = expected_record(_bodies(self.case, later), zones.tip_size, zones.barrier_size)
+        expected = expected_record(_bodies(self.case, later), zones.tip_size, zones.barrier_size)
         assert self.case.record is not None, "a rod that strikes again has its zones from a record"
-        dent = self._dent(before, here)
-        record = replace(here, rod=self.case.record.rod)
+        dent = self._dent(before, expected)
+        record = replace(expected, rod=self.case.record.rod)
         case = Case(scene, "solid", record, later, dent.case.zones if dent else None)
         model = build(case, mesh=self.last.model.geometry.rod)
         view = later_view(model, self.last, before.alpha - self.begun)
@@ -275,13 +275,13 @@ class SolidCourse:
         self._keep_dent(before, case, dent)
         return True
 
-    def _dent(self, before: FlightState, here: ContactRecord) -> StruckDent | None:
-        """Return the dent on which a strike lands that may touch ``here``; None: the surface is undented."""
-        if here.barrier is None:
+    def _dent(self, before: FlightState, expected: ContactRecord) -> StruckDent | None:
+        """Return the dent on which a strike lands that may touch ``expected``; None: there is none."""
+        if expected.barrier is None:
             return None
         size, lowest = self.last.model.geometry.barrier_size, before.along - self.body.comes(before)[1]
         for dent in self.dents:
-            place = here.barrier.touched + np.array([lowest - dent.along, 0.0, 0.0])
+            place = expected.barrier.touched + np.array([lowest - dent.along, 0.0, 0.0])
             if not (_away(dent.pressed, place) < size).any():
                 continue
             block = dent.end.model.geometry.barrier

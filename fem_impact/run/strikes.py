@@ -121,7 +121,7 @@ class Followed:
         mass = self.case.contact.body.mass
         if self.missing == 0:
             return begin, Finish.COUNTED
-        found = sequence(
+        course = sequence(
             self.shape,
             begin,
             self.pull,
@@ -133,13 +133,13 @@ class Followed:
             strong=strong,
             moved=self.moved,
         )
-        self.each += [self._record(strike) for strike in found.strikes]
-        self.gravity += self.work(begin, found.end)
-        self.settled += mass * (sum(one.normal + one.friction for one in found.small) + found.settled)
-        self.heat += mass * found.held_heat
-        self.level += sum(one.before.line > 0.0 for one in found.strikes)
-        self.lossless += sum(one.e_energetic == 1.0 for one in found.strikes)
-        return found.end, found.finish
+        self.each += [self._record(strike) for strike in course.strikes]
+        self.gravity += self.work(begin, course.end)
+        self.settled += mass * (sum(one.normal + one.friction for one in course.small) + course.settled)
+        self.heat += mass * course.held_heat
+        self.level += sum(one.before.line > 0.0 for one in course.strikes)
+        self.lossless += sum(one.e_energetic == 1.0 for one in course.strikes)
+        return course.end, course.finish
 
     def doubts(self) -> tuple[str, ...]:
         """Return what is to be told of restitutions that follow from the law of a round contact."""

@@ -84,11 +84,11 @@ class MeanTests:
 
     def covariance(self, names: Sequence[str]) -> Array:
         """Return the covariance (k, k) of means; those whose correlation is not stated have none."""
-        stated = [self.means[name] for name in names]
-        r = np.array([[one.correlation.get(name, 0.0) for name in names] for one in stated])
+        statistics = [self.means[name] for name in names]
+        r = np.array([[statistic.correlation.get(name, 0.0) for name in names] for statistic in statistics])
         r = np.where(r == 0, r.T, r)  # stated in one of the two rows
         np.fill_diagonal(r, 1.0)
-        u = np.sqrt([one.sd**2 / one.n + one.systematic**2 for one in stated])
+        u = np.sqrt([statistic.sd**2 / statistic.n + statistic.systematic**2 for statistic in statistics])
         return np.asarray(r * np.outer(u, u))
 
 

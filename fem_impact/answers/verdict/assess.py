@@ -152,7 +152,7 @@ def assess(
     steps += [f"the reduced model: {_told(quick)}: {quick.answer(tolerance)}"] if quick else []
     for step in steps:
         tell(step)
-    here, used, more = quick, "modal", finite_elements(budget_s)
+    effect, used, more = quick, "modal", finite_elements(budget_s)
     # where nothing like the scene was computed both ways, the reduced model's error is not known well enough
     open_still = quick is None or not quick.alike or quick.answer(tolerance) == "undecided"
     if fidelity == "solid" or (fidelity == "auto" and open_still):
@@ -162,31 +162,31 @@ def assess(
 
         pair, means = twins(vibration.untargeted(scene)), (budget_s, workers)
         try:
-            solid, told, more = by_levels(pair, estimate, _told, tolerance, means, tell, steps)
+            solid, sentences, more = by_levels(pair, estimate, _told, tolerance, means, tell, steps)
         except (SceneError, RunError) as refused:
             if fidelity == "solid" or quick is None:
                 raise
-            solid, told = None, [f"Finite elements have no answer here: {refused}"]
+            solid, sentences = None, [f"Finite elements have no answer here: {refused}"]
             more = with_budget(budget_of(refused))
-        here, used = (solid, "solid") if solid else (quick, "modal")
-        notes += told
+        effect, used = (solid, "solid") if solid else (quick, "modal")
+        notes += sentences
         more = {"fidelity": fidelity, **more} if more and fidelity == "solid" else more
-    if here is None:
+    if effect is None:
         raise RunError(" ".join([*notes, f"Without them, {steps[0]}."]))
-    off = 0.0 if quick is None else abs(quick.value - here.value)
+    off = 0.0 if quick is None else abs(quick.value - effect.value)
     others, not_known = _over_angles(scene, of, off) if reduced else (None, ((), ""))
     return Verdict(
         scene,
         tolerance,
         used,
         screened,
-        here,
+        effect,
         others,
         not_known,
         None if quick is None else _over_friction(scene, of),
         tuple(steps),
         tuple(notes),
-        more if here.answer(tolerance) == "undecided" else {},
+        more if effect.answer(tolerance) == "undecided" else {},
     )
 
 

@@ -65,11 +65,11 @@ class Collapse:
 def points() -> ChartPoints:
     """Return the stored points."""
     table = files("fem_impact.answers.verdict").joinpath("data", TABLE)
-    made, _, text = table.read_text(encoding="utf-8").partition("\n")
+    header, _, text = table.read_text(encoding="utf-8").partition("\n")
     rows = list(csv.DictReader(text.splitlines()))
     ratio, mu, change, E_vib = (np.array([float(row[name]) for row in rows]) for name in COLUMNS[-4:])
     yielding = np.array([row["contact"] == "yielding" for row in rows])
-    return ChartPoints(made.removeprefix("# "), ratio, mu, change, E_vib, yielding)
+    return ChartPoints(header.removeprefix("# "), ratio, mu, change, E_vib, yielding)
 
 
 def collapse(some: ChartPoints, values: Array) -> Collapse:
@@ -86,18 +86,18 @@ def collapse(some: ChartPoints, values: Array) -> Collapse:
 
 def chart(verdict: Verdict) -> Picture:
     """Return the chart of the contacts that are like the verdict's, yielding or elastic, with its point."""
-    here, free = verdict.here, verdict.here.free
+    effect, free = verdict.here, verdict.here.free
     yields = bool({"rod-plasticity", "barrier-elastoplastic"} & set(free.provenance.effects))
     some = points().where(points().yielding == yields)
     mu = or_none(free.restitution.mu)
-    own = f"this scene, mu {'not known' if mu is None else f'{mu:.2f}'}"
+    label = f"this scene, mu {'not known' if mu is None else f'{mu:.2f}'}"
     ratio = np.array([verdict.screening.ratio])
-    e, tolerance = (np.abs(some.change), abs(here.value), here.band), verdict.tolerance
-    vibration = some.E_vib, here.E_vib, here.E_vib_band
+    e, tolerance = (np.abs(some.change), abs(effect.value), effect.band), verdict.tolerance
+    vibration = some.E_vib, effect.E_vib, effect.E_vib_band
     marks = (Mark(tolerance, f"allowed: {tolerance:g}"),)
-    panels = [_panel("energy of vibration over E_0", some, vibration, own, ratio)]
-    if here.of == "e":  # the other rods' changes of other numbers are not stored
-        panels.insert(0, _panel("size of the change of e", some, e, own, ratio, marks))
+    panels = [_panel("energy of vibration over E_0", some, vibration, label, ratio)]
+    if effect.of == "e":  # the other rods' changes of other numbers are not stored
+        panels.insert(0, _panel("size of the change of e", some, e, label, ratio, marks))
     return Picture("design-chart", caption(some, "yielding" if yields else "elastic"), tuple(panels))
 
 
@@ -105,7 +105,7 @@ def _panel(
     label: str,
     some: ChartPoints,
     values: tuple[Array, float, float],
-    own: str,
+    named: str,
     ratio: Array,
     levels: tuple[Mark, ...] = (),
 ) -> Panel:
@@ -120,9 +120,9 @@ def _panel(
         words = f"mu {low:g} to {high:g}" if high < np.inf else f"mu from {low:g}"
         series.append(Series(words, some.ratio[chosen], of_points[chosen], "points", at))
     half = np.array([band if band < np.inf else np.nan])  # none is drawn of an error that is not known
-    point = Series(own, ratio, np.array([value]), "diamonds", "ink", half)
-    here = (Mark(float(ratio[0]), "this scene"),)  # its point lies among many
-    return Panel("", "T1/tau, bending period over contact time", label, (*series, point), here, levels)
+    point = Series(named, ratio, np.array([value]), "diamonds", "ink", half)
+    marks = (Mark(float(ratio[0]), "this scene"),)  # its point lies among many
+    return Panel("", "T1/tau, bending period over contact time", label, (*series, point), marks, levels)
 
 
 def caption(some: ChartPoints, kind: str) -> str:

@@ -194,8 +194,8 @@ class HeatCriterion(Limited):
 
     def reduced(self, scene: Scene) -> Bound | Unknown:
         """Return the temperature, which is not known beyond the lower melting point of the two bodies."""
-        found = super().reduced(scene)
-        return found if isinstance(found, Unknown) else _solid_metal(scene, found)
+        bound = super().reduced(scene)
+        return bound if isinstance(bound, Unknown) else _solid_metal(scene, bound)
 
     def solid(self, levels: Sequence[LevelRun]) -> Bound | None:
         """Return the limit and the half-width of as many levels as a default run has.
@@ -209,8 +209,8 @@ class HeatCriterion(Limited):
         *_, before, last = (_melts(level.outcome.heat.rise) for level in levels)
         if last:
             return _solid_metal(scene, Bound(inf, inf if before else self.base(scene), inf))
-        found = super().solid(levels)
-        return None if found is None else _solid_metal(scene, found)
+        bound = super().solid(levels)
+        return None if bound is None else _solid_metal(scene, bound)
 
     def meshed(self, scene: Scene) -> tuple[Scene, Scene | None]:
         """Return the scene with its heat followed."""

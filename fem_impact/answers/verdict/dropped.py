@@ -98,8 +98,8 @@ def weights_of(case: RodDropInput) -> dict[str, float]:
     2 % are left out.
     """
     near = {s.id: max(_distance(case, s), 0.02) ** -4 for s in sets_of(case.surface)}
-    kept = {name: w for name, w in near.items() if w >= 0.02 * sum(near.values())}
-    return {name: w / sum(kept.values()) for name, w in kept.items()}
+    counted = {name: w for name, w in near.items() if w >= 0.02 * sum(near.values())}
+    return {name: w / sum(counted.values()) for name, w in counted.items()}
 
 
 def _distance(case: RodDropInput, s: MeasuredSet) -> float:

@@ -40,7 +40,7 @@ Number = TypeVar("Number", bound=Found)
 def by_levels(
     twins: tuple[Scene, Scene | None],
     estimate: Callable[[Sequence[LevelRun]], Number | None],
-    told: Callable[[Number], str],
+    as_text: Callable[[Number], str],
     limit: float,
     means: tuple[float, int],
     tell: Tell,
@@ -53,7 +53,7 @@ def by_levels(
     ----------
     twins : the scene, and another that runs on its meshes or None
     estimate : of levels from coarse to fine, None where they give no number
-    told : the number and its error as text
+    as_text : the number and its error as text
     means : budget, s, and runs at a time
     tell : called with a sentence as a level begins, and after each
     steps : a sentence on each level is added
@@ -66,8 +66,8 @@ def by_levels(
     """
 
     def decides(levels: Sequence[LevelRun]) -> bool:
-        found = estimate(levels)
-        return found is not None and found.answer(limit) != "undecided"
+        estimated = estimate(levels)
+        return estimated is not None and estimated.answer(limit) != "undecided"
 
     begun = set[str]()
 
@@ -79,19 +79,19 @@ def by_levels(
     free, twin = twins
     levels = LevelChain(Case(free), RunOptions(progress=announce), *means, decides, twin)
     levels.refine()
-    found = None
+    estimated = None
     for number, level in enumerate(levels.done, 1):
-        found = estimate(levels.done[:number])
-        said = "no band yet" if found is None else f"{told(found)}: {found.answer(limit)}"
+        estimated = estimate(levels.done[:number])
+        said = "no band yet" if estimated is None else f"{as_text(estimated)}: {estimated.answer(limit)}"
         took = f"cells of {plain(1e3 * level.size, 2)} mm in {about_s(level.wall_s)}"
         steps.append(f"finite elements, level {number}, {took}: {said}")
         tell(steps[-1])
     if decides(levels.done):
-        return found, [], {}
-    note, enough = levels.advice(before_s, 1 if found is None else halvings(found.over(limit)))
+        return estimated, [], {}
+    note, enough = levels.advice(before_s, 1 if estimated is None else halvings(estimated.over(limit)))
     more = with_budget(enough)
-    if found is not None:
-        return found, [note], more
+    if estimated is not None:
+        return estimated, [note], more
     nothing = "The last level of finite elements does not resolve the contact."
     ends = [one.validity for one in levels.done[-1].outcomes if not one.validity.finished]
     if ends:  # as it would on finer meshes: the rod's tail strikes, or it touches for too long

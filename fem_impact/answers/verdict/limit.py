@@ -143,8 +143,8 @@ def judge(
     check_means(fidelity, budget_s)
     scene = scene.first_impact
     f = scene.surface.friction_low, scene.surface.friction_high
-    stated = {} if f[0] == f[1] else {FRICTION: f}
-    intervals = [interval_of(scene, key, ends) for key, ends in {**stated, **(uncertain or {})}.items()]
+    friction = {} if f[0] == f[1] else {FRICTION: f}
+    intervals = [interval_of(scene, key, ends) for key, ends in {**friction, **(uncertain or {})}.items()]
     scenes = _places(scene, intervals)
     steps, notes, more = list[str](), list[str](), finite_elements(budget_s)
     lacking = not_reduced(Case(scene).bodies)
@@ -152,10 +152,10 @@ def judge(
         notes.append(LACKING.format(lacking))
     else:
         tell(f"the reduced model at {len(scenes)} places ...")
-    found = {} if lacking and fidelity != "modal" else _scanned(scenes, criterion)
-    known = {place: one for place, one in found.items() if isinstance(one, Bound)}
-    why = next((one.reason for one in found.values() if isinstance(one, Unknown)), "")
-    why = LACKING.format(lacking) if lacking and found else why
+    bounds = {} if lacking and fidelity != "modal" else _scanned(scenes, criterion)
+    known = {place: one for place, one in bounds.items() if isinstance(one, Bound)}
+    why = next((one.reason for one in bounds.values() if isinstance(one, Unknown)), "")
+    why = LACKING.format(lacking) if lacking and bounds else why
     worst = max(
         known, key=lambda place: (known[place].value, known[place].low), default=(0.5,) * len(intervals)
     )
@@ -177,8 +177,8 @@ def judge(
             answer = _together([one.answer(limit) for one in solids.values()], mildest not in solids)
             if answer == "yes" and intervals:
                 low = [one.high - known[at].value for at, one in solids.items() if at in known]
-                kept = worst in known and known[worst].value + max(low) <= limit and not why
-                answer, notes = ("yes", [*notes, CONFIRMED]) if kept else ("undecided", notes)
+                within = worst in known and known[worst].value + max(low) <= limit and not why
+                answer, notes = ("yes", [*notes, CONFIRMED]) if within else ("undecided", notes)
     if bound is None and not steps:
         raise RunError(" ".join([*notes, why]))
     return LimitVerdict(
@@ -194,7 +194,7 @@ def judge(
         bound,
         by,
         min((one.value for one in known.values()), default=None),
-        len(found),
+        len(bounds),
         why,
         tuple(steps),
         tuple(notes),
@@ -220,15 +220,15 @@ def _places(scene: Scene, intervals: Sequence[tuple[str, float, float, str]]) ->
 
 def _scanned(scenes: Mapping[Place, Scene], criterion: Criterion) -> dict[Place, Bound | Unknown]:
     """Return the number by the reduced model at places (SceneError: the only one is refused)."""
-    found = dict[Place, Bound | Unknown]()
+    bounds = dict[Place, Bound | Unknown]()
     for place, scene in scenes.items():
         try:
-            found[place] = criterion.reduced(scene)
+            bounds[place] = criterion.reduced(scene)
         except (SceneError, RunError) as refused:
             if len(scenes) == 1:
                 raise
-            found[place] = Unknown(str(refused))
-    return found
+            bounds[place] = Unknown(str(refused))
+    return bounds
 
 
 def _by_solids(
@@ -244,20 +244,20 @@ def _by_solids(
     ``means`` are the budget of all of them, s, and runs at a time.
     """
     (budget_s, workers), begun = means, perf_counter()
-    solids, notes, told = dict[Place, Bound](), list[str](), partial(_told, criterion)
+    solids, notes, as_text = dict[Place, Bound](), list[str](), partial(_told, criterion)
     more: Means = {}
     for place, scene in scenes.items():
         before = perf_counter() - begun
         left = max(budget_s - before, 1.0), workers
         try:
             pair = criterion.meshed(scene)
-            found, said, more = by_levels(pair, criterion.solid, told, limit, left, tell, steps, before)
+            bound, said, more = by_levels(pair, criterion.solid, as_text, limit, left, tell, steps, before)
         except (SceneError, RunError) as refused:
-            found, said = None, [f"Finite elements have no answer here: {refused}"]
+            bound, said = None, [f"Finite elements have no answer here: {refused}"]
             more = with_budget(budget_of(refused))
         notes += said
-        solids |= {} if found is None else {place: found}
-        if found is None or found.answer(limit) != "yes":
+        solids |= {} if bound is None else {place: bound}
+        if bound is None or bound.answer(limit) != "yes":
             break
     return solids, notes, more
 

@@ -55,17 +55,17 @@ class Screening:
     def sentence(self) -> str:
         """Both numbers in one sentence."""
         widest = f" from the largest width, {plain(1e3 * self.widest)} mm" if self.widest else ""
-        told = (
+        text = (
             f"T1/tau = {self.ratio:.2f} (first bending period {plain(self.period * 1e6)} us, estimated "
             f"contact {plain(self.duration * 1e6)} us), gamma = {self.gamma:.1f} m^-0.3815{widest}: "
             f"{self.published}"
         )
         if self.flat:
-            return f"{told}. {ROUND}"
+            return f"{text}. {ROUND}"
         if self.ovalling <= self.period or self.straight:
-            return told
+            return text
         return (
-            f"{told}. Neither number knows of the wall, which ovals more slowly than the body bends: within "
+            f"{text}. Neither number knows of the wall, which ovals more slowly than the body bends: within "
             f"{plain(self.ovalling * 1e6)} us, {self.ovalling / self.duration:.2f} of the contact"
         )
 

@@ -84,48 +84,48 @@ def _anywhere(v: Verdict) -> str:
 
 
 def _vibration(v: Verdict) -> str:
-    here = v.here
-    share, half = with_band(100 * here.E_vib, max(100 * here.E_vib_band, LEAST_HALF / 100)).split(" +- ")
+    effect = v.here
+    share, half = with_band(100 * effect.E_vib, max(100 * effect.E_vib_band, LEAST_HALF / 100)).split(" +- ")
     share = f"{share} % of the energy"
-    if or_none(here.free.energy.below_floor):
+    if or_none(effect.free.energy.below_floor):
         return f"{share}, which is below the numerical floor of the model"
-    least, most = here.E_vib - here.E_vib_band, here.E_vib + here.E_vib_band
+    least, most = effect.E_vib - effect.E_vib_band, effect.E_vib + effect.E_vib_band
     range_ = f"0 to {plain(min(100 * most, 100.0), 2)} %" if least < 0 else f"± {half} %"
-    return f"{share} ({range_}: error of {here.model})"
+    return f"{share} ({range_}: error of {effect.model})"
 
 
 def _rest(v: Verdict) -> str:
-    here, plate, named = v.here, v.scene.barrier.bends, v.scene.projectile.named
-    energy = here.free.energy
+    effect, plate, named = v.here, v.scene.barrier.bends, v.scene.projectile.named
+    energy = effect.free.energy
     parts = [(share, or_none(share.of(energy)) or 0.0) for share in SHARES if share.label != "vibration"]
     listed = [
         f"{named(share.label.replace('barrier', 'plate') if plate else share.label)} "
-        f"{_percent(here, share.key.path[-1], part)}"
+        f"{_percent(effect, share.key.path[-1], part)}"
         for share, part in parts
         if part > LEAST_SHARE
     ]
-    kind = f"± error of {here.model}" if here.errors else f"by {here.model}"
+    kind = f"± error of {effect.model}" if effect.errors else f"by {effect.model}"
     thick = f"the plate is {1e3 * (v.scene.barrier.thickness or 0.0):g} mm thick; " if plate else ""
-    return f"{', '.join(listed)} ({kind}); {thick}{_heating(here)}"
+    return f"{', '.join(listed)} ({kind}); {thick}{_heating(effect)}"
 
 
-def _percent(here: VibrationEffect, name: str, part: float) -> str:
+def _percent(effect: VibrationEffect, name: str, part: float) -> str:
     """Return a share in per cent with its half-width, if known; for one body that of all plastic work."""
-    total = here.errors.get("plastic") if name.startswith("plastic_") else None
-    half = here.errors.get(name, total)
+    total = effect.errors.get("plastic") if name.startswith("plastic_") else None
+    half = effect.errors.get(name, total)
     if half is None:
         return f"{100 * part:.0f} %"
     return f"{with_band(100 * part, max(100 * half, LEAST_HALF), 0.0, 100.0)} %".replace("+-", "±")
 
 
-def _heating(here: VibrationEffect) -> str:
+def _heating(effect: VibrationEffect) -> str:
     """Return what can heat the contact."""
-    energy = here.free.energy
+    energy = effect.free.energy
     skin, friction = energy.skin, or_none(energy.friction) or 0.0
     if not isinstance(skin, Unknown):
         alone = isinstance(energy.skin_rod, Unknown) or isinstance(energy.skin_barrier, Unknown)
         of = "the softer body" if alone else "both bodies"
-        share = _percent(here, "skin", skin)
+        share = _percent(effect, "skin", skin)
         return f"{share} can heat the contact (friction, and plastic work of {of} down to 0.1 mm)"
     plastic = or_none(energy.plastic) or 0.0
     return (
@@ -226,16 +226,16 @@ def _friction(v: Verdict) -> Line:
     if "friction" not in v.here.free.provenance.effects:
         return title, "none: the scene has no friction."
     if surface.friction_low == surface.friction_high:
-        told = (
+        text = (
             f"f = {surface.friction:g} is stated without an interval and counts as exact; give friction_low "
             "and friction_high to see what its uncertainty does."
         )
-        return title, told
+        return title, text
     if v.over_friction is None:
-        told = (
+        text = (
             f"what {ends} does is not known without the reduced model: assess both ends (surface.friction)."
         )
-        return title, told
+        return title, text
     low, high = v.over_friction
     return (
         title,

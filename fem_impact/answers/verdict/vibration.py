@@ -59,11 +59,11 @@ def known_error(case: Case, whole: Outcome, of: str, change: float) -> tuple[flo
 
 def off_sentence(of: str, half: float, far: tuple[str, ...]) -> str:
     """Say what the half-width of a change is."""
-    told = (
+    text = (
         f"The reduced model's change of {of} by vibration is off by less than {half:.2g} in nine of ten such "
         f"scenes, by {len(stored().places)} that finite elements computed as well."
     )
-    return f"{told} None of them is like this one in {', '.join(far)}: it is wider." if far else told
+    return f"{text} None of them is like this one in {', '.join(far)}: it is wider." if far else text
 
 
 @cache
@@ -175,8 +175,8 @@ class VibrationEffect:
         """Return the change with a band no smaller than ``off``, an error that finite elements showed."""
         if off <= self.band:
             return self
-        told = f"At the scene's own inclination it is off by {off:.2g}: so much counts at all others."
-        return replace(self, band=off, source=f"{self.source} {told}")
+        text = f"At the scene's own inclination it is off by {off:.2g}: so much counts at all others."
+        return replace(self, band=off, source=f"{self.source} {text}")
 
     @property
     def told(self) -> str:
