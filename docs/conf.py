@@ -40,6 +40,7 @@ sphinx_gallery_conf = {
     "image_srcset": ["2x"],
     "show_signature": False,
     "show_memory": False,
+    "reset_modules": ("matplotlib", "look.colour_blind_safe"),
 }
 html_theme = "furo"
 html_static_path = ["style"]

@@ -12,7 +12,7 @@ from rigid import LIMIT, slenderness
 
 length, diameter = np.meshgrid(np.linspace(0.02, 0.5, 97), np.linspace(0.005, 0.05, 91))
 gamma = slenderness(length, diameter)
-lines = plt.contour(length * 1e3, diameter * 1e3, gamma, levels=[10, 20, LIMIT, 50, 100, 200])
+lines = plt.contour(length * 1e3, diameter * 1e3, gamma, levels=[10, 20, LIMIT, 50, 100, 200], colors="C0")
 plt.clabel(lines)
 plt.gca().set(xlabel="length, mm", ylabel="diameter, mm", title="slenderness gamma; published limit 26.45")
 plt.show()

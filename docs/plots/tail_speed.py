@@ -22,6 +22,6 @@ for fidelity, look in (("rigid", "o--"), ("modal", "s-")):
     plt.plot(angles, ratios, look, label=fidelity)
 plt.axhline(1.0, color="grey", linewidth=0.7)
 plt.gca().set(xlabel="angle between axis and normal, degrees", ylabel="tail's speed over nose's")
-plt.gca().set(title="0.24 m rod on a level floor, 2 m/s: the hardest strike of the tail")
+plt.gca().set(title="0.12 m rod, level floor, 2 m/s: hardest strike of the tail")
 plt.legend()
 plt.show()

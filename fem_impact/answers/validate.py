@@ -27,6 +27,7 @@ from fem_impact.progress import CaseProgress, silent, watched
 from fem_impact.run.tests import NUMBERS, tests_of
 from fem_impact.scene.shipped import bare, named, replace_all
 from fem_impact.scene.types import Scene, to_dict
+from fem_impact.tables.table import Table
 from rigid.experiments import Statistic
 
 SAMPLES = 64  # of each of the two samples that Sobol's indices are made of
@@ -38,6 +39,9 @@ and their ratio are where neither e nor mu is measured."""
 KEYS = {q.measured: q.key.name for q in MEASURED if q.measured}
 """Keys of an outcome by the names of measured numbers."""
 FRICTION = "surface.friction"
+TERMS = ("S", "D", "E", "u_num", "u_input", "u_D")
+ERRORS = ("number", "model S", "tests D", "S - D", "u_num", "u_input", "u_D", "verdict")
+"""Attributes of a `Comparison` and the words of its table."""
 CORNERS = 256  # of the intervals, tried before any run
 Ends = tuple[Any, Any] | str
 Interval = tuple[str, float, float, str]
@@ -72,6 +76,22 @@ class Validation:
     varied: str
     doubtful: tuple[str, ...]
     runs: int
+
+    def __repr__(self) -> str:
+        """Return the table of errors, and the input to measure better."""
+        better, part = self.better
+        return (
+            f"{self.table().markdown()}\n\njointly ({', '.join(self.joined)}) p = {self.p:.2g}; "
+            f"measure better: {better}, {100 * part:.0f} % of u_val squared"
+        )
+
+    def table(self) -> Table:
+        """Return the errors of the model and their uncertainties, one row a number, as texts."""
+        rows = [
+            (one.quantity, *(f"{getattr(one, name):.3g}" for name in TERMS), one.verdict)
+            for one in self.comparisons
+        ]
+        return Table.of(ERRORS, rows, left=(0, 7))
 
     @property
     def shares(self) -> Array:

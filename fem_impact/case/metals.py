@@ -49,7 +49,7 @@ def _body(body: str, metal: materials.Material, bodies: Bodies) -> str:
     if YIELDS[body] in bodies.effects and rate_wanted and rate_law(metal) is None:
         return (
             f"The {body} ({metal.name}) has no rate data: its flow stress does not grow with the strain "
-            "rate, and no other metal's law takes its place. e may be too low."
+            "rate, and no other metal's law takes its place. e and the force may be too low, dents too deep."
         )
     return ""
 

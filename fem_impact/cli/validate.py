@@ -3,7 +3,7 @@
 from contextlib import closing
 from typing import Any
 
-from fem_impact.answers.validate import Validation
+from fem_impact.answers.validate import TERMS, Validation
 from fem_impact.answers.validate import validate as validated
 from fem_impact.case.case import Case
 from fem_impact.case.size import time_class
@@ -15,9 +15,6 @@ from fem_impact.errors import UsageError
 from fem_impact.options import RunOptions
 from fem_impact.tables.table import Table
 from fem_impact.tables.text import wrapped
-
-NUMBERS = ("S", "D", "E", "u_num", "u_input", "u_D")
-ERRORS = ("number", "model S", "tests D", "S - D", "u_num", "u_input", "u_D", "verdict")
 
 
 def validate(options: Options) -> int:
@@ -43,7 +40,7 @@ def _document(found: Validation) -> dict[str, Any]:
     shares = dict(zip((*found.inputs, "tests", "model"), found.shares.tolist(), strict=True))
     return {
         "comparisons": [
-            {name: getattr(one, name) for name in ("quantity", *NUMBERS, "verdict")}
+            {name: getattr(one, name) for name in ("quantity", *TERMS, "verdict")}
             for one in found.comparisons
         ],
         "not_known": dict(found.unknown),
@@ -55,10 +52,6 @@ def _document(found: Validation) -> dict[str, Any]:
 
 
 def _text(found: Validation, fidelity: str, solid: tuple[str, str]) -> str:
-    rows = [
-        (one.quantity, *(f"{getattr(one, name):.3g}" for name in NUMBERS), one.verdict)
-        for one in found.comparisons
-    ]
     parts = [
         (key, *(f"{100 * share:.0f} %" for share in row))
         for key, row in zip((*found.inputs, "tests", "model"), found.shares.tolist(), strict=True)
@@ -80,7 +73,7 @@ def _text(found: Validation, fidelity: str, solid: tuple[str, str]) -> str:
             "",
             f"ASME V&V 20, {fidelity}; {found.runs} {found.varied} runs over the uncertain inputs",
             "",
-            Table.of(ERRORS, rows, left=(0, 7)).markdown(),
+            found.table().markdown(),
             "",
             "parts of u_val squared",
             "",

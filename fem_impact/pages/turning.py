@@ -149,7 +149,8 @@ def _layout(names: list[str], first: int, eye: dict[str, float]) -> dict[str, An
         {"label": "stop", "method": "animate", "args": [[None], at_once]},
     ]
     axes = {
-        f"{axis}axis": {"title": {"text": f"{name}, mm"}} for axis, name in zip("xyz", "tbn", strict=True)
+        f"{axis}axis": {"title": {"text": f"{name}, mm"}, "nticks": ticks}
+        for axis, name, ticks in zip("xyz", "tbn", (0, 3, 0), strict=True)  # across a rod there is no room
     }
     slider = {"currentvalue": {"prefix": "time "}, "x": 0.0, "len": 1.0, "pad": {"t": 45, "l": 10, "r": 10}}
     place = {"x": 0.0, "y": 0.0, "xanchor": "left", "yanchor": "top", "pad": {"t": 8}}
