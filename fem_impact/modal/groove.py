@@ -143,13 +143,12 @@ def borne(widest: float, stress: float, slope: float, exponent: float, law: Flow
 def hardness(widest: float, law: FlowLaw) -> float:
     """Return H, Pa: that of the body that flows, at most that of the other one.
 
-    A tip that is flattened bears less: its flanks rise beside the contact, and slip lines turn by less.
+    The tip bears less than a plane body: its flanks rise beside the contact, and slip lines turn by less.
     """
     own = borne(widest, law.yield_stress, law.slope, law.exponent, law)
     other = borne(widest, law.other_yield_stress, law.other_slope, law.other_exponent, law)
-    if not law.ploughs:
-        own *= 1.0 - atan(widest / sqrt(law.R * law.R1)) / (1.0 + 0.5 * pi)
-    return min(own, other)
+    flanks = 1.0 - atan(widest / sqrt(law.R * law.R1)) / (1.0 + 0.5 * pi)
+    return min(own, flanks * other) if law.ploughs else min(flanks * own, other)
 
 
 @inlined

@@ -10,10 +10,11 @@ none of them from an impact:
 
 - hardness H = 3 times the flow stress at the strain .2 a/R (Tabor 1951, The Hardness of Metals), and below
   that Johnson's expanding cavity (1985, Contact Mechanics, eq 6.32),
-- of a tip that is flattened, whose flanks meet the contact at an angle theta, (1 + pi/2 - theta) / (1 + pi/2)
+- of a tip, whose flanks meet the contact at an angle theta, (1 + pi/2 - theta) / (1 + pi/2)
   of that: by Hencky's relation pressure grows by 2 k times the angle by which slip lines turn on their way
   from a free surface to the contact. Tabor's 3 is that of dents, lip and slope included,
-- shear yield stress k = sigma(1) / sqrt(3) of the skin, von Mises, which is sheared by strains of about one.
+- shear yield stress k = sigma(1) / sqrt(3) of the skin, von Mises, which is sheared by strains of about one;
+  that of the weaker body of two that flow.
 
 `STUCK` and `RUN_IN` have no closed form for a growing contact of a hardening body. They were chosen on a grid
 by least difference of e, mu, vibration and sheared skin from finite elements, on six oblique impacts of other
@@ -151,6 +152,8 @@ def flow_law(pair: ContactPair, rod: HardeningLaw | None, barrier: HardeningLaw 
     both.sort(key=lambda one: not one[1])
     curve, other, *_ = (*(power for power, _ in both), *2 * [Hardening(inf, 0.0, 0.0)])
     faster, other_faster = (of.rate.factor(strain_rate(size)) if of.rate else 1.0 for of in (curve, other))
+    skins = (curve, faster), (other, other_faster)
+    skin = min(rate * float(of.flow_stress(SKIN_STRAIN)) for of, rate in skins) / sqrt(3)
     over_length = (R2 / R1) ** 0.25  # an ellipse is shorter along t than the circle of its area
     return FlowLaw(
         R1=R1,
@@ -163,7 +166,7 @@ def flow_law(pair: ContactPair, rod: HardeningLaw | None, barrier: HardeningLaw 
         yield_stress=faster * curve.yield_stress,
         slope=curve.slope,
         exponent=curve.exponent,
-        skin=faster * float(curve.flow_stress(SKIN_STRAIN)) / sqrt(3),
+        skin=skin,
         friction=pair.f,
         ploughs=pair.barrier_conforms,
         yields=flows,

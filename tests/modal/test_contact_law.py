@@ -1,7 +1,7 @@
 """The local contact: Hertz, a sliding and sticking sphere, a contact that yields."""
 
 from dataclasses import replace
-from math import inf, pi, sqrt
+from math import atan, inf, pi, sqrt
 
 import pytest
 
@@ -178,9 +178,20 @@ def test_a_tip_that_is_flattened_bears_less_the_steeper_its_flanks():
 
 
 def test_no_body_bears_more_than_the_hardness_of_the_other_one():
-    hard = flow(stress=900e6)
-    assert hardness(2e-3, hard._replace(other_yield_stress=200e6)) == pytest.approx(3 * 200e6, rel=1e-12)
-    assert hardness(2e-3, hard._replace(other_yield_stress=1e9)) == hardness(2e-3, hard)
+    """The flanks of a tip rise beside the contact, and it bears less than a plane body of its flow stress."""
+    hard, flanks = flow(stress=900e6), 1 - atan(2e-3 / R) / (1 + 0.5 * pi)
+    tip, plane = (hard._replace(other_yield_stress=200e6, ploughs=of) for of in (True, False))
+    assert hardness(2e-3, tip) == pytest.approx(flanks * 3 * 200e6, rel=1e-12)
+    assert hardness(2e-3, plane) == pytest.approx(3 * 200e6, rel=1e-12)
+    assert hardness(2e-3, hard._replace(other_yield_stress=1.2e9)) == hardness(2e-3, hard)
+
+
+def test_the_skin_of_the_body_that_hardens_less_is_sheared():
+    case = Case.of(fem_impact.replace(load("t5b"), "barrier.material.ultimate_stress", "900 MPa"), "modal")
+    of = flow_law(case.contact, case.slots.rod_law, case.slots.barrier_law)
+    rod = of.other_yield_stress * (1 + of.other_slope) ** of.other_exponent
+    assert of.ploughs and of.skin == pytest.approx(rod / sqrt(3))
+    assert of.skin < 0.9 * of.yield_stress * (1 + of.slope) ** of.exponent / sqrt(3)
 
 
 def test_the_harder_of_two_bodies_is_the_other_one():
