@@ -198,8 +198,12 @@ class VibrationEffect:
 def unfinished(pair: Pair, of: str = "e") -> str:
     """Return why a pair of twins says nothing of a number, empty where it does.
 
-    A run that ended before another place strikes tells those of the impact before.
+    A run that ended before another place strikes tells those of the impact before. One by the reduced model
+    that does not know how wrong it is says nothing.
     """
+    band = pair[0].validity.model_band
+    if pair[0].provenance.fidelity == "modal" and isinstance(band, Unknown):
+        return band.reason
     for run, which in zip(pair, ("with", "without"), strict=True):
         if or_none(CHANGED[of].of(run)) is None:
             return f"the run {which} vibration gives no {of}: {run.validity.stopped_because}"

@@ -383,6 +383,19 @@ def test_a_level_that_folds_leaves_those_before_it(monkeypatch):
     )
 
 
+def test_inclinations_at_which_the_shaft_would_yield_are_not_known():
+    """The reduced model leaves that out and does not know how wrong it is."""
+    pin = {
+        "id": "pin",
+        "projectile": {"length": "20 mm", "diameter": "10 mm", "tip": "plain", "material": "rod-steel"},
+        "barrier": {"material": "tungsten-heavy-alloy"},
+        "surface": {"state": "machined"},
+        "impact": {"angle": "-60 deg", "v_n": "-14 m/s", "v_t": "9 m/s"},
+    }
+    angles, why = assess(load(pin), "modal").not_known
+    assert math.radians(-45) < min(angles) < 0 and "yield along its length" in why
+
+
 def test_a_spin_that_lifts_the_contact_point_at_some_inclinations_leaves_them_out():
     """spinning-rod turns so fast that at other inclinations its lowest point would not approach."""
     found = assess(load("spinning-rod"), "modal")
