@@ -244,11 +244,11 @@ class LevelChain:
     def forecast_s(self, splits: int) -> float:
         """Return about the wall time, s, of a level whose mesh is not made yet, from that of the last one."""
         last = self.done[-1]
-        took_s = forecast.longest_s([run_s.cost.whole_wall for run_s in last.outcomes], self.workers)
+        took_s = forecast.longest_s([run.cost.whole_wall for run in last.outcomes], self.workers)
         run_s = took_s / forecast.turns(len(last.outcomes), self.workers)
-        return float(
-            run_s * forecast.MIDDLE ** (splits - last.splits) * forecast.turns(self._runs, self.workers)
-        )
+        finer = splits - last.splits, last.cases[0], self.meshes.at(splits), last.found
+        longer = forecast.growth(run_s, *finer)
+        return float(run_s * longer * forecast.turns(self._runs, self.workers))
 
     def _run_level(self, splits: int) -> None:
         """Run a level, again with more room where it needs that, and add it to what is done."""

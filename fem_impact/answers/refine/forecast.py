@@ -13,11 +13,13 @@ from time import perf_counter, process_time
 from typing import TypeVar
 
 from fem_impact.case.case import Case
+from fem_impact.case.record import ContactRecord
 from fem_impact.case.size import setup_time
 from fem_impact.errors import RunError, SceneError
 from fem_impact.fem.kernels import COMPILING
 from fem_impact.jobs.executors import LocalProcesses
 from fem_impact.progress import Notice, Progress, left_text
+from fem_impact.scene.types import Scene
 
 Work = TypeVar("Work")
 Result = TypeVar("Result")
@@ -132,6 +134,21 @@ def enough_s(used_s: float, level_s: float) -> int:
     least = used_s + LONGER * level_s
     unit = 10 ** max(floor(log10(max(least, 1.0))) - 1, 0)
     return int(ceil(least / unit) * unit)
+
+
+def growth(own_s: float, halvings: int, last: Case, scene: Scene, found: ContactRecord) -> float:
+    """Return how many times as long as the last case, of ``own_s``, a run of a finer scene takes.
+
+    What takes `WORTH` is forecast by what both meshes hold: of 16 levels of 6 drawn scenes that was off by a
+    factor of 1.6 (root mean square), `MIDDLE` by 2.1: a level takes up to 20 times as long as the one before.
+    """
+    longer = float(MIDDLE**halvings)
+    if own_s * longer < WORTH:
+        return longer
+    try:
+        return Case.of(scene, "solid", found).size.time / last.size.time
+    except SceneError:
+        return longer
 
 
 def advice(number: int, used_s: float, each_s: Sequence[float]) -> tuple[str, int]:

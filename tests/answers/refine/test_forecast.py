@@ -8,7 +8,8 @@ from fem_impact.answers import simulate as simulate_module
 from fem_impact.answers.refine import forecast
 from fem_impact.answers.refine import level as level_module
 from fem_impact.answers.refine.chain import LevelChain
-from fem_impact.answers.refine.forecast import OWN, LevelProgress, OverBudgetError, later_s
+from fem_impact.answers.refine.forecast import MIDDLE, OWN, LevelProgress, OverBudgetError, growth, later_s
+from fem_impact.answers.refine.level_meshes import LevelMeshes
 from fem_impact.answers.simulate import simulate
 from fem_impact.case import size
 from fem_impact.case.case import Case
@@ -80,6 +81,17 @@ def test_a_level_is_given_up_at_its_limit(monkeypatch):
     clock[0] = 10.5
     with pytest.raises(RunError, match="given up after 10 s"):
         level(at(200, 3.0))
+
+
+def test_a_long_level_is_forecast_by_what_its_mesh_holds():
+    meshes = LevelMeshes.of(Case(load("quick")))
+    splits, pilot = meshes.first + 3, meshes.pilot
+    found, finer = meshes.expected(splits), meshes.at(splits)
+    held = Case.of(finer, "solid", found).size.time / pilot.size.time
+    assert growth(0.1, 3, pilot, finer, found) == pytest.approx(MIDDLE**3)
+    assert growth(100.0, 3, pilot, finer, found) == pytest.approx(held) != pytest.approx(MIDDLE**3, rel=0.1)
+    vast = replace_all(finer, {"accuracy.tip_size": "2 um", "accuracy.barrier_size": "2 um"})
+    assert growth(100.0, 9, pilot, vast, found) == pytest.approx(MIDDLE**9)
 
 
 def test_a_level_given_up_in_contact_tells_its_budget_by_the_impact_of_the_level_before(monkeypatch):
