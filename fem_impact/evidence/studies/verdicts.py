@@ -101,7 +101,7 @@ def _row(scene: DrawnScene, results: Results) -> tuple[Cell, ...]:
     place, run = (scene.name, scene.family, scene.group), results.get(CoverageRun(scene, ASSESS).name)
     if not isinstance(run, CoverageResult) or not run.verdict:
         why = run.reason if run else "not run"
-        return *place, "none", *[None] * 9, "", why.strip().splitlines()[-1], "", ""
+        return *place, "no answer", *[None] * 9, "", why.strip().splitlines()[-1], "", ""
     v, check, judged = run.verdict, _check(scene, results), ""
     truth: tuple[Cell, ...] = None, None, "", ""
     if check:

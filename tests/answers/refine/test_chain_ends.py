@@ -47,6 +47,7 @@ def test_two_levels_are_two(level):
 
 
 def test_more_levels_run_where_the_last_resolved_nothing(level):
+    level = lasting(level, 0.1)
     levels = LevelChain(Case(FREE), done=[level])
     finest = levels.finest
     levels.done = [replace(level, splits=splits) for splits in range(finest - 2, finest + 1)]
@@ -61,14 +62,14 @@ def test_more_levels_run_where_the_last_resolved_nothing(level):
 
 def test_a_smaller_step_follows_where_the_budget_does_not_hold_the_larger(level):
     """More levels asked for give no fewer and no coarser ones."""
-    steps = {}
     for levels in (3, 4):
         scene = replace(QUICK, accuracy=replace(QUICK.accuracy, levels=levels))
-        chain = LevelChain(Case(scene), done=[lasting(level, 10.0)], budget_s=40.0)
-        steps[levels] = chain._next
-        chain.budget_s = 80.0
+        chain = LevelChain(Case(scene), done=[lasting(level, 10.0)])
+        one_s, two_s = (chain.forecast_s(level.splits + more) for more in (1, 2))
+        chain.budget_s = 10.0 + 0.5 * (one_s + two_s)
+        assert chain._next == level.splits + 1
+        chain.budget_s = 10.0 + 2.0 * two_s
         assert chain._next == level.splits + (1 if levels == 3 else 2)
-    assert steps == {3: level.splits + 1, 4: level.splits + 1}
 
 
 def test_a_pilot_alone_keeps_its_numbers_and_tells_the_budget_of_a_second_level(level):
@@ -98,7 +99,8 @@ def test_where_levels_end_unresolved_the_remedy_is_one_that_adds_a_finer_one(lev
     for scene, remedy in ((FREE, "accuracy.levels = 4"), (QUICK, "a smaller accuracy.tip_size")):
         levels = LevelChain(Case(scene), done=[level])
         levels.done = [
-            replace(level, splits=splits) for splits in range(levels.finest - 2, levels.finest + 4)
+            replace(lasting(level, 0.1), splits=splits)
+            for splits in range(levels.finest - 2, levels.finest + 4)
         ]
         validity = levels.run().validity
         assert validity.mesh_band.reason.endswith(f"; {remedy} adds a finer level")

@@ -53,6 +53,6 @@ def test_right_is_what_the_finer_run_says_by_its_value(tmp_path):
             None, changes={"e": change}
         )
     text = published(study.conclude, request, results).text
-    assert "decided 4 of 12 (14 to 61 %): 7 undecided, 3 yes, 1 no, 1 none" in text
+    assert "decided 4 of 12 (14 to 61 %): 7 undecided, 3 yes, 1 no, 1 no answer" in text
     assert "say the same of 2 of 3 (" in text and "in 1 the half-width of the finer run" in text
     assert "1 were decided and not checked" in text and "no model gives e." in text
