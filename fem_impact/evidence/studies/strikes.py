@@ -18,7 +18,7 @@ FOLLOWED = {
     "impact.until": "3 strikes",
     "impact.v_t": "0 m/s",
     "accuracy.levels": 1,
-    "accuracy.tip_size": "0.6 mm",
+    "accuracy.tip_size": "0.3 mm",
     "save.frames": 0,
 }
 """What all scenes change of quick."""
@@ -95,7 +95,7 @@ def _report(runs: Runs) -> StudyReport:
             ),
         ],
         assumptions=[
-            "Finite elements on one mesh, cells of 0.6 mm at tip and tail, whose own error is not told.",
+            "Finite elements on one mesh, cells of 0.3 mm at tip and tail, whose own error is not told.",
             "All scenes are changes of the scene quick on a level plate; modes compute every strike.",
             f"The last {len(LATER)} scenes were drawn after the rules of the half-widths were chosen.",
         ],
