@@ -9,6 +9,7 @@ from fem_impact.arrays import Array, Bools, Ints
 from fem_impact.physics.beam import bending_period, latest_time, ovalling_period, stretching_period
 from fem_impact.physics.contact import ContactEstimate, ContactPair, Plate
 from fem_impact.scene.barrier import Barrier
+from fem_impact.scene.material import Material
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.sliding import SpeedTable
 from fem_impact.scene.types import Scene
@@ -46,11 +47,13 @@ class Bodies:
     scene : as stated; what it says of effects does not count
     effects : names of the effects in force
     later : how they touch in a strike after the first; None: as the scene says
+    struck : material that stands for the layers of a barrier; None: the first one alone
     """
 
     scene: Scene
     effects: tuple[str, ...]
     later: LaterStrike | None = None
+    struck: Material | None = None
 
     @property
     def rod(self) -> ProjectileSpec:
@@ -81,7 +84,7 @@ class Bodies:
             v_t=seen.v_t,
             omega=seen.omega,
             rod=self.scene.projectile.material,
-            barrier=barrier.struck,
+            barrier=self.struck or barrier.struck,
             rod_yields="rod-plasticity" in self.effects,
             barrier_yields="barrier-elastoplastic" in self.effects,
             compliant="barrier-rigid" not in self.effects,

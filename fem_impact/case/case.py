@@ -14,7 +14,7 @@ from fem_impact.case.effects.registry import AUTO, NAMES, check_effects
 from fem_impact.case.effects.skin import NOT_RIGID, require_skins
 from fem_impact.case.effects.slots import ModelSpec
 from fem_impact.case.elastic_only import require_crushing_named
-from fem_impact.case.layers import block_of, require_layers, thin_layer
+from fem_impact.case.layers import as_one, block_of, require_layers, thin_layer
 from fem_impact.case.mesh import require_gauge, require_mesh
 from fem_impact.case.metals import unknowns
 from fem_impact.case.plates import is_thin, require_plate, require_plate_mesh, too_thin
@@ -156,10 +156,12 @@ class Case:
 
     @cached_property
     def bodies(self) -> Bodies:
-        """The bodies with the effects in the model."""
-        return (
-            self._whole if self._whole.effects == self.active else Bodies(self.scene, self.active, self.later)
-        )
+        """The bodies with the effects in the model; the reduced model takes one material for layers."""
+        whole = self._whole
+        bodies = whole if whole.effects == self.active else Bodies(self.scene, self.active, self.later)
+        if self.fidelity == "modal" and self.scene.barrier.layers:
+            return replace(bodies, struck=as_one(bodies))
+        return bodies
 
     @property
     def contact(self) -> ContactPair:

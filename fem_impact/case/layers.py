@@ -1,15 +1,21 @@
 """Layers of a barrier: which rows of its mesh end at their interfaces, and what is refused."""
 
-from math import ceil, inf
+from dataclasses import replace
+from itertools import pairwise
+from math import ceil, inf, sqrt
 
 import numpy as np
 
 from fem_impact.arrays import Array
 from fem_impact.case.bodies import Bodies
+from fem_impact.case.effects.plasticity import buried_yield_ratio, hardening_of
 from fem_impact.case.plates import rows_through, widening
 from fem_impact.case.recorded import AnyZones
 from fem_impact.case.zones import Corners, zones_of
 from fem_impact.errors import SceneError
+from fem_impact.physics import layered
+from fem_impact.physics.contact_law import REPRESENTATIVE
+from fem_impact.scene.material import Material
 from meshes import drawn_depths
 
 FLATTEST = 0.5  # least height of the cells of a layer over their height without it
@@ -73,13 +79,41 @@ def moved_rows(bodies: Bodies, zones: AnyZones) -> tuple[Array, Array]:
     return rows[[*chosen, -1]], np.array([0.0, *interfaces(bodies), bottom])
 
 
+def as_one(bodies: Bodies) -> Material:
+    """Return the material that stands for the layers of a barrier in a contact law, see `layered`.
+
+    It is that of the first layer, with the stiffness and strength that all of them have under a contact as
+    wide as that on the first one alone.
+    """
+    strata, size = bodies.barrier.strata, bodies.estimate
+    E, nu = layered.elastic(strata, size.radius)
+    first, strain = strata[0][1], REPRESENTATIVE * size.radius / sqrt(size.R1 * size.R2)
+    flows = [float(hardening_of(one).flow_stress(strain)) if one.yields else inf for _, one in strata]
+    stress = flows[-1]
+    for at in range(len(strata) - 2, -1, -1):
+        depth, upper = strata[at]
+        stress = layered.hardness(depth, size.radius, (flows[at], upper.E), (stress, strata[at + 1][1].E))
+    stronger = stress / flows[0] if first.yields else 1.0
+    return replace(first, E=E, nu=nu, yield_stress=first.yield_stress * stronger)
+
+
+def flows_below(bodies: Bodies) -> str:
+    """Return what yields under a first layer that does not, empty where nothing does."""
+    strata, pair = bodies.barrier.strata, bodies.contact
+    if pair.barrier.yields or not pair.barrier_yields:
+        return ""
+    buried = ((depth, metal) for (depth, _), (_, metal) in pairwise(strata) if metal.yields)
+    flows = any(buried_yield_ratio(pair, metal, depth) > 1.0 for depth, metal in buried)
+    return "a base that yields under layers that do not" * flows
+
+
 def require_layers(bodies: Bodies, fidelity: str) -> None:
-    """Refuse layers that no row of cells fits, and any in the reduced model (SceneError)."""
+    """Refuse layers that no row of cells fits, and such as the reduced model has no law of (SceneError)."""
     if not bodies.barrier.layers:
         return
-    if fidelity == "modal":
+    if fidelity == "modal" and (what := flows_below(bodies)):
         raise SceneError(
-            "are not known to the reduced model, which has one material there.",
+            f"are {what}: the reduced model has no law of that.",
             key="barrier.layers",
             remedy="Use fidelity solid, or leave the layers out.",
         )

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.effects.slots import ModelSpec
+from fem_impact.case.layers import flows_below
 from fem_impact.case.plates import is_wider, thin_plate
 from fem_impact.case.shaft import coned, gives_elsewhere
 from fem_impact.errors import SceneError
@@ -374,11 +375,11 @@ def not_reduced(bodies: Bodies) -> str:
     """Return what the reduced model has no answer for, empty where it has one."""
     obstacles = {
         "a projectile with a mesh of its own": bodies.rod.own_mesh,
-        "a barrier of layers": bodies.barrier.layers,
         "a plate thinner than its contact is wide": is_wider(bodies),
         "a hardened skin": "machined-skin" in bodies.effects,
     }
-    return next((what for what, holds in obstacles.items() if holds), gives_elsewhere(bodies))
+    found = next((what for what, holds in obstacles.items() if holds), "")
+    return found or flows_below(bodies) or gives_elsewhere(bodies)
 
 
 def require_own_mesh(bodies: Bodies, fidelity: str) -> None:

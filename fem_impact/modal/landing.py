@@ -164,10 +164,16 @@ def _set_row(
 ) -> None:
     """Enter a row of cells of a stiffness a metre, Pa, a hardness, Pa, and a size, m.
 
-    A barrier with a mass of its own, or a plate that bends, is no half-space that waves leave through.
+    A barrier with a mass of its own, or a plate that bends, is no half-space that waves leave through. Those
+    of a barrier of layers are longer than these are thick: what lies under all of them takes them.
     """
     sheared = 0.5 * pair.shear_stiffness / pair.modulus  # tangential over normal stiffness
     cell, share = stiffness * size, max(flexibility(case) * pair.modulus, RIGID)
     leaves = pair.compliant and not (case.scene.barrier.mass or case.slots.plate)
-    each = cell / (1 - share), cell / share, sheared * cell, impedance(pair.barrier) if leaves else 0.0
+    each = (
+        cell / (1 - share),
+        cell / share,
+        sheared * cell,
+        impedance(case.scene.barrier.material) if leaves else 0.0,
+    )
     held.flats.law[f] = *each, hardness, flow.skin, flow.friction, size, widens, 1.0

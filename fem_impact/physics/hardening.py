@@ -1,6 +1,6 @@
 """Isotropic hardening laws of the J2 material."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import log, log1p, sqrt
 from typing import NamedTuple
@@ -133,6 +133,10 @@ class Hardening:
         """The power law that stands for this curve: itself."""
         return self
 
+    def times(self, factor: float) -> "Hardening":
+        """Return the law with so many times the flow stress."""
+        return replace(self, yield_stress=factor * self.yield_stress)
+
 
 FITTED = 0.2
 """Largest strain of an indentation, 0.2 a/R (Tabor 1951), up to which a power law is fitted to a table."""
@@ -160,6 +164,10 @@ class TabulatedHardening:
     def yield_stress(self) -> float:
         """Flow stress, Pa, without plastic strain."""
         return self.points[0][1]
+
+    def times(self, factor: float) -> "TabulatedHardening":
+        """Return the law with so many times the flow stress."""
+        return replace(self, points=tuple((strain, factor * stress) for strain, stress in self.points))
 
     @property
     def curve(self) -> Pieces:

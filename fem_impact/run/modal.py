@@ -79,6 +79,7 @@ def reduce(case: Case, result: ModalResult) -> Outcome:
             "model",
             *ASSUMPTIONS,
             *_dent(case),
+            LAYERED if case.scene.barrier.layers else "",
             omitted,
             LAID if result.laid else "",
             LEVEL if turns else "",
@@ -150,6 +151,10 @@ LAID = (
     "or of a lying cylinder, and a dashpot for the waves that it sends into the barrier. Finite elements "
     "let them out where the effect radiation is on: the measured rod of 80 mm that lands flat at 1.5 m/s has "
     "e .91, by finite elements .89 +- .03 with that effect and .94 without it."
+)
+LAYERED = (
+    "The barrier's layers count as one material, with the stiffness and strength that they have under the "
+    "estimated contact; waves in layers are left out."
 )
 ASSUMPTIONS = (
     "Contact force by Hertz' law; where a body yields, by Tabor's hardness of the softer body over the "

@@ -1,5 +1,6 @@
 """Layers as a scene states them: read, written, refused where no mesh and no model holds them."""
 
+from dataclasses import replace
 from math import inf
 
 import pytest
@@ -7,6 +8,8 @@ import pytest
 from fem_impact.case.case import Case
 from fem_impact.errors import SceneError
 from fem_impact.outcome.groups import texts
+from fem_impact.run.simulate import simulate
+from fem_impact.scene.barrier import Layer
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load
 from fem_impact.scene.types import digest, to_dict, to_toml
@@ -73,9 +76,7 @@ def test_the_advised_cells_take_the_thin_layer():
     assert Case.of(read_dict(data)).scene.accuracy.across > 8
 
 
-def test_the_reduced_model_is_refused_and_the_estimates_are_told():
-    with pytest.raises(SceneError, match=r"which has one material there\. Use fidelity solid"):
-        layered([PLATE], "modal")
+def test_the_estimates_are_told():
     planned = Case.of(load("layered"))
     assert any("first layer alone" in sentence for sentence in texts(planned.limitations, "model"))
     assert any("is thin for a contact" in sentence for sentence in texts(planned.limitations, "model"))
@@ -90,3 +91,22 @@ def test_a_soft_base_is_seen_to_yield_under_a_hard_layer_that_cannot():
         data["effects"] = "auto"
         on[base] = "barrier-elastoplastic" in Case.of(read_dict(data)).active
     assert on == {"lead": True, "titanium-6al-4v": False}
+
+
+def test_the_reduced_model_refuses_a_base_that_yields_under_layers_that_do_not():
+    alumina = {"thickness": "1.5 mm", "material": "alumina"}
+    with pytest.raises(SceneError, match=r"a base that yields .* no law of that\. Use fidelity solid"):
+        layered([alumina], "modal", material="lead")
+    layered([alumina], "modal", material="titanium-6al-4v")
+
+
+def test_layers_of_one_material_leave_the_reduced_model_as_it_is():
+    plain = load("t5b")
+    metal = plain.barrier.material
+    same = (Layer(1e-3, metal), Layer(2e-3, metal))
+    moved = [
+        simulate(replace(plain, barrier=replace(plain.barrier, layers=layers)), "modal").restitution.edge.e
+        for layers in ((), same, (Layer(0.5e-3, load("layered").barrier.struck),))
+    ]
+    assert moved[1] == pytest.approx(moved[0], rel=1e-6)
+    assert abs(moved[2] - moved[0]) > 0.01

@@ -222,7 +222,7 @@ def modal_effect(scene: Scene, pair: Pair, of: str = "e") -> VibrationEffect:
     Shares of E_0 have the half-widths that the run itself tells; all plastic work that of the shares beside
     it together, with which it adds up to one.
     """
-    value, case = difference(pair, of), Case(untargeted(scene))
+    value, case = difference(pair, of), Case(untargeted(scene), "modal")
     half, far = known_error(case, pair[0], of, value)
     thin = (
         half_space_error(case.bodies) * abs(known(pair[0].restitution.edge.e))

@@ -39,4 +39,6 @@ def fill_elastoplastic(bodies: Bodies, spec: ModelSpec) -> None:
     first, *under = (material for _, material in bodies.barrier.strata)
     some = any(metal.yields for metal in under)  # then the first may be one that never yields
     spec.barrier_law = None if some and not first.yields else hardening_of(first)
+    if spec.barrier_law and bodies.struck:
+        spec.barrier_law = spec.barrier_law.times(bodies.struck.yield_stress / first.yield_stress)
     spec.under_laws = tuple(hardening_of(metal) if metal.yields else None for metal in under)

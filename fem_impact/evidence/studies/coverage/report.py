@@ -62,7 +62,7 @@ def changes(scenes: Sequence[DrawnScene], results: judge.Results) -> Sheet:
             pair = modal_pair(scene)
             errors = [_error(pair, of, solid) for of in CHANGED]
             if any(error is not None for error in errors):
-                numbers = *place_of(Case(scene), pair[0]), *errors
+                numbers = *place_of(Case(scene, "modal"), pair[0]), *errors
                 rows.append((name, *(None if one is None else round(one, 5) for one in numbers)))
     caption = "Where scenes with a twin stand, and changes by vibration: reduced model less finite elements"
     return Sheet("changes", caption, Table.of(("scene", *Place._fields, *CHANGED), rows), shown=False)
