@@ -79,9 +79,16 @@ class Validation:
 
     def __repr__(self) -> str:
         """Return the table of errors, and the input to measure better."""
+        return f"{self.table().markdown()}\n\n{self._jointly}"
+
+    def _repr_html_(self) -> str:
+        return self.table().html(self._jointly)
+
+    @property
+    def _jointly(self) -> str:
         better, part = self.better
         return (
-            f"{self.table().markdown()}\n\njointly ({', '.join(self.joined)}) p = {self.p:.2g}; "
+            f"jointly ({', '.join(self.joined)}) p = {self.p:.2g}; "
             f"measure better: {better}, {100 * part:.0f} % of u_val squared"
         )
 

@@ -28,10 +28,10 @@ def flow_stresses(bodies: Bodies) -> dict[str, list[float]]:
 
 
 def unknowns(bodies: Bodies) -> tuple[str, ...]:
-    """Return a sentence for each thing that a material does not say and the model would use."""
+    """Return what materials do not say and the model would use, a sentence each; heat, one number, last."""
     under = [("barrier", metal) for _, metal in bodies.barrier.strata[1:]]
     of_metals = [_body(body, metal, bodies) for body, metal in (*_metals(bodies).items(), *under)]
-    sentences = (*dict.fromkeys(of_metals), _heat(bodies), _friction(bodies))
+    sentences = (*dict.fromkeys(of_metals), _friction(bodies), _heat(bodies))
     return tuple(sentence for sentence in sentences if sentence)
 
 

@@ -18,7 +18,7 @@ from fem_impact.errors import RunError, UsageError
 from fem_impact.files.run_directory import is_resumable
 from fem_impact.jobs.executors import cores
 from fem_impact.options import RunOptions
-from fem_impact.outcome.groups import WRONG_NUMBERS, by_weight
+from fem_impact.outcome.groups import WRONG_NUMBERS
 from fem_impact.outcome.keys import Key, Num, Unknown, or_none, why_unknown
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.outcome.shares import ABOVE, ADDED, IF_ON, EnergyShare, above_modes, shares
@@ -173,7 +173,7 @@ def print_outcome(
     lines += [*wrapped(spread.said), ""] if spread and spread.said else []
     rows = _motion_rows(outcome, own_tests)
     lines += [_motion_line(outcome, *row, spread) for row in rows]
-    wrong = [one for one in by_weight(outcome.validity.limitations) if one.kind in WRONG_NUMBERS]
+    wrong = [one for one in outcome.validity.limitations if one.kind in WRONG_NUMBERS]
     lines += ["", *limitation_lines(wrong)] if wrong else []
     of = "" if isinstance(outcome.validity.mesh_limit, Unknown) else ", extrapolated from the levels"
     if not outcome.validity.finished:
@@ -213,7 +213,7 @@ def print_outcome(
         told["flash temperature"] = FLASH
     notes = why_unknown({label: key.of(outcome) for label, key in told.items()})
     lines += ["", *(line for one in notes for line in wrapped(one, "  "))] if notes else []
-    others = [one for one in by_weight(outcome.validity.limitations) if one not in wrong]
+    others = [one for one in outcome.validity.limitations if one not in wrong]
     lines += ["", *limitation_lines(others)]
     sys.stdout.write("\n".join([*lines, f"results: {out}"]) + "\n")
 

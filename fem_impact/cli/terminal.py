@@ -182,8 +182,10 @@ def headed(scene_id: str, title: str) -> str:
 
 
 def limitation_lines(limitations: Iterable[Limitation], indent: str = "") -> list[str]:
-    """Return each limitation after its kind, wrapped."""
-    return [line for one in limitations for line in wrapped(f"{one.kind}: {one.text}", indent)]
+    """Return each limitation after its kind, wrapped, heaviest first."""
+    from fem_impact.outcome.groups import by_weight
+
+    return [line for one in by_weight(limitations) for line in wrapped(f"{one.kind}: {one.text}", indent)]
 
 
 def size_text(size: RunSize) -> str:

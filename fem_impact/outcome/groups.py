@@ -43,8 +43,8 @@ def by_weight(of: Iterable[Limitation]) -> tuple[Limitation, ...]:
 
 
 def texts(of: Iterable[Limitation], *kinds: LimitationKind) -> tuple[str, ...]:
-    """Return the sentences of limitations, of some ``kinds`` or, where none is named, of all."""
-    return tuple(one.text for one in of if not kinds or one.kind in kinds)
+    """Return the sentences of limitations, heaviest first, of some ``kinds`` or of all."""
+    return tuple(one.text for one in by_weight(of) if not kinds or one.kind in kinds)
 
 
 ARMS = ("paper", "edge", "impulse")

@@ -72,8 +72,7 @@ def write_sheet(folder: Path, document: str = "", revision: str = "") -> Path:
     spread = friction_spread(scene, origin.fidelity)
     numbers, unknown = _numbers(outcome, scene, spread)
     limits = outcome.validity.limitations
-    others = (kind for kind in HEAVIEST_FIRST if kind not in WRONG_NUMBERS)
-    uncovered = [sentence for kind in others for sentence in texts(limits, kind)]
+    uncovered = texts(limits, *(kind for kind in HEAVIEST_FIRST if kind not in WRONG_NUMBERS))
     blank = [(role, "", "", "") for role in ROLES]
     signatures = Table.of(("", "name", "date", "signature"), blank, left=range(4))
     state = "" if outcome.validity.finished else f"The run did not finish: {outcome.validity.stopped_because}"
@@ -94,7 +93,7 @@ def write_sheet(folder: Path, document: str = "", revision: str = "") -> Path:
             html.bullets(unknown),
         ),
         html.section("Inputs and their sources", html.table(inputs(scene), compact=False)),
-        html.section("Not covered", html.bullets((*never_covered(scene), *uncovered))),
+        html.section("Not covered", html.bullets((*uncovered, *never_covered(scene)))),
         html.section("Signatures", html.table(signatures)),
     )
     film = next((name for name in html.FILMS if (folder / name).is_file()), "")

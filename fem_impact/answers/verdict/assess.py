@@ -21,6 +21,7 @@ from fem_impact.progress import tell_cell
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.impact import Following
 from fem_impact.scene.types import Scene
+from fem_impact.tables.table import Table
 
 TOLERANCE = 0.05
 """Change of e that may be neglected, unless stated."""
@@ -70,6 +71,13 @@ class Verdict:
             f"{self.here.told}, "
             f"vibration takes {100 * self.here.E_vib:.2g} % of E_0; {self.fidelity})"
         )
+
+    def _repr_html_(self) -> str:
+        """Return the verdict with what it rests on and does not cover as the table that a notebook shows."""
+        from fem_impact.answers.verdict.sentences import basis, box, not_covered
+
+        rows = (*box(self), *basis(self), *(("not covered", one) for one in not_covered(self)))
+        return Table.of(("", ""), rows, left=(0, 1)).html(repr(self))
 
     @property
     def answer(self) -> vibration.Answer:

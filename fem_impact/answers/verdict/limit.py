@@ -334,5 +334,5 @@ def limit_document(v: LimitVerdict, command: str) -> dict[str, Any]:
             *([f"step {number}", f"{step}."] for number, step in enumerate(v.steps, 1)),
             *(["note", note] for note in [*v.notes, *lacking]),
         ],
-        "not_covered": [*never_covered(v.scene), *texts(Case(v.scene).limitations)],
+        "not_covered": [*texts(Case(v.scene).limitations), *never_covered(v.scene)],
     }

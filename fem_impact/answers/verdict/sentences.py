@@ -244,8 +244,8 @@ def _friction(v: Verdict) -> Line:
 
 
 def not_covered(v: Verdict) -> tuple[str, ...]:
-    """Return what the verdict does not cover: limits of the model, and of what was measured."""
-    return (*never_covered(v.scene), *texts(v.here.free.validity.limitations))
+    """Return what the verdict does not cover: what may make it wrong first, then what is never covered."""
+    return (*texts(v.here.free.validity.limitations), *never_covered(v.scene))
 
 
 def never_covered(scene: Scene) -> tuple[str, ...]:
