@@ -139,10 +139,14 @@ def _verdict(folder: Path, case: Case) -> tuple[str, Sequence[Line]]:
             lines,
         )
     told = read_signed(read_text(stored), str(stored))
-    answer, within = told["answer"].upper(), told["within"]
-    of, change = within["of"], within["change"]
-    criterion = f"Criterion: vibration changes {of} by at most {change:g}. Answer: {answer}."
-    return criterion, [(title, sentence) for title, sentence in told["box"]]
+    if told["scene_digest"] != digest(case.scene):
+        raise ResultError(f"{stored}: is the verdict on another scene: assess {folder / 'scene.toml'} again.")
+    if "within" in told:
+        criterion = "vibration changes {of} by at most {change:g}.".format(**told["within"])
+    else:
+        criterion = told["box"][0][0]  # the question of a limit
+    lines = [(title, sentence) for title, sentence in told["box"]]
+    return f"Criterion: {criterion} Answer: {told['answer'].upper()}.", lines
 
 
 def _still(folder: Path) -> html.Markup:

@@ -38,7 +38,8 @@ TOLD = (
     *("e_edge", "mu", "V_n_m_per_s", "V_t_m_per_s", "Omega_rad_per_s"),
     *("E_r_over_E_0", VIBRATION, "W_friction_over_E_0"),
 )
-"""Keys of the numbers whose error is told."""
+"""Keys of the numbers whose error is stored, the last three shares of E_0."""
+PLASTIC = ("E_plastic_rod_over_E_0", "E_plastic_barrier_over_E_0")
 FACTORS = ("peak_force_N", "dent_m", "flash_rise_K")
 """Numbers that are held against limits; their errors are natural logarithms of the ratio of both models."""
 
@@ -197,7 +198,7 @@ def scale_of(key: str, outcome: Outcome) -> float:
 
 
 def half_widths(place: Place, outcome: Outcome, approach: float) -> dict[str, float]:
-    """Return half-widths, by key, of those numbers of `TOLD` that an outcome of the reduced model knows.
+    """Return half-widths, by key, of those numbers that an outcome of the reduced model knows.
 
     Where the form of a dent gives more impulse along the barrier than any stored scene shows, all that is
     beyond friction may be wrong, and with it what that impulse gives the motion. ``approach``, m/s, is
@@ -209,7 +210,10 @@ def half_widths(place: Place, outcome: Outcome, approach: float) -> dict[str, fl
         for of, key in enumerate(TOLD)
         if or_none(KEY_TABLE[key].of(outcome)) is not None
     }
-    for key in ("E_r_over_E_0", VIBRATION, "W_friction_over_E_0"):  # shares lie between 0 and 1
+    # the plastic work of the body that flows is what the other shares leave
+    beside = sum(halves.get(key, 0.0) for key in TOLD[-3:])
+    halves |= {key: beside for key in PLASTIC if or_none(KEY_TABLE[key].of(outcome))}
+    for key in (*TOLD[-3:], *PLASTIC):  # shares lie between 0 and 1
         if key in halves:
             share = known(KEY_TABLE[key].of(outcome))
             halves[key] = min(halves[key], max(share, 1.0 - share))
@@ -217,6 +221,8 @@ def half_widths(place: Place, outcome: Outcome, approach: float) -> dict[str, fl
         halves["mu"] = max(halves["mu"], beyond)
         for key, change in _by_impulse(beyond, outcome, approach).items():
             halves[key] = hypot(halves[key], change)  # beside what is open at a known impulse
+    if (force := or_none(outcome.contact.peak_force)) is not None:
+        halves["peak_force_N"] = force * (factor_of(place, "peak_force_N", far) - 1.0)
     if or_none(outcome.restitution.paper.e) is not None:
         halves["e_paper"] = halves["e_edge"]  # arms a little apart take nearly the same approach
     return halves

@@ -6,10 +6,13 @@ import pytest
 import result_maker
 
 from fem_impact.answers.verdict.assess import assess
+from fem_impact.answers.verdict.criteria import LIMITED
+from fem_impact.answers.verdict.limit import judge, limit_document
 from fem_impact.answers.verdict.sentences import document
 from fem_impact.errors import ResultError
 from fem_impact.files.atomic import signed
 from fem_impact.pages.sheet import write_sheet
+from fem_impact.scene.read import read_toml
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.types import digest, to_toml
 
@@ -38,11 +41,20 @@ def test_it_states_numbers_with_errors_sources_what_is_left_out_and_where_to_sig
 
 
 def test_it_states_the_verdict_that_lies_in_the_folder_and_the_criterion(run):
-    told = document(assess(load("quick"), "modal", 0.04, of="friction"))
-    (run / "verdict.json").write_text(json.dumps(signed(told)), encoding="utf-8")
-    text = write_sheet(run).read_text(encoding="utf-8")
-    assert f"vibration changes friction by at most 0.04. Answer: {told['answer'].upper()}." in text
-    assert told["box"][0][0] in text
+    scene = read_toml(run / "scene.toml")
+    told = document(assess(scene, "modal", 0.04, of="friction"))
+    limited = limit_document(judge(scene, LIMITED["force"], 8e3, None, "modal"), "")
+    for one, asked in (
+        (told, "vibration changes friction by at most 0.04."),
+        (limited, limited["box"][0][0]),
+    ):
+        (run / "verdict.json").write_text(json.dumps(signed(one)), encoding="utf-8")
+        text = write_sheet(run).read_text(encoding="utf-8")
+        assert f"Criterion: {asked} Answer: {one['answer'].upper()}." in text
+        assert one["box"][1][1] in text
+    (run / "verdict.json").write_text(json.dumps(signed(told | {"scene_digest": "0"})), encoding="utf-8")
+    with pytest.raises(ResultError, match="verdict on another scene"):
+        write_sheet(run)
 
 
 def test_a_scene_that_was_changed_after_the_run_is_not_signed(run):

@@ -110,9 +110,8 @@ def _rest(v: Verdict) -> str:
 
 
 def _percent(effect: VibrationEffect, name: str, part: float) -> str:
-    """Return a share in per cent with its half-width, if known; for one body that of all plastic work."""
-    total = effect.errors.get("plastic") if name.startswith("plastic_") else None
-    half = effect.errors.get(name, total)
+    """Return a share in per cent with its half-width, if known."""
+    half = effect.errors.get(name)
     if half is None:
         return f"{100 * part:.0f} %"
     return f"{with_band(100 * part, max(100 * half, LEAST_HALF), 0.0, 100.0)} %".replace("+-", "±")
@@ -202,8 +201,8 @@ def _form(rod: ProjectileSpec) -> str:
 
 def _motion(run: Outcome) -> str:
     return (
-        f"e {known(run.restitution.edge.e):.3f}, mu {known(run.restitution.mu):.3f}, Omega "
-        f"{known(run.motion.Omega):.3g} rad/s, E_r {100 * known(run.energy.rigid):.3g} % of E_0."
+        f"e {run.told('e_edge')}, mu {run.told('mu')}, Omega {run.told('Omega_rad_per_s')} rad/s, "
+        f"E_r {run.told('E_r_over_E_0', 100.0)} % of E_0."
     )
 
 

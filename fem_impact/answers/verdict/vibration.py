@@ -219,8 +219,7 @@ def modal_pair(scene: Scene) -> Pair:
 def modal_effect(scene: Scene, pair: Pair, of: str = "e") -> VibrationEffect:
     """Return what the reduced model says of the change of a number, with its known error.
 
-    Shares of E_0 have the half-widths that the run itself tells; all plastic work that of the shares beside
-    it together, with which it adds up to one.
+    Shares of E_0 have the half-widths that the run itself tells.
     """
     value, case = difference(pair, of), Case(untargeted(scene), "modal")
     half, far = known_error(case, pair[0], of, value)
@@ -241,7 +240,7 @@ def modal_effect(scene: Scene, pair: Pair, of: str = "e") -> VibrationEffect:
         *pair,
         off_sentence(of, half, far) + THIN_PLATE.format(thin) * bool(thin),
         REDUCED,
-        {**shares, "plastic": sum(shares.values())},
+        shares,
         not far,
     )
 
