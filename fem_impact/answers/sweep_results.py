@@ -247,6 +247,9 @@ def _ended(row: SweepRow, columns: Sequence[str]) -> list[Cell]:
         limit = values[name] = known(row.outcome.estimate(name)[0])
         values |= {name + LOW: limit - band, name + HIGH: limit + band}
     reason = (e.reason if isinstance(e, Unknown) else "") if validity.finished else validity.stopped_because
+    target, achieved = validity.accuracy_target, or_none(validity.achieved_error)
+    if not reason and isinstance(target, float) and achieved is not None and achieved > target:
+        reason = f"known to {100 * achieved:.2g} %, not to the wanted {100 * target:.3g} %"
     cells = (values.get(name) for name in columns)
     return [validity.finished, reason, *(len(cell) if isinstance(cell, list) else cell for cell in cells)]
 

@@ -71,12 +71,14 @@ def check_finite(name: str, values: np.ndarray) -> None:
 
 
 T = TypeVar("T")
+ON_REQUEST = ("velocity", "stress")
+"""Fields that only a scene with ``save.fields = "all"`` keeps."""
 _COLUMNS = {"displacement": (3,), "velocity": (3,), "mises": (), "plastic_strain": (), "stress": (6,)}
 _SHRINKS = 1032  # the most by which HDF5's compression makes data smaller
 _WAITS = (0.02, 0.1, 0.5, 0.0)  # s before each further try while a writer has the file open
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class FieldFile:
     """Contents of a field file; the data of frames are read on demand.
 
@@ -101,6 +103,13 @@ class FieldFile:
     static: Mapping[str, np.ndarray]
     point_names: tuple[str, ...]
     cell_names: tuple[str, ...]
+
+    def __repr__(self) -> str:
+        names, end = (*self.point_names, *self.cell_names), 1e6 * self.times.max(initial=0.0)
+        return (
+            f"FieldFile({str(self.path)!r}: {len(self.cells)} cells, {len(self.times)} frames to "
+            f"{end:.3g} us of {', '.join(names)})"
+        )
 
     def point_data(self, name: str, frame: int) -> np.ndarray:
         """Return ``(n,)`` or ``(n, k) float32`` point data of one frame. Raises ResultError."""
@@ -162,9 +171,9 @@ class FieldFile:
 
     def _rows(self, kind: str, name: str, frame: int, names: tuple[str, ...]) -> np.ndarray:
         if name not in names:
-            raise ResultError(
-                f'{self.path}: holds no {kind} "{name}"; it holds {", ".join(names) or "none"}.'
-            )
+            more = ' A run keeps it with save.fields = "all".' if name in ON_REQUEST else ""
+            held = ", ".join(names) or "none"
+            raise ResultError(f'{self.path}: holds no {kind} "{name}"; it holds {held}.{more}')
         if not 0 <= frame < len(self.times):
             raise ResultError(f"{self.path}: frame {frame} is asked for, it holds {len(self.times)}.")
         count = len(self.points if kind == "PointData" else self.cells)

@@ -13,9 +13,11 @@ from fem_impact.run import modal_error
 from fem_impact.run.modal_error import (
     CALLED,
     HELD,
+    PLASTIC,
     TOLD,
     Place,
     Stored,
+    factor_of,
     half_widths,
     place_of,
     scale_of,
@@ -108,7 +110,11 @@ def replaced(outcome, vibration):
 def test_an_outcome_tells_half_widths_in_its_units_and_what_it_is_unlike(monkeypatch):
     outcome = simulate(load("t5b"), "modal")
     halves = outcome.half_widths
-    assert set(halves) == {*TOLD, "e_paper"} and all(half > 0.0 for half in halves.values())
+    of_others = {"e_paper", "peak_force_N", PLASTIC[1]}
+    assert set(halves) == {*TOLD, *of_others} and all(half > 0.0 for half in halves.values())
+    assert halves[PLASTIC[1]] == sum(halves[share] for share in TOLD[-3:])  # the shares add up to one
+    factor = factor_of(place_of(Case.of(load("t5b"), "modal"), outcome), "peak_force_N", 0.0)
+    assert halves["peak_force_N"] == outcome.contact.peak_force * (factor - 1.0)
     assert halves["e_paper"] == halves["e_edge"] and outcome.estimate("e_edge")[1] == halves["e_edge"]
     fast = simulate(replace(load("t5b"), "impact.v_n", "-1.48 m/s"), "modal")
     assert scale_of("V_n_m_per_s", fast) != scale_of("V_n_m_per_s", outcome)
