@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import isclose
+from math import degrees, isclose
 
 import numpy as np
 
@@ -73,11 +73,16 @@ class Verdict:
         )
 
     def _repr_html_(self) -> str:
-        """Return the verdict with what it rests on and does not cover as the table that a notebook shows."""
-        from fem_impact.answers.verdict.sentences import basis, box, not_covered
-
-        rows = (*box(self), *basis(self), *(("not covered", one) for one in not_covered(self)))
-        return Table.of(("", ""), rows, left=(0, 1)).html(repr(self))
+        """Return the verdict, here and at the worst inclination, with its steps, as a notebook shows it."""
+        rows = [("here", self.answer, f"{self.here.of} changes by {self.here.told}")]
+        if self.worst is not None:
+            where = f"worst inclination, {degrees(self.worst.angle):.3g} deg"
+            rows.append((where, self.worst_answer, f"{self.worst.of} changes by {self.worst.told}"))
+        rows += [("missing", "", self.missing)] if self.missing else []
+        rows += [(f"step {number}", "", step) for number, step in enumerate(self.steps, 1)]
+        rows += [("note", "", note) for note in self.notes]
+        columns = ("", "may rigid theory be used", "why")
+        return Table.of(columns, rows, left=(0, 1, 2)).html(repr(self))
 
     @property
     def answer(self) -> vibration.Answer:
