@@ -145,8 +145,8 @@ def _verdict(folder: Path, case: Case) -> tuple[str, Sequence[Line]]:
         criterion = "vibration changes {of} by at most {change:g}.".format(**told["within"])
     else:
         criterion = told["box"][0][0]  # the question of a limit
-    lines = [(title, sentence) for title, sentence in told["box"]]
-    return f"Criterion: {criterion} Answer: {told['answer'].upper()}.", lines
+    said = f"Criterion: {criterion} Answer: {told['answer'].upper()}."
+    return said, [(title, sentence) for title, sentence in told["box"]]
 
 
 def _still(folder: Path) -> html.Markup:

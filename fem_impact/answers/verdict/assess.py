@@ -74,7 +74,9 @@ class Verdict:
 
     def _repr_html_(self) -> str:
         """Return the verdict, here and at the worst inclination, with its steps, as a notebook shows it."""
-        rows = [("here", self.answer, f"{self.here.of} changes by {self.here.told}")]
+        rows: list[tuple[str, str, str]] = [
+            ("here", self.answer, f"{self.here.of} changes by {self.here.told}")
+        ]
         if self.worst is not None:
             where = f"worst inclination, {degrees(self.worst.angle):.3g} deg"
             rows.append((where, self.worst_answer, f"{self.worst.of} changes by {self.worst.told}"))

@@ -491,6 +491,12 @@ def test_the_three_lines_and_the_document(short):
     json.dumps(found, allow_nan=False)
 
 
+def test_a_notebook_shows_the_answer_here_and_at_the_worst_inclination(short):
+    page = short._repr_html_()
+    assert f"<td>here</td><td>yes</td><td>e changes by {short.here.told}</td>" in page
+    assert f"<td>{short.worst_answer}</td><td>e changes by {short.worst.told}</td>" in page
+
+
 def test_the_command_prints_three_lines_first_and_writes_a_page(cli):
     code, out, err = cli("assess", "t5b", "--fidelity", "modal", "--out", "page", "--set", "save.frames=0")
     assert (code, err) == (0, "")
