@@ -33,9 +33,8 @@ def _pressed(case: Case, rod: ModalRod, held: Touched, s: int) -> ContactSite:
     across = 2.0 * of[SITE.deepest] if flow.yields else of[SITE.deepest]  # a Hertzian contact is narrower
     half, wide = sqrt(flow.R1 * across), sqrt(flow.R2 * across)
     middle = skin(rod.sites, s, float(of[SITE.turned]))[0] - _first(case)
-    depth = float(of[SITE.deepest])
-    if not (flow.yields and flow.ploughs):
-        depth = float(of[SITE.force]) * flexibility(case) / (2.0 * sqrt(half * wide))
+    dent = float(held.depth[s].max()) if flow.yields else 0.0
+    depth = _of_barrier(case, float(of[SITE.deepest]), dent, bool(flow.ploughs))
     return _site([of], middle - half, middle + half, 2.0 * wide, depth)
 
 
@@ -49,10 +48,15 @@ def _laid(case: Case, rod: ModalRod, held: Touched, f: int) -> ContactSite:
     sunk = 0.5 * (flats.dent[f] + flats.deepest[f])
     wide = np.sqrt(flats.base[f] + flats.law[f, LAW.widens] * sunk)
     half = 0.5 * flats.law[f, LAW.size]
-    share, dent = flexibility(case) * pair.modulus, float(flats.dent[f].max())
-    depth = share * (float(flats.deepest[f].max()) - dent) + (dent if pair.softer == pair.barrier else 0.0)
+    deepest, dent = float(flats.deepest[f].max()), float(flats.dent[f].max())
+    depth = _of_barrier(case, deepest, dent, pair.softer == pair.barrier)
     low, high = float(places.min()) - half, float(places.max()) + half
     return _site(rows, low, high, 2.0 * float(wide[cells].max()), depth)
+
+
+def _of_barrier(case: Case, deepest: float, dent: float, flows: bool) -> float:
+    """Return the depth in the barrier, m: its share of what is elastic, and the dent, m, if it flows."""
+    return flexibility(case) * case.contact.modulus * (deepest - dent) + dent * flows
 
 
 def _site(rows: list[Array], low: float, high: float, width: float, depth: float) -> ContactSite:

@@ -9,6 +9,7 @@ from fem_impact.case.record import BodyRecord, ContactRecord, Site
 from fem_impact.solid.contact.moving_plane import MovingPlane
 from fem_impact.solid.contact.plane import PlaneContact
 from fem_impact.solid.contact.surface import SurfaceContact
+from fem_impact.solid.dent import border, sunk
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
 from meshes import HexMesh, edge_lengths
@@ -29,7 +30,7 @@ class ContactWatch:
     first, last : (k,) s, when each node of the rod was seen pressed first and last
     impulse : (k, 2) along n and t, N s, on each node of the rod, of the half model
     pressed : (m,) whether a node of the barrier was pressed
-    deepest : (m,) largest indentation there, m
+    deepest : (m,) largest indentation there under the surface around, m; border : nodes of that surface
     """
 
     moving: ClassVar[tuple[str, ...]] = ("first", "last", "impulse", "pressed", "deepest")
@@ -43,6 +44,7 @@ class ContactWatch:
         if isinstance(contact, SurfaceContact):
             places = contact.rod.places
             self.barrier = _nodes(layout.barrier, contact.barrier.places)
+            self.border = border(contact.barrier)
         else:
             assert contact is not None, "a run has a contact"
             places = contact.nodes
@@ -68,8 +70,8 @@ class ContactWatch:
             self._add(np.unique(corners), share, state.time)
             nodes = np.union1d(under, by[quads[over]])
             self.pressed[nodes] = True
-            sunk = -state.x[contact.barrier.places[nodes, 2]]
-            self.deepest[nodes] = np.maximum(self.deepest[nodes], sunk)
+            deep = sunk(contact.barrier, self.border, state.x)[nodes]
+            self.deepest[nodes] = np.maximum(self.deepest[nodes], deep)
         elif isinstance(contact, MovingPlane):
             self._add(
                 np.flatnonzero(contact.points.memory[:, 2]), contact.points.memory[:, [2, 0]], state.time
