@@ -38,16 +38,16 @@ def findings(
     points = table[table.way == "solid"]
     body = dict(iter(rods[rods.diameter_m == BODY].groupby("family", sort=False)))
     by_picture = {
+        "onset": [
+            *answer(body),
+            *meshed_onsets(body),
+            *confirmed(table[table.family == runs.ENDS], angles[angles.family == runs.HERTZ[1]]),
+        ],
         "vibration": [
             *what_the_limit_says(points),
             *(sentence for kind in PLAIN for sentence in where_it_peaks(points, kind)),
             *(sentence for kind in PLAIN for sentence in modes_less_elements(points, kind)),
             how_sure(points),
-        ],
-        "onset": [
-            *answer(body),
-            *meshed_onsets(body),
-            *confirmed(table[table.family == runs.ENDS], angles[angles.family == runs.HERTZ[1]]),
         ],
         "angles": spread(body),
         "static-give": static_give(upright),
