@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from .arms import Arms, point_arms
 from .chord import mirrored_chord
 from .inputs import ArrayLike, Floats, ShapeError, floats
-from .rounds import Round, hull, rounds_of
+from .rounds import Round, cut, hull, rounds_of
 from .slenderness import slenderness
 from .touch import Touch, level_part, on_side, require_inclination
 from .turned import CORNER
@@ -161,6 +161,35 @@ class Faceted:
         around = np.roll(outline, -highest, axis=0)
         return mirrored_chord(np.vstack([around, around[:1]]), alpha, height)
 
+    def section(self, alpha: float, height: float) -> float:
+        """Area, m2, of the convex hull of what lies in the plane at a `height`, m, over the lowest point."""
+        ends = np.stack([self.facets, np.roll(self.facets, -1, axis=1)], axis=-1).reshape(-1, 2)
+        over = self.heights(alpha)[ends] - height
+        cut = (over.min(axis=1) < 0.0) & (over.max(axis=1) >= 0.0)
+        ends, over = ends[cut], over[cut]
+        share = (over[:, 0] / (over[:, 0] - over[:, 1]))[:, None]
+        x, y, z = (self.points[ends[:, 0]] * (1.0 - share) + self.points[ends[:, 1]] * share).T
+        t = x * math.cos(alpha) + z * math.sin(alpha)
+        u, v = hull(np.column_stack([np.tile(t, 2), np.concatenate([y, -y])]), 0.0).T
+        return 0.5 * float(np.abs(u @ np.roll(v, -1) - v @ np.roll(u, -1)))
+
+    def half_widths(self, start: Floats, end: Floats, share: Floats) -> Floats:
+        """Half widths across, m, of the flat side on a straight part of the outline from `start` to `end`.
+
+        Both are (x, z), m; `share` are shares of the way. They are 0 where an edge alone lies in it.
+        """
+        way = end - start
+        length = float(np.hypot(*way))
+        x, z = ((self.points[:, [0, 2]] - start) @ np.array([way, [-way[1], way[0]]]).T / length).T
+        near = np.abs(z) < LEVEL * self.length
+        flat = np.column_stack([x[near], self.points[near, 1]])
+        if flat[:, 1].max() < LEVEL * self.length:
+            return np.zeros_like(share)
+        line = hull(np.vstack([flat, flat * [1.0, -1.0]]), 0.0)
+        top = line[line[:, 1] >= 0.0]
+        top = top[np.lexsort((top[:, 1], top[:, 0]))]
+        return np.asarray(np.interp(share * length, *top.T))
+
     def curvature_around(self, alpha: float) -> float:
         """Radius of curvature, m, across the plane of motion at the lowest point; inf along a straight edge.
 
@@ -237,6 +266,14 @@ class Faceted:
     def rounds(self) -> list[Round]:
         """Corners of the convex outline in the plane of motion, in order around it."""
         return rounds_of(self._outline)
+
+    def curves(self, side: float = 1.0) -> list[Round]:
+        """Arcs and corners of the outline of the body, or at a ``side`` below 0 of its mirror image.
+
+        Facets that turn by less than `CORNER` are steps of a smooth curve.
+        """
+        line = self._outline if side > 0 else self._outline[::-1] * [-1.0, 1.0]
+        return cut(rounds_of(line, CORNER), math.pi)
 
     def _lowest(self, alpha: Floats) -> NDArray[np.int64]:
         """Return the vertex of the outline that is lowest; of those equally low, see `contact_point`."""

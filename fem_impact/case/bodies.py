@@ -48,12 +48,14 @@ class Bodies:
     effects : names of the effects in force
     later : how they touch in a strike after the first; None: as the scene says
     struck : material that stands for the layers of a barrier; None: the first one alone
+    spans : as of their contact, see `ContactPair`
     """
 
     scene: Scene
     effects: tuple[str, ...]
     later: LaterStrike | None = None
     struck: Material | None = None
+    spans: bool = False
 
     @property
     def rod(self) -> ProjectileSpec:
@@ -93,6 +95,7 @@ class Bodies:
             barrier_inertia=barrier.inertia,
             centre_offset=barrier.centre_offset,
             plate=Plate(steel.E, steel.nu, steel.rho, h) if barrier.bends and h is not None else None,
+            spans=self.spans,
         )
 
     @cached_property

@@ -159,8 +159,10 @@ class Case:
         """The bodies with the effects in the model; the reduced model takes one material for layers."""
         whole = self._whole
         bodies = whole if whole.effects == self.active else Bodies(self.scene, self.active, self.later)
+        if self.fidelity == "modal" and self.scene.projectile.own_mesh:
+            bodies = replace(bodies, spans=True)
         if self.fidelity == "modal" and self.scene.barrier.layers:
-            return replace(bodies, struck=as_one(bodies))
+            bodies = replace(bodies, struck=as_one(bodies))
         return bodies
 
     @property

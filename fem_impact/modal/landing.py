@@ -12,6 +12,7 @@ from fem_impact.modal.sites import skin
 from fem_impact.modal.touch import LAID
 from fem_impact.physics.contact import FLAT, ContactPair, impedance
 from fem_impact.physics.contact_law import FULLY_PLASTIC, REPRESENTATIVE, FlowLaw, flow_law
+from rigid import Faceted
 
 LEANS = 0.5  # rise over length beyond which a straight part that touches with an end does not land flat
 ON_SIDE = 0.25 * pi  # stiffness of a side over E* times its length (Popov 2010)
@@ -47,7 +48,9 @@ def lay_flat(
             f = int(np.argmax(free))
             held.flats.ends[f] = s, other
             flow = flow_law(pair, case.slots.rod_law, case.slots.barrier_law)
-            if _is_face(ends):
+            if isinstance(case.bodies.body, Faceted):
+                _set_facet(case, held, f, ends, pair, flow)
+            elif _is_face(ends):
                 _set_face(case, held, f, ends, pair, flow, _roundness(rod, s, turn))
             else:
                 _set_side(case, held, f, ends, pair, flow)
@@ -93,13 +96,20 @@ def _is_face(ends: list[tuple[float, float]]) -> bool:
 
 def _is_straight(case: Case, ends: list[tuple[float, float]], depth: float) -> bool:
     """Return whether the surface between two places (x, z), m, lies within a depth, m, of their line."""
+    body, share = case.bodies.body, (np.arange(CELLS) + 0.5) / CELLS
+    (x, z), (u, w) = ends
+    if isinstance(body, Faceted):
+        start, way = np.array(ends[0]), np.subtract(ends[1], ends[0])
+        inwards = np.array([-way[1], way[0]]) / np.hypot(*way)
+        inwards *= np.sign(inwards @ (np.array([body.x_c, body.z_c]) - start))
+        inside = start + share[:, None] * way + depth * inwards
+        wide = body.half_widths(start, start + way, share)
+        return bool(body.within(*inside.T).all() and wide.min() > depth)
     if _is_face(ends):
         return True
-    (x, z), (u, w) = ends
     if x * u < 0.0:
         return False
-    share = (np.arange(CELLS) + 0.5) / CELLS
-    radius = np.asarray(case.bodies.body.radius(z + share * (w - z)))
+    radius = np.asarray(body.radius(z + share * (w - z)))
     return bool((abs(x) + share * (abs(u) - abs(x)) - radius < depth).all())
 
 
@@ -123,13 +133,27 @@ def _set_face(
     held.flats.share[f] = np.clip(0.5 * (1.0 - np.sign(x) * place / flat), 0.0, 1.0)
     held.flats.base[f] = wide**2 - place**2
     held.flats.inner[f] = np.sqrt(np.maximum(bore**2 - place**2, 0.0))
+    _set_row(case, held, f, pair, flow, pair.modulus, _of_face(flow), 2 * wide / CELLS, 0.0)
+
+
+def _set_facet(
+    case: Case, held: Touched, f: int, ends: list[tuple[float, float]], pair: ContactPair, flow: FlowLaw
+) -> None:
+    """Enter the law of a flat side of a mesh, as stiff as a round punch of its area."""
+    body, share = case.bodies.body, (np.arange(CELLS) + 0.5) / CELLS
+    assert isinstance(body, Faceted), "a facet is one of a mesh"
+    length, half = dist(*ends), body.half_widths(np.array(ends[0]), np.array(ends[1]), share)
+    held.flats.share[f], held.flats.base[f] = share, half**2
+    stiffness = 2 * pair.modulus * sqrt(2 * float(half.mean()) * length / pi) / length
+    _set_row(case, held, f, pair, flow, stiffness, _of_face(flow), length / CELLS, 0.0)
+
+
+def _of_face(flow: FlowLaw) -> float:
+    """Return what a face bears, Pa: a rod that is pressed over all of it yields as a column."""
     plane, column = flow.yield_stress, flow.other_yield_stress
     if not flow.ploughs:
         plane, column = column, plane
-    # a rod that is pressed over all its face yields as a column
-    _set_row(
-        case, held, f, pair, flow, pair.modulus, min(FULLY_PLASTIC * plane, column), 2 * wide / CELLS, 0.0
-    )
+    return min(FULLY_PLASTIC * plane, column)
 
 
 def _set_side(

@@ -17,7 +17,6 @@ from fem_impact.modal.touch import LAID
 from fem_impact.physics.contact import ContactPair
 from fem_impact.physics.contact_law import ContactLaw, FlowLaw, contact_law, flow_law
 from fem_impact.scene.material import Material
-from rigid import Faceted
 
 BESIDE = 1e-4  # rad, that a law is at least away from the ends of its site's range of normals
 STEADIER = 30.0  # times as many steps where a whole row of cells touches and leaves at once
@@ -40,7 +39,6 @@ def pair_at(case: Case, rod: ModalRod, now: ModalState, s: int, slowest: float) 
     angle = first.angle + min(max(turn, low), high)
     angle -= 2 * pi * np.floor((angle + pi) / (2 * pi))
     body = case.bodies.body
-    assert not isinstance(body, Faceted), "the case refuses the modal fidelity of a mesh of its own"
     if abs(angle) > 0.5 * pi:
         body, angle = body.reversed(), angle - pi if angle > 0 else angle + pi
     c, sn = cos(rigid[AT.turn]), sin(rigid[AT.turn])

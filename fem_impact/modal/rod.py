@@ -97,10 +97,11 @@ def modal_rod(bodies: Bodies, vibrating: bool = True) -> ModalRod:
     other way, exactly: modes from a mesh are symmetric but for their round-off.
     """
     pair, body = bodies.contact, bodies.body
-    assert not isinstance(body, Faceted), "the case refuses the modal fidelity of a mesh of its own"
-    alpha, rounds = abs(pair.angle), body.rounds()
+    alpha, side = abs(pair.angle), pair.side
+    rounds = body.curves(side) if isinstance(body, Faceted) else body.rounds()
     places = nearest_skin(rounds, alpha)
-    omega, moved = _moved(bodies, places) if vibrating else (np.zeros(0), np.zeros((len(places), 2, 0)))
+    own = side if isinstance(body, Faceted) else 1.0
+    omega, moved = _moved(bodies, places, own) if vibrating else (np.zeros(0), np.zeros((len(places), 2, 0)))
     sites = sites_of(rounds, (body.x_c, body.z_c), pair.angle, *rotated(alpha, moved[:, 0], moved[:, 1]))
     first = -1
     if not pair.lands_flat:
@@ -111,11 +112,14 @@ def modal_rod(bodies: Bodies, vibrating: bool = True) -> ModalRod:
     return ModalRod(body.mass, body.k2, omega, sites, first)
 
 
-def _moved(bodies: Bodies, places: Array) -> tuple[Array, Array]:
-    """Return omega (k,), and what each mode moves places (m, 2) by, (m, 2, k), kg^-1/2; all (x, z)."""
+def _moved(bodies: Bodies, places: Array, side: float) -> tuple[Array, Array]:
+    """Return omega (k,), and what each mode moves places (m, 2) by, (m, 2, k), kg^-1/2; all (x, z).
+
+    At a ``side`` of -1 all are of the mirror image of the rod.
+    """
     rod, across = _elastic(bodies.rod), bodies.scene.across
-    moved = [_moved_place(rod, across, x, z) for x, z in places.tolist()]
-    return _modes(rod, across)[2], np.array(moved)
+    moved = [_moved_place(rod, across, side * x, z) for x, z in places.tolist()]
+    return _modes(rod, across)[2], np.array(moved) * np.array([[side], [1.0]])
 
 
 @lru_cache(maxsize=256)

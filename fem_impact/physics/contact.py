@@ -77,6 +77,7 @@ class ContactPair:
     barrier_mass, barrier_inertia : of a free barrier, kg, kg m2; None of one that does not move or turn
     centre_offset : of the barrier's mass centre from the struck point along t, m
     plate : the barrier, if it bends
+    spans : whether the contact of a body of facets is as large as the body where it is pressed in
     """
 
     body: Body
@@ -94,6 +95,7 @@ class ContactPair:
     barrier_inertia: float | None = None
     centre_offset: float = 0.0
     plate: Plate | None = None
+    spans: bool = False
 
     @cached_property
     def elastic(self) -> "ContactPair":
@@ -216,9 +218,13 @@ class ContactPair:
         for _ in range(ROUNDS):
             down, up = self.body.reaches(self.angle, size.depth)
             wide = (down + up) ** 2 / (8 * size.depth)
-            if wide <= R1:
+            if self.spans and isinstance(self.body, Faceted):
+                b = 2 * self.body.section(self.angle, size.depth) / (pi * (down + up))
+                size = self._pressed_in(max(wide, R1), max(b**2 / (2 * size.depth), R1))
+            elif wide <= R1:
                 break
-            size = self._pressed_in(wide, max(R2, min(wide, around)))
+            else:
+                size = self._pressed_in(wide, max(R2, min(wide, around)))
             size = replace(size, shift=self.side * max(0.0, self.side * 0.5 * (down - up)), wider=wide / R1)
         # of a face nearly flat all may touch, whatever the depth
         return self.round_contact if self.body.face > 0 and self.nearly_flat(size.depth) else size

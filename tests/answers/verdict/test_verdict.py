@@ -642,14 +642,9 @@ def test_one_level_decides_nothing(monkeypatch):
 
 def test_a_mesh_of_the_users_own_is_decided_on_levels(monkeypatch, striker):
     asked = solid_alone(monkeypatch, [0.3, 0.3])
-    found = assess(striker, budget_s=1e5)
+    found = assess(striker, "solid", budget_s=1e5)
     assert (found.answer, len(asked)) == ("no", 2)
     assert asked[1].tip_size < asked[0].tip_size
-
-
-def test_the_reduced_model_is_refused_for_them_with_the_remedy(striker):
-    with pytest.raises(SceneError, match="no radii of a smooth tip"):
-        assess(striker, "modal")
 
 
 def test_a_mesh_that_the_solid_model_cannot_hold_is_refused_before_any_run(striker, monkeypatch):

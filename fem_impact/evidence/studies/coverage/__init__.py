@@ -45,7 +45,7 @@ def plan(request: Request, results: Results) -> list[CoverageRun]:
     """
     runs = []
     for scene in scenes(request):
-        wanted = [DEFAULT] if scene.body else [MODAL, DEFAULT]
+        wanted = [MODAL, DEFAULT]
         for model, (before, most_s) in NEXT.items():
             done = results.get(CoverageRun(scene, before).name)
             affords = isinstance(done, CoverageResult) and done.has_numbers and done.cpu_s <= most_s

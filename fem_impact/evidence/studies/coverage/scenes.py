@@ -123,7 +123,9 @@ def _gentle(rounds: int, drawn_by: int) -> Iterator[DrawnScene]:
     seed, count = (drawn_by, len(families.FAMILIES) + 1), rounds * len(turned)
     metals = _metals(count, seed)
     rods, barriers = (_turns(BRITTLE, count, np.random.default_rng([*seed, at])) for at in (4, 5))
-    kinds = _turns(KINDS[:3], count, np.random.default_rng([*seed, 1]))  # layers: no reduced model
+    kinds = _turns(
+        KINDS[:3], count, np.random.default_rng([*seed, 1])
+    )  # none of layers: so stored scenes stay
     for at, (values, kind) in enumerate(zip(_rows(RANGES, count, seed), kinds, strict=True)):
         slow, projectile = at % 2 == 1, families.FAMILIES[turned[at % len(turned)]](values)
         rod, struck = metals[at] if slow else (rods[at], barriers[at])

@@ -1,0 +1,87 @@
+"""The reduced model of meshes: their outline, how large their contact is, and what touches flat."""
+
+import numpy as np
+import pytest
+from own_bodies import write
+
+from fem_impact import load, replace
+from fem_impact.case.case import Case
+from fem_impact.errors import SceneError
+from fem_impact.evidence.studies.coverage.bodies import BODIES
+from fem_impact.run.simulate import simulate
+from fem_impact.scene.read import read_dict
+
+SIZES = {"width": 12e-3, "length": 60e-3, "bend": 6e-3}
+
+
+def scene(folder, body, angle, mirrored=False):
+    points, cells = BODIES[body](SIZES)
+    if mirrored:
+        points, cells = points * [-1.0, 1.0, 1.0], cells[:, [1, 0, 3, 2, 5, 4, 7, 6]]
+    path = write(folder / f"{body}{mirrored}.vtu", points, cells)
+    mesh = {"mesh": str(path), "mesh_unit": "m", "mesh_symmetry": "half", "material": "rod-steel"}
+    return read_dict(
+        {
+            "id": "own",
+            "projectile": mesh,
+            "barrier": {"material": "plate-steel"},
+            "surface": {"state": "machined"},
+            "impact": {"angle": f"{angle} deg", "v_n": "-2 m/s", "v_t": "0 m/s"},
+        }
+    )
+
+
+def test_a_body_that_leans_the_other_way_is_the_mirror_image(tmp_path):
+    here, there = (simulate(scene(tmp_path, "bent bar", *way), "modal") for way in ((40, False), (-40, True)))
+    assert there.restitution.edge.e == pytest.approx(here.restitution.edge.e, rel=1e-4)
+    assert there.motion.Omega == pytest.approx(-here.motion.Omega, rel=1e-4)
+    assert there.energy.vibration == pytest.approx(here.energy.vibration, rel=1e-3)
+    other = simulate(scene(tmp_path, "bent bar", -40), "modal")
+    assert abs(other.restitution.edge.e - here.restitution.edge.e) > 0.01
+
+
+def test_a_contact_is_as_large_as_the_body_where_it_is_pressed_in(tmp_path):
+    case = Case.of(scene(tmp_path, "square bar", 30), "modal")
+    size, a = case.estimate, np.radians(30.0)
+    area = 12e-3 * size.depth * (np.tan(a) + 1 / np.tan(a))
+    assert case.bodies.body.section(float(a), size.depth) == pytest.approx(area, rel=1e-9)
+    assert np.pi * size.a_t * size.a_b == pytest.approx(area, rel=0.02)
+
+
+def test_a_side_lands_flat_with_its_width_and_a_ridge_is_refused(tmp_path):
+    side = Case.of(scene(tmp_path, "square bar", 90), "modal").bodies.body
+    ends = np.array([6e-3, 0.0]), np.array([6e-3, 60e-3])
+    assert side.half_widths(*ends, np.linspace(0.0, 1.0, 5)) == pytest.approx(np.full(5, 6e-3))
+    upright = simulate(scene(tmp_path, "square bar", 0), "modal")
+    assert upright.energy.radiated > 0.0
+    assert abs(upright.energy.residual) < 1e-4
+    with pytest.raises(SceneError, match=r"lands along a ridge, .* Use fidelity solid"):
+        Case.of(scene(tmp_path, "hexagonal bar", 90), "modal")
+
+
+@pytest.mark.slow
+def test_a_rod_written_to_a_mesh_is_that_rod(tmp_path):
+    """Facets of 0.8 mm stand for an edge of 3 mm."""
+    from fem_impact.fem.body import MeshedBodies
+    from fem_impact.scene.types import to_dict
+
+    rod = load("t5b")
+    fine = {"effects": ["vibration", "barrier-rigid"], "accuracy.tip_size": "0.79 mm", "accuracy.across": 24}
+    bare = rod
+    for key, value in fine.items():
+        bare = replace(bare, key, value)
+    mesh = MeshedBodies(Case.of(bare)).geometry.rod.mesh
+    assert not mesh.is_hanging.any()
+    path = write(tmp_path / "rod.vtu", mesh.points, mesh.cells)
+    stated = to_dict(rod)
+    stated["projectile"] = {
+        "mesh": str(path),
+        "mesh_unit": "m",
+        "mesh_symmetry": "half",
+        "material": stated["projectile"]["material"],
+    }
+    del stated["measured"]
+    ours, theirs = (simulate(one, "modal") for one in (rod, read_dict(stated)))
+    assert theirs.restitution.edge.e == pytest.approx(ours.restitution.edge.e, abs=0.025)
+    assert theirs.restitution.mu == pytest.approx(ours.restitution.mu, abs=0.04)
+    assert theirs.energy.vibration == pytest.approx(ours.energy.vibration, abs=0.002)
