@@ -22,7 +22,6 @@ from fem_impact.cli.values import read_values
 from fem_impact.errors import UsageError
 from fem_impact.figures.panels import Picture
 from fem_impact.files.run_directory import refuse_other_scene
-from fem_impact.jobs.executors import cores
 from fem_impact.pages.run_page import write_verdict
 from fem_impact.scene.impact import FIRST
 from fem_impact.scene.types import Scene, to_toml
@@ -70,8 +69,8 @@ def _refuse(options: Options, limited: bool) -> None:
             raise UsageError("has no question here.", key=key, value=value, remedy=remedy)
 
 
-def _rigid(options: Options, scene: Scene) -> tuple[dict[str, Any], Picture]:
-    """Return the verdict on rigid theory as plain JSON, and the design chart with its point."""
+def _rigid(options: Options, scene: Scene) -> tuple[dict[str, Any], Picture | None]:
+    """Return the verdict on rigid theory as plain JSON, and the design chart with its point, if any."""
     case = dropped(scene) if options.heat else None
     of, change = _within(options)
     verdict = assessed(scene, options.fidelity, change, *_means(options), tell=_telling(options), of=of)
@@ -86,10 +85,10 @@ def _rigid(options: Options, scene: Scene) -> tuple[dict[str, Any], Picture]:
     return answer, chart(verdict)
 
 
-def _means(options: Options) -> tuple[float, int]:
-    """Return the budget of the finite elements, s, and how many runs go on at a time."""
+def _means(options: Options) -> tuple[float, int | None]:
+    """Return the budget of the finite elements, s, and how many runs go on at a time, if stated."""
     budget = stated_budget(options)
-    return BUDGET if budget is None else budget, min(options.workers or cores(), 2)
+    return BUDGET if budget is None else budget, options.workers
 
 
 def _telling(options: Options) -> Callable[[str], None]:

@@ -2,6 +2,7 @@
 
 import os
 import signal
+import sys
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future, ThreadPoolExecutor
@@ -9,6 +10,7 @@ from contextlib import contextmanager
 from multiprocessing import connection, get_context, parent_process
 from multiprocessing.connection import Connection
 from traceback import format_exception
+from types import ModuleType
 from typing import Any, ParamSpec, TypeVar
 
 from fem_impact.errors import FemImpactError, MissingLibraryError, UsageError
@@ -23,7 +25,9 @@ SCHEDULER_PATIENCE = 20  # s to wait for the scheduler and its first worker
 
 
 def cores() -> int:
-    """Return how many processor cores this process may use."""
+    """Return how many processor cores this process may use; one that another process started has one."""
+    if parent_process() is not None:
+        return 1
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
@@ -106,7 +110,8 @@ class _Worker:
         context = get_context("spawn")
         self._pipe, far = context.Pipe()
         self._process = context.Process(target=_serve, args=(far,), daemon=True)
-        self._process.start()
+        with _STARTING, _no_script():
+            self._process.start()
         far.close()
 
     def call(self, fn: Callable[..., T], args: Any, kwargs: Any) -> T:
@@ -131,6 +136,20 @@ class _Worker:
             self._process.kill()
             self._process.join()
             self._pipe.close()
+
+
+_STARTING = threading.Lock()
+
+
+@contextmanager
+def _no_script() -> Iterator[None]:
+    """Hide the script that runs: a process started now does not execute it, as no job is stated there."""
+    script = sys.modules["__main__"]
+    sys.modules["__main__"] = ModuleType("__main__")
+    try:
+        yield
+    finally:
+        sys.modules["__main__"] = script
 
 
 def _leave(*_: object) -> None:

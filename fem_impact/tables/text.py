@@ -37,6 +37,18 @@ def plain(value: float, digits: int = 3) -> str:
     return f"{Decimal(rounded):f}" if 1e-5 <= abs(value) < 1e6 else rounded
 
 
+def digits_apart(one: float, other: float, least: int = 2) -> int:
+    """Return with how many significant digits, at least so many, two numbers differ as text.
+
+    Examples
+    --------
+    >>> digits_apart(0.0112, 0.0375), digits_apart(0.02254, 0.02323), digits_apart(5e3, 5001.0, 3)
+    (2, 3, 4)
+    """
+    differ = (digits for digits in range(least, 17) if plain(one, digits) != plain(other, digits))
+    return next(differ, least)
+
+
 def rounded_up(value: float, places: int) -> str:
     """Return a number with ``places`` after the point, never less than it is: the half-width of a band.
 

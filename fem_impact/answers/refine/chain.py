@@ -10,7 +10,7 @@ twin of the scene. What they found together makes the mesh of the next level.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import nullcontext
+from contextlib import closing, nullcontext
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from itertools import pairwise
@@ -45,9 +45,7 @@ BUDGET = 600.0  # s of wall time for all levels, unless stated
 # not looked at while matrices are assembled and results written
 LATE = 1.2
 LEAST_BUDGET = 5.0  # s: a smaller budget still gives a quick scene its first level
-# splits beyond those that resolve the contact, where a band decides, and levels beyond those asked for, where
-# the last one does not resolve it and so gives no numbers
-MOST_FINER = 3
+MOST_FINER = 3  # splits beyond a resolved contact, where a band decides, or levels more until it is resolved
 Decides = Callable[[Sequence[LevelRun]], bool]
 """Says whether levels from coarse to fine are enough for an answer."""
 
@@ -122,15 +120,16 @@ class LevelChain:
         if not self.done:
             forecast.require_pilot(self.meshes.pilot, self._limit_s)
         splits = self._next if self.done else self.meshes.first
-        while splits is not None:
-            try:
-                self._run_level(splits)
-            except (SceneError, RunError) as error:  # a mesh that folds is found when it is made
-                if not self.done:
-                    raise
-                self.refused = error
-                return
-            splits = self._next
+        with closing(forecast.Turns()) as turns:
+            while splits is not None:
+                try:
+                    self._run_level(splits, turns)
+                except (SceneError, RunError) as error:  # a mesh that folds is found when it is made
+                    if not self.done:
+                        raise
+                    self.refused = error
+                    return
+                splits = self._next
 
     @cached_property
     def meshes(self) -> LevelMeshes:
@@ -170,7 +169,7 @@ class LevelChain:
         A wanted error would choose two levels that agree by chance: t2 told e to 0.06 %, 1.8 % off.
         """
         if self.decides:
-            return len(self.done) > 1 and self.decides(self.done)
+            return self.decides(self.done) and len(self.done) > 1
         return len(self.done) > 2 and self._reached(self._errors)
 
     @property
@@ -250,7 +249,7 @@ class LevelChain:
         longer = forecast.growth(run_s, *finer)
         return float(run_s * longer * forecast.turns(self._runs, self.workers))
 
-    def _run_level(self, splits: int) -> None:
+    def _run_level(self, splits: int, turns: forecast.Turns) -> None:
         """Run a level, again with more room where it needs that, and add it to what is done."""
         last = bool(self.done) and splits >= self.finest
         scene = self.meshes.at(splits)
@@ -268,12 +267,13 @@ class LevelChain:
         for repeats in range(MOST_REPEATS + 1):
             planned = [] if self.done or repeats else [self.meshes.pilot]
             cases = planned + [Case.of(one, "solid", before) for one in scenes[len(planned) :]]
+            workers = forecast.at_once(cases, self.workers)
             work = [
                 partial(simulate_level, case, self._options(splits, repeats, number, begun))
                 for number, case in enumerate(cases)
             ]
             try:
-                runs = forecast.in_turns(work, self.workers)
+                runs = turns(work, workers)
             except (SceneError, RunError) as late:
                 if smaller is None:  # what ended in smaller zones is better than none
                     raise
@@ -283,7 +283,7 @@ class LevelChain:
             ended = all(outcome.validity.finished for outcome in outcomes)
             size = contact_edge(cases[0].bodies)  # as it came out, which is not always as asked for
             # without a first compilation of the kernels, and with what ran before an interruption
-            took_s += forecast.longest_s([one.cost.whole_wall for one in outcomes], self.workers)
+            took_s += forecast.longest_s([one.cost.whole_wall for one in outcomes], workers)
             level = LevelRun(splits, size, tuple(cases), outcomes, record, took_s, repeats, tuple(earlier))
             earlier = [t + one.cost.whole_cpu for t, one in zip(earlier, outcomes, strict=True)]
             zones = cases[0].zones
@@ -295,7 +295,7 @@ class LevelChain:
             known, smaller = (record, level) if ended else (known, smaller)
             known, room = replace(known, crushed=before.crushed), 2.0 * room
             before = known.wider(room)  # a record has the room of a first run
-        self.done.append(level)
+        self.done.append(replace(level, wall_s=max(level.wall_s, forecast.now() - begun)))
 
     def _place(self, number: int, repeats: int, run: int = 0) -> Path:
         """Return the directory of a run of a level, both counted, run again so often with more room."""

@@ -5,16 +5,15 @@ levels are forecast from it by what halving the cells costs. Several runs share 
 """
 
 from collections.abc import Callable, Sequence
-from contextlib import nullcontext
 from dataclasses import dataclass, field, replace
 from itertools import zip_longest
 from math import ceil, floor, inf, log10
 from time import perf_counter, process_time
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from fem_impact.case.case import Case
 from fem_impact.case.record import ContactRecord
-from fem_impact.case.size import setup_time
+from fem_impact.case.size import machine_memory, setup_time
 from fem_impact.errors import RunError, SceneError
 from fem_impact.fem.kernels import COMPILING
 from fem_impact.jobs.executors import LocalProcesses
@@ -29,13 +28,30 @@ Result = TypeVar("Result")
 LONGER = 1.55
 
 
-def in_turns(work: Sequence[Callable[[], Result]], workers: int) -> list[Result]:
-    """Return the results of pieces of work in their order; of two workers the second is another process."""
-    shares = by_worker(work, workers)
-    with LocalProcesses(1) if len(shares) > 1 else nullcontext() as process:
-        later = [process.submit(_done, share) for share in shares[1:]] if process else []
-        done = [_done(shares[0]), *(share.result() for share in later)]
-    return [result for turn in zip_longest(*done) for result in turn if result is not None]
+class Turns:
+    """Carries out pieces of work, by two workers half of it in another process, which stays for the next."""
+
+    def __init__(self) -> None:
+        self._other: LocalProcesses | None = None
+
+    def __call__(self, work: Sequence[Callable[[], Result]], workers: int) -> list[Result]:
+        """Return the results in the order of the work."""
+        shares = by_worker(work, workers)
+        if len(shares) > 1:
+            self._other = self._other or LocalProcesses(1)
+        try:
+            later = [self._other.submit(_done, share) for share in shares[1:]] if self._other else []
+            done = [_done(shares[0]), *(share.result() for share in later)]
+        except BaseException:
+            self.close()  # the other half is not waited for
+            raise
+        return [result for turn in zip_longest(*done) for result in turn if result is not None]
+
+    def close(self) -> None:
+        """End the other process, if there is one."""
+        if self._other:
+            self._other.shutdown(cancel_futures=True)
+            self._other = None
 
 
 def _done(work: Sequence[Callable[[], Result]]) -> list[Result]:
@@ -46,6 +62,11 @@ def _done(work: Sequence[Callable[[], Result]]) -> list[Result]:
 def by_worker(work: Sequence[Work], workers: int) -> list[Sequence[Work]]:
     """Return which work each process does: every second piece another one's, where there are two."""
     return [work[0::2], work[1::2]] if workers > 1 and len(work) > 1 else [work]
+
+
+def at_once(cases: Sequence[Case], workers: int) -> int:
+    """Return how many runs of these cases go on at a time: one where memory does not hold all of them."""
+    return workers if sum(case.size.memory for case in cases) <= machine_memory() else 1
 
 
 def turns(runs: int, workers: int) -> int:
@@ -199,6 +220,13 @@ class LevelProgress:
     own_s: float = 0.0
     begun: float = field(default_factory=lambda: now())
     since: tuple[float, float] | None = None
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Send to another process how long ago the level began: clocks without compilation differ."""
+        return {**vars(self), "begun": now() - self.begun}
+
+    def __setstate__(self, sent: dict[str, Any]) -> None:
+        vars(self).update(sent, begun=now() - sent["begun"])
 
     def __call__(self, progress: Progress | Notice) -> None:
         """Take one report; raise OverBudgetError where the level takes too long, or surely will."""

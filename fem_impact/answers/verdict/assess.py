@@ -22,6 +22,7 @@ from fem_impact.run.simulate import simulate
 from fem_impact.scene.impact import Following
 from fem_impact.scene.types import Scene
 from fem_impact.tables.table import Table
+from fem_impact.tables.text import digits_apart, plain
 
 TOLERANCE = 0.05
 """Change of e that may be neglected, unless stated."""
@@ -41,9 +42,10 @@ class Verdict:
     ----------
     scene : Scene
     tolerance : change that may be neglected
-    fidelity : modal or solid, of ``here``
+    of : whose change is judged, of `CHANGED`
+    fidelity : modal or solid, of ``here``; none
     screening : closed-form estimates
-    here : the change at the scene's inclination, which says of what
+    here : the change at the scene's inclination, None where no model tells it
     elsewhere : the largest change of the reduced model over other inclinations, None where none is known
     not_known : inclinations, rad, where the reduced model has no answer, with the reason of the first
     over_friction : smallest and largest change of e within the stated interval of f by the reduced model;
@@ -55,9 +57,10 @@ class Verdict:
 
     scene: Scene
     tolerance: float
+    of: str
     fidelity: str
     screening: Screening
-    here: vibration.VibrationEffect
+    here: vibration.VibrationEffect | None
     elsewhere: vibration.VibrationEffect | None
     not_known: tuple[tuple[float, ...], str]
     over_friction: tuple[float, float] | None
@@ -66,8 +69,10 @@ class Verdict:
     more: Means
 
     def __repr__(self) -> str:
+        if self.here is None:
+            return f"Verdict({self.scene.id!r}: rigid theory undecided, no model tells how {self.of} changes)"
         return (
-            f"Verdict({self.scene.id!r}: rigid theory {self.answer}, {self.here.of} changes by "
+            f"Verdict({self.scene.id!r}: rigid theory {self.answer}, {self.of} changes by "
             f"{self.here.told}, "
             f"vibration takes {100 * self.here.E_vib:.2g} % of E_0; {self.fidelity})"
         )
@@ -89,23 +94,27 @@ class Verdict:
     @property
     def answer(self) -> vibration.Answer:
         """May rigid theory be used at the scene's inclination."""
-        return self.here.answer(self.tolerance)
+        return "undecided" if self.here is None else self.here.answer(self.tolerance)
 
     @property
     def missing(self) -> str:
         """What an undecided answer lacks, empty of a decided one."""
-        size, band = abs(self.here.value), self.here.band
         if self.answer != "undecided":
             return ""
+        if self.here is None:
+            return f"a model that tells how {self.of} changes: the notes say what was tried."
+        size, band = abs(self.here.value), self.here.band
+        margin, enough = abs(self.tolerance - size), size + band
+        digits = digits_apart(margin, band)
         return (
-            f"an error below {abs(self.tolerance - size):.2g} instead of {band:.2g}; or a change of "
-            f"{size + band:.2g} that may be neglected."
+            f"an error below {plain(margin, digits)} instead of {plain(band, digits)}; or a change of "
+            f"{plain(enough, digits_apart(self.tolerance, enough))} that may be neglected."
         )
 
     @property
     def worst(self) -> vibration.VibrationEffect | None:
         """The largest change over all inclinations, None where only this one is known."""
-        return None if self.elsewhere is None else vibration.largest([self.here, self.elsewhere])
+        return self.elsewhere and vibration.largest([one for one in (self.here, self.elsewhere) if one])
 
     @property
     def worst_answer(self) -> vibration.Answer:
@@ -121,7 +130,7 @@ def assess(
     fidelity: str = "auto",
     tolerance: float = TOLERANCE,
     budget_s: float = BUDGET,
-    workers: int = 1,
+    workers: int | None = None,
     tell: Tell = tell_cell,
     of: str = "e",
 ) -> Verdict:
@@ -137,7 +146,7 @@ def assess(
         scene's are computed with the reduced model.
     tolerance : change that may be neglected
     budget_s : wall time of the finite elements, s
-    workers : runs at a time, 1 or 2
+    workers : runs at a time, 1 or 2; None: 2 where this process may use as many cores
     tell : called with a sentence before something that takes long, and after each step; by default these are
         printed in IPython and notebooks
     of : the change of which number: "e", or as shares of E_0 the "energy" that the body keeps or the work of
@@ -147,8 +156,6 @@ def assess(
     ------
     SceneError
         The scene, tolerance or budget cannot be used, or ``solid`` is asked of a scene that has no mesh.
-    RunError
-        No model gives a restitution at the scene's inclination.
     """
     check_means(fidelity, budget_s)
     if of not in CHANGED:
@@ -179,21 +186,20 @@ def assess(
         try:
             solid, sentences, more = by_levels(pair, estimate, _told, tolerance, means, tell, steps)
         except (SceneError, RunError) as refused:
-            if fidelity == "solid" or quick is None:
+            if isinstance(refused, SceneError) and (fidelity == "solid" or quick is None):
                 raise
             solid, sentences = None, [f"Finite elements have no answer here: {refused}"]
             more = with_budget(budget_of(refused))
         effect, used = (solid, "solid") if solid else (quick, "modal")
         notes += sentences
         more = {"fidelity": fidelity, **more} if more and fidelity == "solid" else more
-    if effect is None:
-        raise RunError(" ".join([*notes, f"Without them, {steps[0]}."]))
-    off = 0.0 if quick is None else abs(quick.value - effect.value)
+    off = 0.0 if quick is None or effect is None else abs(quick.value - effect.value)
     others, not_known = _over_angles(scene, of, off) if reduced else (None, ((), ""))
     return Verdict(
         scene,
         tolerance,
-        used,
+        of,
+        used if effect else "none",
         screened,
         effect,
         others,
@@ -201,7 +207,7 @@ def assess(
         None if quick is None else _over_friction(scene, of),
         tuple(steps),
         tuple(notes),
-        more if effect.answer(tolerance) == "undecided" else {},
+        more if effect is None or effect.answer(tolerance) == "undecided" else {},
     )
 
 

@@ -84,8 +84,10 @@ def collapse(some: ChartPoints, values: Array) -> Collapse:
     return Collapse(len(away), float(np.quantile(away, 0.9)), float(among))
 
 
-def chart(verdict: Verdict) -> Picture:
-    """Return the chart of the contacts that are like the verdict's, yielding or elastic, with its point."""
+def chart(verdict: Verdict) -> Picture | None:
+    """Return the chart of contacts like the verdict's, yielding or elastic, with its point; None of none."""
+    if verdict.here is None:
+        return None
     effect, free = verdict.here, verdict.here.free
     yields = bool({"rod-plasticity", "barrier-elastoplastic"} & set(free.provenance.effects))
     some = points().where(points().yielding == yields)

@@ -10,6 +10,7 @@ from fem_impact.answers.refine.forecast import about_s
 from fem_impact.answers.refine.level import LevelRun
 from fem_impact.answers.verdict.vibration import Answer
 from fem_impact.case.case import Case
+from fem_impact.jobs.executors import cores
 from fem_impact.options import RunOptions
 from fem_impact.progress import Notice, Progress
 from fem_impact.scene.types import Scene
@@ -20,6 +21,8 @@ LEAST_LEVELS = 2
 Tell = Callable[[str], object]
 Means = Mapping[str, Any]
 """Arguments of `fem_impact.assess`: its ``fidelity`` and ``budget_s``."""
+AT_ONCE = 2
+"""Runs that a level of twins carries out at a time, where the machine has as many cores."""
 
 
 class Found(Protocol):
@@ -42,7 +45,7 @@ def by_levels(
     estimate: Callable[[Sequence[LevelRun]], Number | None],
     as_text: Callable[[Number], str],
     limit: float,
-    means: tuple[float, int],
+    means: tuple[float, int | None],
     tell: Tell,
     steps: list[str],
     before_s: float = 0.0,
@@ -54,9 +57,9 @@ def by_levels(
     twins : the scene, and another that runs on its meshes or None
     estimate : of levels from coarse to fine, None where they give no number
     as_text : the number and its error as text
-    means : budget, s, and runs at a time
+    means : budget, s, and runs at a time; None: `AT_ONCE`
     tell : called with a sentence as a level begins, and after each
-    steps : a sentence on each level is added
+    steps : a sentence on each level is added, once that has run
     before_s : of the whole budget, s, what went by before
 
     Raises
@@ -64,30 +67,34 @@ def by_levels(
     SceneError, RunError
         The scene cannot be meshed, or its first level does not come to an end.
     """
+    heard, told = set[str](), list[Number | None]()
 
-    def decides(levels: Sequence[LevelRun]) -> bool:
-        estimated = estimate(levels)
-        return estimated is not None and estimated.answer(limit) != "undecided"
+    def report(ran: Sequence[LevelRun]) -> Number | None:
+        for number, level in enumerate(ran[len(told) :], len(told) + 1):
+            told.append(estimate(ran[:number]))
+            found = told[-1]
+            said = "no band yet" if found is None else f"{as_text(found)}: {found.answer(limit)}"
+            took = f"cells of {plain(1e3 * level.size, 2)} mm in {about_s(level.wall_s)}"
+            steps.append(f"finite elements, level {number}, {took}: {said}")
+            tell(steps[-1])
+        return told[-1]
 
-    begun = set[str]()
+    def decides(ran: Sequence[LevelRun]) -> bool:
+        found = report(ran)
+        return found is not None and found.answer(limit) != "undecided"
 
     def announce(progress: Progress | Notice) -> None:
-        if isinstance(progress, Progress) and progress.note not in begun:
-            begun.add(progress.note)
+        if isinstance(progress, Progress) and progress.note not in heard:
+            heard.add(progress.note)
             tell(f"finite elements, {progress.note} ...")
 
-    free, twin = twins
-    levels = LevelChain(Case(free), RunOptions(progress=announce), *means, decides, twin)
+    (free, twin), (budget_s, workers) = twins, means
+    workers = workers or min(AT_ONCE, cores())
+    levels = LevelChain(Case(free), RunOptions(progress=announce), budget_s, workers, decides, twin)
     levels.refine()
-    estimated = None
-    for number, level in enumerate(levels.done, 1):
-        estimated = estimate(levels.done[:number])
-        said = "no band yet" if estimated is None else f"{as_text(estimated)}: {estimated.answer(limit)}"
-        took = f"cells of {plain(1e3 * level.size, 2)} mm in {about_s(level.wall_s)}"
-        steps.append(f"finite elements, level {number}, {took}: {said}")
-        tell(steps[-1])
     if decides(levels.done):
-        return estimated, [], {}
+        return told[-1], [], {}
+    estimated = told[-1]
     note, enough = levels.advice(before_s, 1 if estimated is None else halvings(estimated.over(limit)))
     more = with_budget(enough)
     if estimated is not None:

@@ -29,7 +29,7 @@ from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.record import installed_versions
 from fem_impact.progress import tell_cell
 from fem_impact.scene.types import Scene, digest
-from fem_impact.tables.text import plain
+from fem_impact.tables.text import digits_apart, plain
 
 PLACES = {1: 21, 2: 7, 3: 5, 4: 3}
 """Values of each of so many intervals at which the reduced model looks."""
@@ -91,13 +91,13 @@ class LimitVerdict:
         if self.bound is not None and self.bound.answer(self.limit) == "undecided":
             if self.bound.beyond:
                 return "a smaller error: the limit lies within that of the number."
-            high = _in_unit(self.criterion, self.bound.high)
+            high = _in_unit(self.criterion, self.bound.high, digits_apart(self.limit, self.bound.high, 3))
             return (
                 f"a smaller error: the limit lies within that of the number; or a limit of at least {high}."
             )
         if self.not_known:
             return f"an answer: {self.not_known}"
-        return UNCONFIRMED
+        return UNCONFIRMED if self.bound else "a model that tells the number: the notes say what was tried."
 
     @property
     def hopeless(self) -> bool:
@@ -122,7 +122,7 @@ def judge(
     uncertain: Mapping[str, Ends] | None = None,
     fidelity: str = "auto",
     budget_s: float = BUDGET,
-    workers: int = 1,
+    workers: int | None = None,
     tell: Tell = tell_cell,
 ) -> LimitVerdict:
     """Say whether a number stays below a limit, SI, for all values in the intervals.
@@ -137,8 +137,6 @@ def judge(
     ------
     SceneError, UsageError
         The scene or an interval cannot be used.
-    RunError
-        No level of finite elements came to an end, and there is no reduced model.
     """
     check_means(fidelity, budget_s)
     scene = scene.first_impact
@@ -179,8 +177,6 @@ def judge(
                 low = [one.high - known[at].value for at, one in solids.items() if at in known]
                 within = worst in known and known[worst].value + max(low) <= limit and not why
                 answer, notes = ("yes", [*notes, CONFIRMED]) if within else ("undecided", notes)
-    if bound is None and not steps:
-        raise RunError(" ".join([*notes, why]))
     return LimitVerdict(
         scene,
         criterion,
@@ -235,7 +231,7 @@ def _by_solids(
     scenes: Mapping[Place, Scene],
     criterion: Criterion,
     limit: float,
-    means: tuple[float, int],
+    means: tuple[float, int | None],
     tell: Tell,
     steps: list[str],
 ) -> tuple[dict[Place, Bound], list[str], Means]:
@@ -269,15 +265,15 @@ def _together(answers: Sequence[Answer], missing: bool) -> Answer:
     return "yes" if {*answers} == {"yes"} and not missing else "undecided"
 
 
-def _in_unit(criterion: Criterion, number: float) -> str:
+def _in_unit(criterion: Criterion, number: float, digits: int = 3) -> str:
     """Return a number in the unit of its criterion, a temperature in degC, too."""
-    celsius = f" = {plain(number - CELSIUS, 3)} degC" if criterion.dimension == "temperature" else ""
-    return f"{_apart(criterion, number)}{celsius}"
+    celsius = f" = {plain(number - CELSIUS, digits)} degC" if criterion.dimension == "temperature" else ""
+    return f"{_apart(criterion, number, digits)}{celsius}"
 
 
-def _apart(criterion: Criterion, number: float) -> str:
+def _apart(criterion: Criterion, number: float, digits: int = 3) -> str:
     """Return the distance between two numbers of a criterion in its unit."""
-    return f"{plain(number / criterion.per_unit, 3)} {criterion.unit}".rstrip()
+    return f"{plain(number / criterion.per_unit, digits)} {criterion.unit}".rstrip()
 
 
 def _told(criterion: Criterion, bound: Bound) -> str:

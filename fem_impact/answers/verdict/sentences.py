@@ -8,6 +8,7 @@ from fem_impact.answers.verdict.assess import Verdict
 from fem_impact.answers.verdict.levels import next_step
 from fem_impact.answers.verdict.screening import Screening
 from fem_impact.answers.verdict.vibration import CALLED, Answer, VibrationEffect
+from fem_impact.case.case import Case
 from fem_impact.outcome.groups import texts
 from fem_impact.outcome.keys import Unknown, known, or_none
 from fem_impact.outcome.record import Outcome, installed_versions
@@ -39,6 +40,7 @@ THERE: Mapping[Answer, str] = {
     "no": "rigid theory may not be used there",
     "undecided": "whether rigid theory may be used there is undecided",
 }
+NOT_KNOWN = "not known."
 Line = tuple[str, str]
 
 
@@ -46,18 +48,18 @@ def box(v: Verdict) -> tuple[Line, Line, Line]:
     """Return title and sentence of the three lines that come first."""
     return (
         ("May rigid theory be used here?", _may(v)),
-        ("Vibration takes", _vibration(v)),
-        ("The rest goes to", _rest(v)),
+        ("Vibration takes", _vibration(v.here) if v.here else NOT_KNOWN),
+        ("The rest goes to", _rest(v.scene, v.here) if v.here else NOT_KNOWN),
     )
 
 
 def _may(v: Verdict) -> str:
-    return (
-        f"{v.answer.upper()}: at this inclination, {degrees(v.scene.impact.angle):.4g} degrees, vibration "
-        f"changes {CALLED[v.here.of]} by {v.here.told}{doubt(v.here)}, by {v.here.model} (allowed: "
-        f"{v.tolerance:g}). "
-        f"{_anywhere(v)}"
-    )
+    here, number = v.here, CALLED[v.of]
+    told = f"no model tells by how much vibration changes {number}"
+    if here:
+        told = f"vibration changes {number} by {here.told}{doubt(here)}, by {here.model}"
+    at = f"at this inclination, {degrees(v.scene.impact.angle):.4g} degrees"
+    return f"{v.answer.upper()}: {at}, {told} (allowed: {v.tolerance:g}). {_anywhere(v)}"
 
 
 def doubt(change: VibrationEffect) -> str:
@@ -77,14 +79,13 @@ def _anywhere(v: Verdict) -> str:
     if v.worst is v.here:
         return f"No other inclination has a larger change{by}{everywhere}."
     return (
-        f"At the worst inclination, {degrees(v.worst.angle):.0f} degrees, it changes {v.here.of} by "
+        f"At the worst inclination, {degrees(v.worst.angle):.0f} degrees, it changes {v.of} by "
         f"{v.worst.told}"
         f"{doubt(v.worst)}{by}{everywhere or f'; {THERE[v.worst.answer(v.tolerance)]}'}."
     )
 
 
-def _vibration(v: Verdict) -> str:
-    effect = v.here
+def _vibration(effect: VibrationEffect) -> str:
     share, half = with_band(100 * effect.E_vib, max(100 * effect.E_vib_band, LEAST_HALF / 100)).split(" +- ")
     share = f"{share} % of the energy"
     if or_none(effect.free.energy.below_floor):
@@ -94,8 +95,8 @@ def _vibration(v: Verdict) -> str:
     return f"{share} ({range_}: error of {effect.model})"
 
 
-def _rest(v: Verdict) -> str:
-    effect, plate, named = v.here, v.scene.barrier.bends, v.scene.projectile.named
+def _rest(scene: Scene, effect: VibrationEffect) -> str:
+    plate, named = scene.barrier.bends, scene.projectile.named
     energy = effect.free.energy
     parts = [(share, or_none(share.of(energy)) or 0.0) for share in SHARES if share.label != "vibration"]
     listed = [
@@ -105,7 +106,7 @@ def _rest(v: Verdict) -> str:
         if part > LEAST_SHARE
     ]
     kind = f"± error of {effect.model}" if effect.errors else f"by {effect.model}"
-    thick = f"the plate is {1e3 * (v.scene.barrier.thickness or 0.0):g} mm thick; " if plate else ""
+    thick = f"the plate is {1e3 * (scene.barrier.thickness or 0.0):g} mm thick; " if plate else ""
     return f"{', '.join(listed)} ({kind}); {thick}{_heating(effect)}"
 
 
@@ -135,15 +136,14 @@ def _heating(effect: VibrationEffect) -> str:
 
 def basis(v: Verdict) -> tuple[Line, ...]:
     """Return what the verdict rests on: title and sentence."""
-    free, stiff = v.here.free, v.here.stiff
+    here, twin = v.here, v.scene.projectile.named("the same scene with a rod that cannot vibrate")
     return (
         ("case", case_sentence(v.scene)),
         ("T1/tau and gamma", f"{v.screening.sentence}."),
-        ("with vibration", _motion(free)),
-        (v.scene.projectile.named("the same scene with a rod that cannot vibrate"), _motion(stiff)),
+        *((("with vibration", _motion(here.free)), (twin, _motion(here.stiff))) if here else ()),
         *((f"step {number}", f"{step}.") for number, step in enumerate(v.steps, 1)),
-        ("fidelity", f"{v.fidelity}. {v.here.source}"),
-        ("heat of the contact", _heat(free)),
+        *((("fidelity", f"{v.fidelity}. {here.source}"),) if here else ()),
+        *((("heat of the contact", _heat(here.free)),) if here else ()),
         *_other_angles(v),
         _friction(v),
         *(("note", note) for note in v.notes),
@@ -222,7 +222,7 @@ def _other_angles(v: Verdict) -> Iterator[Line]:
 def _friction(v: Verdict) -> Line:
     surface, title = v.scene.surface, "uncertain friction"
     ends = f"f from {surface.friction_low:g} to {surface.friction_high:g}"
-    if "friction" not in v.here.free.provenance.effects:
+    if "friction" not in Case(v.scene).active:
         return title, "none: the scene has no friction."
     if surface.friction_low == surface.friction_high:
         text = (
@@ -238,13 +238,14 @@ def _friction(v: Verdict) -> Line:
     low, high = v.over_friction
     return (
         title,
-        f"over {ends} the reduced model's change of {v.here.of} runs from {low:+.3f} to {high:+.3f}.",
+        f"over {ends} the reduced model's change of {v.of} runs from {low:+.3f} to {high:+.3f}.",
     )
 
 
 def not_covered(v: Verdict) -> tuple[str, ...]:
     """Return what the verdict does not cover: what may make it wrong first, then what is never covered."""
-    return (*texts(v.here.free.validity.limitations), *never_covered(v.scene))
+    limitations = v.here.free.validity.limitations if v.here else Case(v.scene).limitations
+    return (*texts(limitations), *never_covered(v.scene))
 
 
 def never_covered(scene: Scene) -> tuple[str, ...]:
@@ -272,12 +273,12 @@ def document(v: Verdict, command: str = "fem-impact assess") -> dict[str, Any]:
         "scene": to_dict(v.scene),
         "scene_digest": digest(v.scene),
         "versions": installed_versions(),
-        "within": {"of": v.here.of, "change": v.tolerance},
+        "within": {"of": v.of, "change": v.tolerance},
         "fidelity": v.fidelity,
         "answer": v.answer,
         "answer_any_angle": v.worst_answer,
-        "here": _change_entry(v.here),
-        "worst": _change_entry(v.worst) if v.worst else None,
+        "here": v.here and _change_entry(v.here),
+        "worst": v.worst and _change_entry(v.worst),
         "not_known_rad": list(v.not_known[0]),
         "change_over_friction": list(v.over_friction) if v.over_friction else None,
         "screening": {
@@ -293,8 +294,8 @@ def document(v: Verdict, command: str = "fem-impact assess") -> dict[str, Any]:
         "next_step": next_step(command, v.more),
         "basis": [list(line) for line in basis(v)],
         "not_covered": list(not_covered(v)),
-        "with_vibration": v.here.free.to_dict(),
-        "without_vibration": v.here.stiff.to_dict(),
+        "with_vibration": v.here and v.here.free.to_dict(),
+        "without_vibration": v.here and v.here.stiff.to_dict(),
     }
 
 

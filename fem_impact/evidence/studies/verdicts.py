@@ -111,7 +111,8 @@ def _row(scene: DrawnScene, results: Results) -> tuple[Cell, ...]:
             value, half = found.changes["e"]
             judged = JUDGED[DECIDED[abs(value) > TOLERANCE] != v["answer"]]
             truth = value, half, judged, DECIDED[abs(abs(value) - TOLERANCE) <= half]
-    told = v["answer"], v["model"], v["levels"], *run.changes["e"], run.wall_s, run.cpu_s
+    change = run.changes.get("e", (None, None))
+    told = v["answer"], v["model"], v["levels"], *change, run.wall_s, run.cpu_s
     return *place, *told, *truth, v["tried"], v["missing"], v["next"]
 
 

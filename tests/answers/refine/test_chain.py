@@ -8,6 +8,7 @@ import pytest
 from fem_impact.answers.refine import level as level_module
 from fem_impact.answers.refine.chain import LevelChain
 from fem_impact.answers.refine.extrapolate import MeshRuns, level_limit, level_limits
+from fem_impact.answers.refine.forecast import Turns
 from fem_impact.answers.refine.level_meshes import LevelMeshes
 from fem_impact.answers.simulate import compiled, simulate
 from fem_impact.case.case import Case
@@ -245,7 +246,7 @@ def test_a_chamfered_tube_runs_which_one_mesh_refuses():
 def test_a_budget_ends_the_levels_and_tells_what_is_missing():
     notices = []
     levels = LevelChain(Case(QUICK), RunOptions(progress=notices.append))
-    levels._run_level(levels.meshes.first)
+    levels._run_level(levels.meshes.first, Turns())
     levels.budget_s = 1e-3
     outcome = levels.run()
     assert len(levels.done) == 1

@@ -6,7 +6,7 @@ import pytest
 
 from fem_impact.answers.refine import level as level_module
 from fem_impact.answers.refine.chain import LevelChain
-from fem_impact.answers.refine.forecast import OverBudgetError
+from fem_impact.answers.refine.forecast import OverBudgetError, Turns
 from fem_impact.answers.simulate import simulate
 from fem_impact.case.case import Case
 from fem_impact.errors import ResultError, RunError, SceneError
@@ -30,7 +30,7 @@ FREE = replace(QUICK, accuracy=replace(QUICK.accuracy, tip_size=None, barrier_si
 def level():
     """Return the first level of a scene, which does not resolve its contact."""
     levels = LevelChain(Case(QUICK))
-    levels._run_level(levels.meshes.first)
+    levels._run_level(levels.meshes.first, Turns())
     return levels.done[0]
 
 
@@ -117,7 +117,7 @@ def test_each_repeat_has_twice_the_room_of_the_one_before(level, monkeypatch):
 
     monkeypatch.setattr(level_module, "simulate_recorded", left)
     levels = LevelChain(Case(QUICK), done=[level])
-    levels._run_level(2)
+    levels._run_level(2, Turns())
     assert levels.done[-1].repeats == 2
     assert levels.done[-1].wall_s == levels.done[-1].runs.cpu_s == 1.0 + 2.0 + 3.0
     assert rooms == [(k * level.record.rod.reach, k * level.record.barrier.spread) for k in (1.0, 2.0, 4.0)]
@@ -138,9 +138,9 @@ def test_what_left_its_zones_counts_where_no_repeat_comes_to_its_end(level, ends
     levels = LevelChain(Case(QUICK), done=[level])
     if not ends:
         with pytest.raises(error):
-            levels._run_level(2)
+            levels._run_level(2, Turns())
         return
-    levels._run_level(2)
+    levels._run_level(2, Turns())
     assert levels.done[-1].repeats == 0 and levels.done[-1].outcome == level.outcome
     assert levels.done[-1].left.endswith(
         "after 0 repeats with more room. Another repeat has no outcome. It was given up."
@@ -156,10 +156,10 @@ def test_a_level_whose_thin_rows_are_crushed_runs_again_without_them(level, monk
 
     monkeypatch.setattr(level_module, "simulate_recorded", squeezed)
     levels = LevelChain(Case(QUICK), done=[level])
-    levels._run_level(2)
+    levels._run_level(2, Turns())
     assert rows[0] > 0 and rows[1:] == [0] and not levels.done[-1].record.crushed
     assert "no thin rows and columns" in levels.done[-1].without_thin and not level.without_thin
-    levels._run_level(3)  # as smaller cells are crushed sooner
+    levels._run_level(3, Turns())  # as smaller cells are crushed sooner
     assert len(rows) == 3 and rows[-1] == 0
 
 

@@ -232,6 +232,7 @@ def test_an_undecided_limit_says_what_is_missing_and_what_comes_next(scene):
     assert limit_document(found, "fem-impact assess t5b")["next_step"].endswith(
         "--fidelity solid --budget '60 s'"
     )
+    assert "at least 0.0700004 kN" in replace(found, limit=70.0, bound=Bound(60.0, 50.0, 70.0004)).missing
     places = judge(scene, Sloped(missing=(40.0,)), 75.0, ANGLE, "modal")
     assert places.missing == "an answer: it slides on"
     assert judge(scene, Sloped(), 75.0, ANGLE, "modal").missing == ""

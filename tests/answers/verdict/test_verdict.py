@@ -14,8 +14,10 @@ from own_bodies import taper, write
 from fem_impact.answers.refine import level as level_module
 from fem_impact.answers.refine.chain import LevelChain
 from fem_impact.answers.refine.forecast import OverBudgetError
+from fem_impact.answers.verdict import levels as levels_module
 from fem_impact.answers.verdict import vibration
 from fem_impact.answers.verdict.assess import assess
+from fem_impact.answers.verdict.chart import chart
 from fem_impact.answers.verdict.dropped import dropped
 from fem_impact.answers.verdict.screening import screening
 from fem_impact.answers.verdict.sentences import basis, box, case_sentence, document, doubt
@@ -32,7 +34,7 @@ from fem_impact.answers.verdict.vibration import (
 )
 from fem_impact.case.case import Case
 from fem_impact.case.plates import half_space_error
-from fem_impact.errors import RunError, SceneError
+from fem_impact.errors import SceneError
 from fem_impact.outcome.keys import Unknown, known
 from fem_impact.outcome.record import KEY_TABLE
 from fem_impact.run.modal_error import Stored
@@ -261,6 +263,7 @@ def meshed(monkeypatch, shifts):
         return run if shift is not None else cut_short(run), pressed(case.record)
 
     monkeypatch.setattr(level_module, "simulate_recorded", stand_in)
+    monkeypatch.setattr(levels_module, "AT_ONCE", 1)  # another process would not have it
     return asked
 
 
@@ -359,6 +362,7 @@ def test_a_mesh_that_folds_leaves_what_the_reduced_model_says(monkeypatch):
         raise SceneError("cannot be meshed: cell 7 is folded.", key="projectile")
 
     monkeypatch.setattr(level_module, "simulate_recorded", folded)
+    monkeypatch.setattr(levels_module, "AT_ONCE", 1)
     found = assess(load("t5b"), tolerance=0.02, budget_s=1e5)
     assert (found.fidelity, found.answer) == ("modal", "undecided")
     assert any("have no answer here" in note and "cell 7 is folded" in note for note in found.notes)
@@ -589,6 +593,7 @@ def solid_alone(monkeypatch, moved, check=0.02):
         return outcome, pressed(case.record)
 
     monkeypatch.setattr(level_module, "simulate_recorded", stand_in)
+    monkeypatch.setattr(levels_module, "AT_ONCE", 1)  # another process would not have it
     return asked
 
 
@@ -634,10 +639,18 @@ def test_the_band_of_the_reduced_model_holds_what_a_half_space_under_a_thin_plat
 
 
 def test_one_level_decides_nothing(monkeypatch):
-    """However far its change of e lies from the tolerance."""
+    """However far its change of e lies from the tolerance: what was tried and what it would take is told."""
     solid_alone(monkeypatch, [0.9])
-    with pytest.raises(RunError, match=r"Level 2, finer, takes about .* One level of finite elements"):
-        assess(replace_all(load("plate-10mm"), THIN), budget_s=1e-9)
+    found = assess(replace_all(load("plate-10mm"), THIN), budget_s=1e-9)
+    assert (found.answer, found.worst_answer, found.fidelity) == ("undecided", "undecided", "none")
+    assert found.here is None and chart(found) is None and "no model tells how e changes" in repr(found)
+    told, notes = document(found), " ".join(found.notes)
+    assert re.search(
+        r"no reduced model .* Level 2, finer, takes about .* One level of finite elements", notes
+    )
+    assert told["box"][1] == ["Vibration takes", "not known."] and "no model tells" in told["box"][0][1]
+    assert told["next_step"].startswith("fem-impact assess --budget") and "no band yet" in found.steps[-1]
+    assert told["missing"].startswith("a model that tells how e changes") and told["here"] is None
 
 
 def test_a_mesh_of_the_users_own_is_decided_on_levels(monkeypatch, striker):
@@ -685,6 +698,8 @@ def test_an_undecided_verdict_says_what_is_missing(short):
     open_ = replace(short, tolerance=0.02, here=replace(short.here, value=0.01, band=0.03))
     assert open_.missing.startswith("an error below 0.01 instead of 0.03; or a change of 0.04")
     assert document(open_)["missing"] == open_.missing and document(short)["missing"] is None
+    close = replace(short, tolerance=0.05, here=replace(short.here, value=0.02746, band=0.02323))
+    assert "an error below 0.0225 instead of 0.0232; or a change of 0.051" in close.missing
 
 
 def test_friction_without_an_interval_is_said_to_count_as_exact():

@@ -284,7 +284,7 @@ def _verdict(scene: Scene) -> CoverageResult:
         "missing": v.missing,
         "next": next_step("fem-impact assess", v.more) or "",
     }
-    return CoverageResult(None, changes={"e": (v.here.value, v.here.band)}, verdict=told)
+    return CoverageResult(None, changes={"e": (v.here.value, v.here.band)} if v.here else {}, verdict=told)
 
 
 def _expected_s(scene: Scene) -> float | None:
