@@ -95,6 +95,9 @@ MIDDLE = GROWTH[1]
 # may be much shorter than the estimate
 PILOT = 0.33
 WORTH = 10.0  # s: a time left that is told in a sentence of its own
+# of an impact's duration, after which its pace counts: a level that surely does not end in time is given up.
+# Its step only falls from there, as cells are squeezed
+SHOWN = 0.2
 SEEN = 1.0  # s of processor time after which what a level shows of the load counts as much as the one before
 
 
@@ -207,6 +210,7 @@ class LevelProgress:
     own_s : forecast of one run on the mesh that stands, s of wall time
     begun : when the level began, by `now`
     since : `now` and `worked` at the first report of this run, which may be in another process
+    stands : `now` when its mesh stood, 0 before
     """
 
     show: Callable[[Progress | Notice], None] | None
@@ -220,6 +224,7 @@ class LevelProgress:
     own_s: float = 0.0
     begun: float = field(default_factory=lambda: now())
     since: tuple[float, float] | None = None
+    stands: float = 0.0
 
     def __getstate__(self) -> dict[str, Any]:
         """Send to another process how long ago the level began: clocks without compilation differ."""
@@ -234,6 +239,7 @@ class LevelProgress:
             return self._tell(progress)
         left_s, busy = progress.eta_s, self._busy
         setup_s = busy * progress.setup_s
+        self.stands = self.stands if progress.step else now()
         if progress.step == 0 and left_s is not None:  # the mesh stands, and no step has shown the pace
             left_s *= busy
             self.own_s = left_s * (self.duration_s / progress.end_time_s if self.duration_s else 1.0)
@@ -242,7 +248,9 @@ class LevelProgress:
         elif progress.step == 0:
             self._require_time(self.own_s or setup_s, OWN[0] * setup_s)
         else:
-            self._require_time(self._left_s(progress))
+            left_of_run_s = self._left_s(progress)
+            shown = self.duration_s and progress.time_s >= SHOWN * self.duration_s
+            self._require_time(left_of_run_s, OWN[0] * left_of_run_s if shown else 0.0)
         if self.halvings is None or left_s is None:
             return self._tell(replace(progress, note=self.name, eta_s=None))
         this_level = [left_s + (self.turns - 1) * self.own_s] * len(OWN)
@@ -270,17 +278,17 @@ class LevelProgress:
         return max(1.0, (spent_s + SEEN * self.load) / (worked_s + SEEN))
 
     def _left_s(self, progress: Progress) -> float:
-        """Return about the wall time, s, that is left after some steps.
+        """Return about the wall time, s, that is left of a run after some steps.
 
         While the bodies touch it follows from the duration that the level before showed, on a pilot from the
         mesh, and is at least half of what is spent.
         """
         if progress.eta_s is not None:
             return progress.eta_s
-        spent_s, whole_s = now() - self.begun, self.own_s
-        if self.duration_s and progress.time_s:
-            whole_s = spent_s * self.duration_s / progress.time_s
-        return max(whole_s - spent_s, 0.5 * spent_s)
+        spent_s = now() - (self.stands or self.begun)
+        if not (self.duration_s and progress.time_s):
+            return max(self.own_s - spent_s, 0.5 * spent_s)
+        return spent_s * max(self.duration_s / progress.time_s - 1.0, 0.5)
 
     def _require_time(self, left_s: float, least_s: float = 0.0) -> None:
         """Raise OverBudgetError where the limit does not hold what is spent and ``least_s``, s, more."""
