@@ -31,6 +31,7 @@ BUDGET = 60.0
 FIDELITIES = ("auto", "modal", "solid")
 ANGLES = tuple(np.radians(np.arange(5.0, 81.0, 5.0)))
 """Inclinations among which the worst one is looked for, rad."""
+WIDER = "Finite elements bear that out less narrowly: {}."
 LACKING = "There is no reduced model of {}: finite elements alone answer."
 
 
@@ -192,6 +193,8 @@ def assess(
             more = with_budget(budget_of(refused))
         effect, used = (solid, "solid") if solid else (quick, "modal")
         notes += sentences
+        if quick and solid and fidelity == "auto" and quick.holds_against(solid, tolerance):
+            effect, used, notes = quick, "modal", [*notes, WIDER.format(_told(solid))]
         more = {"fidelity": fidelity, **more} if more and fidelity == "solid" else more
     off = 0.0 if quick is None or effect is None else abs(quick.value - effect.value)
     others, not_known = _over_angles(scene, of, off) if reduced else (None, ((), ""))

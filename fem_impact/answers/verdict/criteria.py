@@ -49,6 +49,12 @@ class Bound:
             return "no"
         return "yes" if self.high <= limit else "undecided"
 
+    def holds_against(self, meshes: "Bound", limit: float) -> bool:
+        """Say whether it stands beside finite elements that do not decide: they agree, and know less."""
+        agree = self.low <= meshes.high and meshes.low <= self.high
+        narrower = self.high - self.low < meshes.high - meshes.low
+        return self.alike and agree and narrower and meshes.answer(limit) == "undecided"
+
     def over(self, limit: float) -> float:
         """Return the error towards a limit over the one with which there would be an answer."""
         margin, error = limit - self.value, self.high - self.value

@@ -170,7 +170,8 @@ def judge(
         two = {place: scenes[place] for place in (worst, mildest)}
         solids, said, more = _by_solids(two, criterion, limit, (budget_s, workers), tell, steps)
         notes += said
-        if worst in solids:
+        reduced = bound if fidelity == "auto" and answer == "undecided" else None
+        if worst in solids and not (reduced and reduced.holds_against(solids[worst], limit)):
             bound, by = solids[worst], "finite elements"
             answer = _together([one.answer(limit) for one in solids.values()], mildest not in solids)
             if answer == "yes" and intervals:

@@ -189,6 +189,14 @@ class VibrationEffect:
             return "no"
         return "yes" if abs(self.value) + self.band <= tolerance else "undecided"
 
+    def holds_against(self, meshes: "VibrationEffect", tolerance: float) -> bool:
+        """Say whether this stands beside finite elements that do not decide: they agree, and know less well.
+
+        Only the widths choose between the two, so that what stands holds as often as it is told to.
+        """
+        agree = abs(self.value - meshes.value) <= self.band + meshes.band
+        return self.alike and agree and self.band < meshes.band and meshes.answer(tolerance) == "undecided"
+
     def over(self, tolerance: float) -> float:
         """Return the band over the one with which there would be an answer."""
         margin = abs(tolerance - abs(self.value))

@@ -97,6 +97,21 @@ def test_finite_elements_confirm_at_the_worst_place_and_the_mildest(
     assert found.bound.value == values[60]
 
 
+@pytest.mark.parametrize(
+    ("low", "high", "by"),
+    [(40.0, 90.0, "the reduced model"), (61.0, 69.0, "finite elements"), (71.0, 100.0, "finite elements")],
+)
+def test_a_wider_error_of_meshes_that_agree_does_not_replace_the_reduced_models(
+    monkeypatch, scene, low, high, by
+):
+    """It tells 60 +- 10 N, the limit is 65 N."""
+    bound = Bound(0.5 * (low + high), low, high)
+    monkeypatch.setattr(module, "by_levels", lambda *_: (bound, [], {}))
+    found = judge(scene, Sloped(), 65.0, ANGLE)
+    assert found.by == by and found.bound.low == pytest.approx(50.0 if by == "the reduced model" else low)
+    assert found.answer == ("no" if low > 65.0 else "undecided")
+
+
 def test_a_number_that_is_clear_needs_no_finite_elements(monkeypatch, scene):
     seen = solids(monkeypatch, {})
     assert judge(scene, Sloped(), 75.0, ANGLE).by == "the reduced model" and not seen

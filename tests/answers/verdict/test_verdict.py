@@ -322,6 +322,17 @@ def test_levels_that_disagree_leave_the_answer_open(monkeypatch):
     assert any("No finer level is tried" in note for note in found.notes)
 
 
+@pytest.mark.parametrize(("shift", "by"), [(0.008, "modal"), (0.05, "solid"), (0.004, "solid")])
+def test_a_wider_error_of_meshes_that_agree_does_not_replace_the_reduced_models(monkeypatch, shift, by):
+    """It tells .010 +- .012. Levels count that decide, or know better."""
+    meshed(monkeypatch, [0.0, shift] if shift < 0.05 else [-shift, -1.5 * shift])
+    monkeypatch.setattr(LevelChain, "_next", property(lambda chain: 2 if len(chain.done) < 2 else None))
+    found, quick = assess(load("t5b"), tolerance=0.02, budget_s=1e5), assess(load("t5b"), "modal").here
+    assert found.fidelity == by and (found.here.band == quick.band) == (by == "modal")
+    assert found.answer == ("no" if shift == 0.05 else "undecided")
+    assert any("bear that out less narrowly" in note for note in found.notes) == (by == "modal")
+
+
 def test_the_finest_two_levels_count_and_the_change_before(monkeypatch):
     asked = meshed(monkeypatch, [-0.04, 0.0, 0.001, 0.001])
     found = assess(load("t5b"), "solid", tolerance=0.02, budget_s=1e5)
