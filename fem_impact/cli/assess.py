@@ -41,11 +41,7 @@ def assess(options: Options) -> int:
     scene = scene_options.named_scene(options, SHORT) or _dropped_rod(options)
     if out is not None:
         refuse_other_scene(out / "scene.toml", to_toml(scene))
-    try:
-        answer, picture = (_limited if limited else _rigid)(options, scene)
-    except KeyboardInterrupt:
-        remedy = "--budget bounds the time of the next one, --fidelity modal takes seconds."
-        raise KeyboardInterrupt(f"an assessment that is stopped keeps nothing: {remedy}") from None
+    answer, picture = (_limited if limited else _rigid)(options, scene)
     if out is not None:
         answer["page"] = str(write_verdict(scene, answer, out, picture))
     print_answer(options, answer, _text(answer))

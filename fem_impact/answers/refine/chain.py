@@ -41,8 +41,8 @@ from fem_impact.tables.text import plain
 GRID_OFFSETS = (0.0, 0.5)
 MOST_REPEATS = 2  # of a level, each with twice the room
 BUDGET = 600.0  # s of wall time for all levels, unless stated
-# of the budget, beyond which a level that has begun is given up: all ends within 1.3 times, as the clock is
-# not looked at while matrices are assembled and results written
+# of the budget, beyond which a level is given up: all ends within 1.3 times, as matrices are assembled and
+# results written without a look at the clock
 LATE = 1.2
 LEAST_BUDGET = 5.0  # s: a smaller budget still gives a quick scene its first level
 MOST_FINER = 3  # splits beyond a resolved contact, where a band decides, or levels more until it is resolved
@@ -65,7 +65,7 @@ class LevelChain:
     twin : a scene that runs on the meshes of this one; it states no place of the grid
     read_s : wall time, s, that reading the scene took of the budget
     done : levels so far
-    refused : what ended the level after them, None where none failed
+    refused, lost_s : what ended the level after them, None where none failed, and its wall time, s
     """
 
     case: Case
@@ -77,6 +77,7 @@ class LevelChain:
     read_s: float = 0.0
     done: list[LevelRun] = field(default_factory=list)
     refused: SceneError | RunError | None = None
+    lost_s: float = 0.0
 
     def run(self) -> Outcome:
         """Run levels from coarse to fine until the contact is resolved; return the last one's outcome.
@@ -118,16 +119,17 @@ class LevelChain:
         It raises what `run` does.
         """
         if not self.done:
-            forecast.require_pilot(self.meshes.pilot, self._limit_s)
+            forecast.require_pilot(self.meshes.pilot, self.limit_s)
         splits = self._next if self.done else self.meshes.first
         with closing(forecast.Turns()) as turns:
             while splits is not None:
+                begun = forecast.now()
                 try:
                     self._run_level(splits, turns)
                 except (SceneError, RunError) as error:  # a mesh that folds is found when it is made
                     if not self.done:
                         raise
-                    self.refused = error
+                    self.refused, self.lost_s = error, forecast.now() - begun
                     return
                 splits = self._next
 
@@ -137,7 +139,7 @@ class LevelChain:
         return LevelMeshes.of(self.case)
 
     @property
-    def _limit_s(self) -> float:
+    def limit_s(self) -> float:
         """Wall time, s, after which the next level is given up."""
         return LATE * max(self.budget_s, LEAST_BUDGET) - self.spent_s
 
@@ -174,11 +176,7 @@ class LevelChain:
 
     @property
     def _errors(self) -> dict[str, float]:
-        """Half-widths over their scales of what a wanted error is about, by name.
-
-        What has no band is left out: all where the last level does not resolve its contact, and the vibration
-        of a rod that is rigid.
-        """
+        """Half-widths over their scales of what a wanted error is about, by name; of what has a band."""
         limits = extrapolate.quantity_limits([level.runs for level in self.done[: self.counted]])
         of = self.scene.accuracy.target_of
         return {name: limits[name].error for name in ((of,) if of else TARGETED) if name in limits}
@@ -226,7 +224,7 @@ class LevelChain:
     @property
     def spent_s(self) -> float:
         """Wall time, s, of the budget that is used up so far."""
-        return self.read_s + sum(level.wall_s for level in self.done)
+        return self.read_s + self.lost_s + sum(level.wall_s for level in self.done)
 
     @property
     def _offsets(self) -> tuple[float, ...]:
@@ -236,9 +234,9 @@ class LevelChain:
         return GRID_OFFSETS[: 1 if pilot else accuracy.offsets or 1 + bool(accuracy.target)]
 
     @property
-    def _runs(self) -> int:
-        """Runs of the next level."""
-        return 2 if self.twin else len(self._offsets)
+    def _turns(self) -> int:
+        """Runs of the next level one after the other."""
+        return forecast.turns(2 if self.twin else len(self._offsets), self.workers)
 
     def forecast_s(self, splits: int) -> float:
         """Return about the wall time, s, of a level whose mesh is not made yet, from that of the last one."""
@@ -247,7 +245,7 @@ class LevelChain:
         run_s = took_s / forecast.turns(len(last.outcomes), self.workers)
         finer = splits - last.splits, last.cases[0], self.meshes.at(splits), last.found
         longer = forecast.growth(run_s, *finer)
-        return float(run_s * longer * forecast.turns(self._runs, self.workers))
+        return float(run_s * longer * self._turns)
 
     def _run_level(self, splits: int, turns: forecast.Turns) -> None:
         """Run a level, again with more room where it needs that, and add it to what is done."""
@@ -313,13 +311,13 @@ class LevelChain:
         out = self.options.out and self._place(number, repeats, run)
         later = steps_between(splits, max(self.finest, splits))
         name = f"{self.scene.id}, level {number}" + f" of {number + len(later)}" * bool(self.done)
-        progress = forecast.LevelProgress(show, name, used_s=self.spent_s, limit_s=self._limit_s, begun=begun)
+        progress = forecast.LevelProgress(show, name, used_s=self.spent_s, limit_s=self.limit_s, begun=begun)
         if self.done:
             before = self.done[-1].outcome.cost
             progress.load = before.whole_wall / max(before.whole_cpu, 1e-3)
             progress.duration_s = known(before.steps) * known(before.min_step)
             progress.halvings = [fine - coarse for coarse, fine in pairwise([splits, *later])]
-            progress.turns = forecast.turns(self._runs, self.workers)
+            progress.turns = self._turns
         return replace(self.options, out=out, progress=progress)
 
     def _stated(self) -> Outcome:

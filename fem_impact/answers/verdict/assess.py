@@ -137,6 +137,8 @@ def assess(
 ) -> Verdict:
     """Say whether rigid theory may be used for a scene, beside its twin that cannot vibrate.
 
+    An interrupt (Ctrl-C) ends the finite elements: the verdict rests on what ran before, and says so.
+
     Parameters
     ----------
     scene : Scene

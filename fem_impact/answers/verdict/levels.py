@@ -8,6 +8,7 @@ from typing import Any, Protocol, TypeVar
 from fem_impact.answers.refine.chain import MOST_FINER, LevelChain
 from fem_impact.answers.refine.forecast import about_s
 from fem_impact.answers.refine.level import LevelRun
+from fem_impact.answers.refine.places import run_elsewhere
 from fem_impact.answers.verdict.vibration import Answer
 from fem_impact.case.case import Case
 from fem_impact.jobs.executors import cores
@@ -52,6 +53,8 @@ def by_levels(
 ) -> tuple[Number | None, list[str], Means]:
     """Return what finite elements say, None where they tell nothing; notes; the means for another level.
 
+    An interrupt ends the levels: those that ran count.
+
     Parameters
     ----------
     twins : the scene, and another that runs on its meshes or None
@@ -91,21 +94,39 @@ def by_levels(
     (free, twin), (budget_s, workers) = twins, means
     workers = workers or min(AT_ONCE, cores())
     levels = LevelChain(Case(free), RunOptions(progress=announce), budget_s, workers, decides, twin)
-    levels.refine()
+    try:
+        levels.refine()
+        if not decides(levels.done) and twin and told[-1] and run_elsewhere(levels):
+            told[-1] = found = estimate(levels.done)
+            last, said = len(told), "no band" if found is None else f"{as_text(found)}: {found.answer(limit)}"
+            two = f"levels {last - 1} and {last} at another place of the grid, too"
+            steps.append(f"finite elements, {two}: {said}")
+            tell(steps[-1])
+    except KeyboardInterrupt:
+        return told[-1] if told else None, [STOPPED.format(len(told))], with_budget(ceil(before_s + budget_s))
     if decides(levels.done):
         return told[-1], [], {}
-    estimated = told[-1]
-    note, enough = levels.advice(before_s, 1 if estimated is None else halvings(estimated.over(limit)))
-    more = with_budget(enough)
-    if estimated is not None:
-        return estimated, [note], more
-    nothing = "The last level of finite elements does not resolve the contact."
+    return told[-1], *_open(levels, told[-1] and told[-1].over(limit), before_s)
+
+
+STOPPED = "It was stopped by hand after {} levels of finite elements; those count."
+
+
+def _open(levels: LevelChain, over: float | None, before_s: float) -> tuple[list[str], Means]:
+    """Return why levels leave an answer open, and the means for another.
+
+    ``over`` is their error over the one with which there would be an answer, None where they tell no number.
+    """
+    note, enough = levels.advice(before_s, 1 if over is None else halvings(over))
+    if over is not None:
+        return [note], with_budget(enough)
     ends = [one.validity for one in levels.done[-1].outcomes if not one.validity.finished]
     if ends:  # as it would on finer meshes: the rod's tail strikes, or it touches for too long
-        return None, [f"Finite elements have no answer here: {ends[0].stopped_because}"], {}
+        return [f"Finite elements have no answer here: {ends[0].stopped_because}"], {}
+    nothing = "The last level of finite elements does not resolve the contact."
     if len(levels.done) < LEAST_LEVELS:
         nothing = "One level of finite elements alone does not tell its error."
-    return None, [note, nothing], more
+    return [note, nothing], with_budget(enough)
 
 
 def halvings(over: float) -> int:

@@ -122,6 +122,10 @@ COUNTS = (
     "vibration (by modes and without them) or the energy balance of the finer mesh are off."
 )
 
+RANGE = "the range of the limits of all orders of convergence from 3/4 up"
+ONCE = f"; the band is {extrapolate.ONE_RUN:g} times {RANGE}, as each mesh runs once,"
+TWICE = f", both at two places of the barrier's grid; the band is {RANGE} and the scatter by these,"
+
 THIN_PLATE = (
     " The plate is thin beside the contact, and a half-space under it in this model: the {:.2g} by which e "
     "may be off is added."
@@ -259,14 +263,15 @@ def solid_effect(levels: Sequence[extrapolate.MeshRuns], of: str = "e") -> Vibra
     It is None where fewer than two levels give a coefficient of both, or the last does not resolve its
     contact.
     """
-    useful = [level for level in levels if not unfinished(pair_of(level), of)]
+    useful = [level for level in levels if not any(unfinished(pair, of) for pair in pairs_of(level))]
     used = useful[-3:]
-    limits, bands = extrapolate.level_limits([replace(level, runs=level.runs[:1]) for level in used])
+    limits, bands = extrapolate.level_limits([replace(level, runs=level.runs[::2]) for level in used])
     if isinstance(limits, Unknown) or isinstance(bands, Unknown):
         return None
     coarse, fine = used[-2:]
-    free, stiff = pair_of(fine)
-    changes, wide = [[difference(pair_of(level), of)] for level in used], [level.wide for level in used]
+    free, stiff = pairs_of(fine)[0]
+    changes = [[difference(pair, of) for pair in pairs_of(level)] for level in used]
+    wide = [level.wide for level in used]
     sizes, rows = [level.size for level in used], [level.rows for level in used]
     value, band = extrapolate.level_limit(sizes, changes, wide, rows)
     E_vib, E_vib_band = (of[extrapolate.VIBRATION.name] for of in (limits, bands))
@@ -286,18 +291,16 @@ def solid_effect(levels: Sequence[extrapolate.MeshRuns], of: str = "e") -> Vibra
         free,
         stiff,
         f"Finite elements on {len(levels)} levels, the last two with cells of {_size(coarse)} and "
-        f"{_size(fine)} at the contact; the band is {extrapolate.ONE_RUN:g} times the range of the limits of "
-        "all orders of convergence from 3/4 up, as each mesh runs once, and at least half of the change "
-        "before." + COUNTS.format(100 * floor),
+        f"{_size(fine)} at the contact{ONCE if len(changes[-1]) == 1 else TWICE} and at least half of "
+        "the change before." + COUNTS.format(100 * floor),
         MESHES,
         errors,
     )
 
 
-def pair_of(level: extrapolate.MeshRuns) -> Pair:
-    """Return the outcomes with vibration and without it on a level."""
-    free, stiff = level.runs
-    return free, stiff
+def pairs_of(level: extrapolate.MeshRuns) -> list[Pair]:
+    """Return the outcomes with vibration and without it on a level, by the places of the grid."""
+    return list(zip(level.runs[::2], level.runs[1::2], strict=True))
 
 
 def _size(level: extrapolate.MeshRuns) -> str:

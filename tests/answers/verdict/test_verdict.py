@@ -11,6 +11,7 @@ import pytest
 from cost_fakes import pressed
 from own_bodies import taper, write
 
+from fem_impact.answers.refine import extrapolate
 from fem_impact.answers.refine import level as level_module
 from fem_impact.answers.refine.chain import LevelChain
 from fem_impact.answers.refine.forecast import OverBudgetError
@@ -34,6 +35,7 @@ from fem_impact.answers.verdict.vibration import (
 )
 from fem_impact.case.case import Case
 from fem_impact.case.plates import half_space_error
+from fem_impact.case.record import ContactRecord
 from fem_impact.errors import SceneError
 from fem_impact.outcome.keys import Unknown, known
 from fem_impact.outcome.record import KEY_TABLE
@@ -455,6 +457,35 @@ def test_a_level_given_up_for_its_budget_names_the_one_that_holds_it(monkeypatch
     found = assess(load("t5b"), tolerance=0.02, budget_s=1e5)
     assert (found.fidelity, found.answer, found.more) == ("modal", "undecided", {"budget_s": 130})
     assert "give a budget of 130 s" in found.notes[0]
+
+
+@pytest.mark.parametrize("ran", [0, 2])
+def test_an_assessment_that_is_stopped_keeps_what_ran(monkeypatch, ran):
+    asked = meshed(monkeypatch, [-0.02, 0.0])
+    real = level_module.simulate_recorded
+
+    def stopped(*case):
+        if len(asked) == ran and "vibration" in case[-1].active:
+            raise KeyboardInterrupt
+        return real(*case)
+
+    monkeypatch.setattr(level_module, "simulate_recorded", stopped)
+    found = assess(load("t5b"), tolerance=0.02, budget_s=1e5)
+    assert found.answer == "undecided" and found.more == {"budget_s": 1e5}
+    assert f"stopped by hand after {ran} levels" in found.notes[0]
+    assert sum(step.startswith("finite elements") for step in found.steps) == ran
+
+
+def test_a_budget_too_small_for_a_finer_level_is_spent_on_another_place_of_the_grid(monkeypatch):
+    """Both places agree: the band is a third of that of meshes that run once, at least half of the change."""
+    asked = meshed(monkeypatch, [0.0, 0.008, 0.0, 0.008])
+    monkeypatch.setattr(LevelChain, "_next", property(lambda chain: 2 if len(chain.done) < 2 else None))
+    monkeypatch.setattr(ContactRecord, "rows", 4)
+    found = assess(load("t5b"), "solid", tolerance=0.03, budget_s=1e5)
+    once = extrapolate.pair_limit(asked[:2], [[0.0], [0.008]])[1]
+    assert found.here.band == pytest.approx(max(once / 3, 0.004)) and found.answer == "yes"
+    assert "levels 1 and 2 at another place of the grid, too" in found.steps[-1]
+    assert "scatter by these" in found.here.source
 
 
 def test_an_error_far_too_large_asks_for_as_many_levels_as_bring_it_down(monkeypatch):
