@@ -248,9 +248,7 @@ class LevelProgress:
         elif progress.step == 0:
             self._require_time(self.own_s or setup_s, OWN[0] * setup_s)
         else:
-            left_of_run_s = self._left_s(progress)
-            shown = self.duration_s and progress.time_s >= SHOWN * self.duration_s
-            self._require_time(left_of_run_s, OWN[0] * left_of_run_s if shown else 0.0)
+            self._require_time(self._left_s(progress), OWN[0] * self._paced_s(progress))
         if self.halvings is None or left_s is None:
             return self._tell(replace(progress, note=self.name, eta_s=None))
         this_level = [left_s + (self.turns - 1) * self.own_s] * len(OWN)
@@ -288,7 +286,14 @@ class LevelProgress:
         spent_s = now() - (self.stands or self.begun)
         if not (self.duration_s and progress.time_s):
             return max(self.own_s - spent_s, 0.5 * spent_s)
-        return spent_s * max(self.duration_s / progress.time_s - 1.0, 0.5)
+        return max(spent_s * (self.duration_s / progress.time_s - 1.0), 0.5 * spent_s)
+
+    def _paced_s(self, progress: Progress) -> float:
+        """Return what is surely left of a run, s, by the impact of the level before; 0 before it is shown."""
+        if not progress.time_s >= SHOWN * self.duration_s > 0.0:
+            return 0.0
+        by_pace = (now() - (self.stands or self.begun)) * (self.duration_s / progress.time_s - 1.0)
+        return max(min(self._left_s(progress), by_pace), 0.0)
 
     def _require_time(self, left_s: float, least_s: float = 0.0) -> None:
         """Raise OverBudgetError where the limit does not hold what is spent and ``least_s``, s, more."""

@@ -114,9 +114,9 @@ def test_a_level_whose_steps_show_that_it_takes_too_long_is_given_up_before_its_
     for one in (level, slow):
         one(at(0, 5.0))
     clock[0] = 18.0
-    slow(Progress(1.5e-5, 1e-4, 100, 0.0, "4 nodes touch", None))  # too early to say
+    slow(Progress(1.5e-5, 1e-4, 100, 0.0, "4 nodes touch", 90.0))  # too early to say
     clock[0] = 19.0
-    level(Progress(2e-5, 1e-4, 200, 0.0, "4 nodes touch", None))
+    level(Progress(2e-5, 1e-4, 200, 0.0, "4 nodes touch", 90.0))  # by the impulse, which is rough
     with pytest.raises(OverBudgetError, match=r"given up after 19 s.* takes about 35 s"):
         slow(Progress(2e-5, 1e-4, 200, 0.0, "4 nodes touch", None))
 

@@ -15,6 +15,7 @@ from fem_impact.answers.refine import extrapolate
 from fem_impact.answers.refine import level as level_module
 from fem_impact.answers.refine.chain import LevelChain
 from fem_impact.answers.refine.forecast import OverBudgetError
+from fem_impact.answers.refine.places import run_elsewhere
 from fem_impact.answers.verdict import levels as levels_module
 from fem_impact.answers.verdict import vibration
 from fem_impact.answers.verdict.assess import assess
@@ -266,6 +267,7 @@ def meshed(monkeypatch, shifts):
 
     monkeypatch.setattr(level_module, "simulate_recorded", stand_in)
     monkeypatch.setattr(levels_module, "AT_ONCE", 1)  # another process would not have it
+    monkeypatch.setattr(levels_module, "run_elsewhere", lambda levels: False)
     return asked
 
 
@@ -393,7 +395,7 @@ def test_a_level_that_folds_leaves_those_before_it(monkeypatch):
         return real(scene, *rest)
 
     monkeypatch.setattr(level_module, "simulate_recorded", folded)
-    found = assess(load("t5b"), tolerance=0.02, budget_s=1e5)
+    found = assess(load("t5b"), "solid", tolerance=0.02, budget_s=1e5)
     assert (found.fidelity, found.answer) == ("solid", "undecided")
     assert any(
         "Level 3, finer, gave no result" in note and "cell 7 is folded" in note for note in found.notes
@@ -481,6 +483,7 @@ def test_a_budget_too_small_for_a_finer_level_is_spent_on_another_place_of_the_g
     asked = meshed(monkeypatch, [0.0, 0.008, 0.0, 0.008])
     monkeypatch.setattr(LevelChain, "_next", property(lambda chain: 2 if len(chain.done) < 2 else None))
     monkeypatch.setattr(ContactRecord, "rows", 4)
+    monkeypatch.setattr(levels_module, "run_elsewhere", run_elsewhere)
     found = assess(load("t5b"), "solid", tolerance=0.03, budget_s=1e5)
     once = extrapolate.pair_limit(asked[:2], [[0.0], [0.008]])[1]
     assert found.here.band == pytest.approx(max(once / 3, 0.004)) and found.answer == "yes"
@@ -636,6 +639,7 @@ def solid_alone(monkeypatch, moved, check=0.02):
 
     monkeypatch.setattr(level_module, "simulate_recorded", stand_in)
     monkeypatch.setattr(levels_module, "AT_ONCE", 1)  # another process would not have it
+    monkeypatch.setattr(levels_module, "run_elsewhere", lambda levels: False)
     return asked
 
 
