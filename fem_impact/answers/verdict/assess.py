@@ -80,9 +80,8 @@ class Verdict:
 
     def _repr_html_(self) -> str:
         """Return the verdict, here and at the worst inclination, with its steps, as a notebook shows it."""
-        rows: list[tuple[str, str, str]] = [
-            ("here", self.answer, f"{self.here.of} changes by {self.here.told}")
-        ]
+        told = _told(self.here) if self.here else f"no model tells how {self.of} changes"
+        rows: list[tuple[str, str, str]] = [("here", self.answer, told)]
         if self.worst is not None:
             where = f"worst inclination, {degrees(self.worst.angle):.3g} deg"
             rows.append((where, self.worst_answer, f"{self.worst.of} changes by {self.worst.told}"))
