@@ -57,19 +57,22 @@ def _at_other_place(levels: LevelChain, level: LevelRun, turns: forecast.Turns) 
         cases.append(Case.of(replace(case.scene, accuracy=shifted), "solid", case.record))
     workers, before = forecast.at_once(cases, levels.workers), level.outcome.cost
     number = 1 + next(at for at, one in enumerate(levels.done) if one.splits == level.splits)
-    work = []
-    for show in (levels.options.progress, *[None] * (len(cases) - 1)):
-        progress = forecast.LevelProgress(
-            show,
-            f"{levels.scene.id}, level {number} at another place of the grid",
-            turns=forecast.turns(len(cases), workers),
-            duration_s=known(before.steps) * known(before.min_step),
-            used_s=levels.spent_s,
-            limit_s=levels.limit_s,
-            load=before.whole_wall / max(before.whole_cpu, 1e-3),
-            begun=begun,
+    options = [
+        RunOptions(
+            progress=forecast.LevelProgress(
+                show,
+                f"{levels.scene.id}, level {number} at another place of the grid",
+                turns=forecast.turns(len(cases), workers),
+                duration_s=known(before.steps) * known(before.min_step),
+                used_s=levels.spent_s,
+                limit_s=levels.limit_s,
+                load=before.whole_wall / max(before.whole_cpu, 1e-3),
+                begun=begun,
+            )
         )
-        work.append(partial(simulate_level, cases[len(work)], RunOptions(progress=progress)))
+        for show in (levels.options.progress, *[None] * (len(cases) - 1))
+    ]
+    work = [partial(simulate_level, *one) for one in zip(cases, options, strict=True)]
     runs = turns(work, workers)
     outcomes = [*level.outcomes, *(outcome for outcome, _ in runs)]
     return replace(

@@ -106,7 +106,9 @@ def by_levels(
         return told[-1] if told else None, [STOPPED.format(len(told))], with_budget(ceil(before_s + budget_s))
     if decides(levels.done):
         return told[-1], [], {}
-    return told[-1], *_open(levels, told[-1] and told[-1].over(limit), before_s)
+    estimated = told[-1]
+    over = None if estimated is None else estimated.over(limit)
+    return estimated, *_open(levels, over, before_s)
 
 
 STOPPED = "It was stopped by hand after {} levels of finite elements; those count."
