@@ -30,13 +30,14 @@ class ContactWatch:
     first, last : (k,) s, when each node of the rod was seen pressed first and last
     impulse : (k, 2) along n and t, N s, on each node of the rod, of the half model
     pressed : (m,) whether a node of the barrier was pressed
-    deepest : (m,) largest indentation there under the surface around, m; border : nodes of that surface
+    deepest : (m,) largest indentation there, m: under the surface before the impact; of a barrier that moves
+        or bends under the surface around, whose nodes are ``border``
     """
 
     moving: ClassVar[tuple[str, ...]] = ("first", "last", "impulse", "pressed", "deepest")
 
-    def __init__(self, model: Model, shortest: float) -> None:
-        """Watch a model whose contact lasts at least the time ``shortest``, s."""
+    def __init__(self, model: Model, shortest: float, moves: bool) -> None:
+        """Watch a model with contacts of ``shortest``, s, at least; ``moves``: its barrier does or bends."""
         self.model, contact = model, model.contact
         self.every = max(1, min(RAREST, int(shortest / LOOKS / model.step)))
         layout = model.layout
@@ -44,7 +45,7 @@ class ContactWatch:
         if isinstance(contact, SurfaceContact):
             places = contact.rod.places
             self.barrier = _nodes(layout.barrier, contact.barrier.places)
-            self.border = border(contact.barrier)
+            self.border = border(contact.barrier) if moves else np.zeros(0, np.int64)
         else:
             assert contact is not None, "a run has a contact"
             places = contact.nodes
@@ -70,7 +71,10 @@ class ContactWatch:
             self._add(np.unique(corners), share, state.time)
             nodes = np.union1d(under, by[quads[over]])
             self.pressed[nodes] = True
-            deep = sunk(contact.barrier, self.border, state.x)[nodes]
+            if len(self.border):
+                deep = sunk(contact.barrier, self.border, state.x)[nodes]
+            else:
+                deep = -state.x[contact.barrier.places[nodes, 2]]
             self.deepest[nodes] = np.maximum(self.deepest[nodes], deep)
         elif isinstance(contact, MovingPlane):
             self._add(

@@ -129,7 +129,9 @@ class Watchers:
 
             heat = HeatWatch(model)
         # a flat end that lands flat leaves when the wave is back from the other end, and no contact before
-        contact = ContactWatch(model, case.bodies.stretching_period)
+        barrier = case.scene.barrier
+        moves = barrier.mass is not None or barrier.bends
+        contact = ContactWatch(model, case.bodies.stretching_period, moves)
         # a level is run again without thin cells, a strike of a body that is followed is not
         again = case.record is not None and not case.record.crushed and scene.impact.until == FIRST
         rows = case.zones.skin_rows + case.zones.rod_rows
