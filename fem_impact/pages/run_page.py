@@ -16,7 +16,7 @@ from fem_impact.errors import ResultError, RunError, SceneError, UsageError
 from fem_impact.figures.panels import Picture
 from fem_impact.figures.runs import accounts_picture, partition_picture, path_picture, tail_picture
 from fem_impact.figures.still import draw, percent
-from fem_impact.files.atomic import make_directory, read_text, signed, write_text
+from fem_impact.files.atomic import make_directory, read_signed, read_text, signed, write_text
 from fem_impact.outcome.keys import Key, Unknown, or_none
 from fem_impact.outcome.record import KEY_TABLE, KEYS, Outcome, utc_now
 from fem_impact.outcome.strikes import spread_table, strikes_table, told
@@ -27,7 +27,7 @@ from fem_impact.run.simulate import simulate
 from fem_impact.run.strikes import gravity_of
 from fem_impact.scene.inputs import inputs
 from fem_impact.scene.read import read_toml
-from fem_impact.scene.types import Scene, to_toml
+from fem_impact.scene.types import Scene, digest, to_toml
 from fem_impact.tables.table import DASH, Cell, Table, number
 from fem_impact.tables.text import markup
 from rigid.strikes import outline
@@ -43,12 +43,28 @@ def verdict_box(lines: Sequence[Line], answer: str = "") -> html.Markup:
     return html.Markup(f'<div class="verdict {escape(answer)}">\n{rows}\n</div>')
 
 
-def screening_box(scene: Scene, name: str) -> html.Markup:
-    """Return the box of a run that has no twin: the closed-form screening, and how to get the verdict.
+def verdict_of(folder: Path, scene: Scene) -> tuple[str, html.Markup]:
+    """Return the criterion of the verdict that lies beside a run, and its box; else those of an estimate.
 
-    ``name`` is what the command takes: the id of a shipped scene, or the path of its file.
+    Raises
+    ------
+    ResultError
+        The verdict is damaged, or on another scene.
     """
-    return verdict_box(screening_lines(screening(Case(scene).bodies), name))
+    stored = folder / "verdict.json"
+    if not stored.is_file():
+        lines = screening_lines(screening(Case(scene).bodies), str(folder / "scene.toml"))
+        criterion = "the published limit of rigid behaviour, as an estimate. No verdict computed."
+        return f"Criterion: {criterion}", verdict_box(lines)
+    told = read_signed(read_text(stored), str(stored))
+    if told["scene_digest"] != digest(scene):
+        raise ResultError(f"{stored}: is the verdict on another scene: assess {folder / 'scene.toml'} again.")
+    if "within" in told:
+        criterion = "vibration changes {of} by at most {change:g}.".format(**told["within"])
+    else:
+        criterion = told["box"][0][0]  # the question of a limit
+    said = f"Criterion: {criterion} Answer: {told['answer'].upper()}."
+    return said, verdict_box(told["box"], told["answer"])
 
 
 def write_verdict(scene: Scene, document: dict[str, Any], out: Path, picture: Picture | None) -> Path:
@@ -131,7 +147,7 @@ def run_page(folder: Path) -> str:
     stop = "" if outcome.validity.finished else ": at the stop of this unfinished run"
     costs = sections.key_table(outcome, _keys("cost"))
     body = (
-        *([screening_box(scene, str(folder / "scene.toml"))] if scene else ()),
+        *(verdict_of(folder, scene)[1:] if scene else ()),
         _cards(outcome, rigid, friction_spread(scene, outcome.provenance.fidelity) if scene else None),
         sections.notices([outcome], sections.mismatches(outcome, folder)),
         sections.film_section(folder),

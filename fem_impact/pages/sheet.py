@@ -1,14 +1,12 @@
 """One page of a run to print on A4 and sign: drawing, verdict, numbers with errors, inputs with sources."""
 
-from collections.abc import Sequence
 from pathlib import Path
 
 from fem_impact.answers.friction_spread import FrictionSpread, friction_spread
-from fem_impact.answers.verdict.screening import screening
-from fem_impact.answers.verdict.sentences import Line, never_covered, screening_lines
+from fem_impact.answers.verdict.sentences import never_covered
 from fem_impact.case.case import Case
 from fem_impact.errors import MissingLibraryError, ResultError
-from fem_impact.files.atomic import checksum, make_directory, read_signed, read_text, write_text
+from fem_impact.files.atomic import checksum, make_directory, write_text
 from fem_impact.files.run_directory import FIELDS
 from fem_impact.outcome.groups import HEAVIEST_FIRST, WRONG_NUMBERS, texts
 from fem_impact.outcome.keys import Unknown, or_none, why_unknown
@@ -17,7 +15,7 @@ from fem_impact.outcome.shares import IF_ON, shares
 from fem_impact.outcome.strikes import SHOWN, strikes_table, told
 from fem_impact.pages import html
 from fem_impact.pages.drawing import draw_projectile
-from fem_impact.pages.run_page import verdict_box
+from fem_impact.pages.run_page import verdict_of
 from fem_impact.scene.inputs import inputs
 from fem_impact.scene.read import read_toml
 from fem_impact.scene.types import Scene, digest
@@ -68,7 +66,7 @@ def write_sheet(folder: Path, document: str = "", revision: str = "") -> Path:
     case = Case(scene)
     drawing = make_directory(folder / "figures") / "projectile.svg"
     draw_projectile(case, drawing, NARROW)
-    criterion, lines = _verdict(folder, case)
+    criterion, box = verdict_of(folder, scene)
     spread = friction_spread(scene, origin.fidelity)
     numbers, unknown = _numbers(outcome, scene, spread)
     limits = outcome.validity.limitations
@@ -83,7 +81,7 @@ def write_sheet(folder: Path, document: str = "", revision: str = "") -> Path:
             html.join((html.image(drawing, "the projectile in its plane of motion"), _still(folder))),
         ),
         _followed(outcome),
-        html.section("Verdict", html.paragraph(criterion), verdict_box(lines)),
+        html.section("Verdict", html.paragraph(criterion), box),
         html.section(
             "Numbers of the first impact, with their errors",
             html.bullets(texts(limits, *WRONG_NUMBERS)),
@@ -127,26 +125,6 @@ def _numbers(outcome: Outcome, scene: Scene, spread: FrictionSpread) -> tuple[Ta
     asked = {label: key.of(outcome) for label, key, _ in listed if key.path[-1] not in IF_ON}
     head = ("quantity", "value", "unit", "what f changes")[: 4 if spread.said else 3]
     return Table.of(head, [row[: len(head)] for row in rows], left=(0, 2, 3)), why_unknown(asked)
-
-
-def _verdict(folder: Path, case: Case) -> tuple[str, Sequence[Line]]:
-    """Return the criterion, and the lines of the verdict on it or of the estimate that stands for it."""
-    stored = folder / "verdict.json"
-    if not stored.is_file():
-        lines = screening_lines(screening(case.bodies), str(folder / "scene.toml"))
-        return (
-            "Criterion: the published limit of rigid behaviour, as an estimate. No verdict computed.",
-            lines,
-        )
-    told = read_signed(read_text(stored), str(stored))
-    if told["scene_digest"] != digest(case.scene):
-        raise ResultError(f"{stored}: is the verdict on another scene: assess {folder / 'scene.toml'} again.")
-    if "within" in told:
-        criterion = "vibration changes {of} by at most {change:g}.".format(**told["within"])
-    else:
-        criterion = told["box"][0][0]  # the question of a limit
-    said = f"Criterion: {criterion} Answer: {told['answer'].upper()}."
-    return said, [(title, sentence) for title, sentence in told["box"]]
 
 
 def _still(folder: Path) -> html.Markup:
