@@ -89,16 +89,16 @@ def flash(t: Array, q: Array, a: Array, V: Array, rod: Half, barrier: Half) -> F
     t : (n,) s; q, a, V : (n - 1,) flux W/m2, patch radius m and sliding speed m/s between the times
     rod, barrier : the source rests on the rod and moves over the barrier
     """
-    resting = _least(t, q, a, np.zeros_like(V), rod)
-    moving = _least(t, q, a, V, barrier)
+    steady = (moving_rise(q, a, v, body) for v, body in ((np.zeros_like(V), rod), (V, barrier)))
+    so_far = (np.concatenate([[0.0], np.maximum.accumulate(rise)]) for rise in steady)
+    short = (short_rise(t, q, body) for body in (rod, barrier))
+    return _shared(t, *map(np.minimum, short, so_far))
+
+
+def _shared(t: Array, resting: Array, moving: Array) -> Flash:
+    """Return the rise of a patch whose flux both bodies share, by the rise that each alone would have, K."""
     total = resting + moving
     return Flash(t, np.divide(resting * moving, total, out=np.zeros_like(total), where=total > 0))
-
-
-def _least(t: Array, q: Array, a: Array, V: Array, body: Half) -> Array:
-    """Return the lower of the short-time rise and the largest steady rise so far, K, at times t (n,)."""
-    steady = np.maximum.accumulate(moving_rise(q, a, V, body))
-    return np.asarray(np.minimum(short_rise(t, q, body), np.concatenate([[0.0], steady])))
 
 
 Halves = tuple[Half, Half]
@@ -112,10 +112,15 @@ def expected_rise(pair: ContactPair, friction: float, halves: Halves) -> float:
 
 
 def steady_flash(pair: ContactPair, q: float, halves: Halves) -> Flash:
-    """Return the flash of the estimated contact under an even flux, W/m2, at half its first speed."""
-    size = pair.estimate
-    t, one = np.linspace(0.0, size.duration, 101), np.ones(100)
-    return flash(t, q * one, size.radius * one, 0.5 * abs(pair.sliding) * one, *halves)
+    """Return the flash of the estimated contact under an even flux, W/m2, at half its first speed.
+
+    The short-time rise under an even flux is 2 q sqrt(t / pi) over the effusivity.
+    """
+    size, speeds = pair.estimate, (0.0, 0.5 * abs(pair.sliding))
+    t = np.linspace(0.0, size.duration, 101)
+    short = (2 * q * np.sqrt(t / pi) / body.effusivity for body in halves)
+    steady = (moving_rise(q, size.radius, v, body) for v, body in zip(speeds, halves, strict=True))
+    return _shared(t, *map(np.minimum, short, steady))
 
 
 def closed_form(pair: ContactPair, friction_work: float, halves: Halves) -> tuple[Flash, float, float, float]:

@@ -101,10 +101,8 @@ def _timed_path(
     k2, (d_c, d_d) = pair.reduced[1], pair.arms
     resolve = partial(rigid.path_over_speed, over=over) if over else rigid.sliding_path
     moving = partial(resolve, pair.v_n, pair.v_t, omega=pair.omega)
-    impulse = partial(moving, e=e, f=pair.f, d_c=d_c, d_d=d_d, k2=k2)
-    impulse()  # a first call is slow: the second is timed
     wall, cpu = time.perf_counter(), time.process_time()
-    path = impulse()
+    path = moving(e=e, f=pair.f, d_c=d_c, d_d=d_d, k2=k2)
     return path, time.perf_counter() - wall, time.process_time() - cpu
 
 

@@ -355,5 +355,5 @@ def _flow(flow: Flow) -> dict[str, Any]:
 
 
 def _written(part: object, wanted: tuple[Parameter, ...]) -> dict[str, Any]:
-    values = {parameter: getattr(part, parameter.key) for parameter in wanted}
-    return {p.key: p.write(value) for p, value in values.items() if value not in (None, inf)}
+    values = ((parameter, getattr(part, parameter.key)) for parameter in wanted)
+    return {p.key: p.write(value) for p, value in values if value not in (None, inf)}

@@ -5,6 +5,7 @@ import re
 import tomllib
 from dataclasses import dataclass
 from decimal import Decimal
+from functools import lru_cache
 from importlib.resources import files
 from typing import Any
 
@@ -146,6 +147,7 @@ def parse_number(value: Any, key: str) -> float:
         raise SceneError("is too large.", key=key, value="an integer of many digits") from None
 
 
+@lru_cache(maxsize=4096)  # a sweep writes the same materials for every case
 def format_quantity(value: float, dimension: str, symbol: str = "") -> str:
     """Write an SI value with a unit, so that `parse_quantity` gives back the very same float.
 
