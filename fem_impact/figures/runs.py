@@ -330,8 +330,7 @@ def _label(share: EnergyShare, outcome: Outcome) -> str:
     energy = outcome.energy
     if share.key.path[-1] == "vibration" and or_none(energy.below_floor):
         return f"below floor ({percent(or_none(energy.vibration_floor) or 0.0)})"
-    value, width = outcome.estimate(share.key)
-    return percent(known(value), width)
+    return f"{outcome.told(share.key, 100.0)} %".replace("+-", "±")
 
 
 def study_partition_picture(rows: Sequence[Outcome]) -> Picture:

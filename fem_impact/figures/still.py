@@ -18,7 +18,7 @@ import numpy as np
 from fem_impact.figures.panels import LOOKS, Mark, Panel, Picture, Series, ShadedMap
 from fem_impact.files.atomic import atomic_path, write_text
 from fem_impact.tables.table import Cell, Table
-from fem_impact.tables.text import formula, plain, with_band
+from fem_impact.tables.text import formula, plain
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -99,17 +99,15 @@ def label_sides(
     return placed
 
 
-def percent(fraction: float, band: float | None = None) -> str:
-    """Return a fraction of E_0 as text in per cent, with two digits or more; with its band as `with_band`.
+def percent(fraction: float) -> str:
+    """Return a fraction of E_0 as text in per cent, with two digits or more.
 
     Examples
     --------
-    >>> percent(0.626), percent(0.00219), percent(0.0412, 0.00027), percent(0.024, 0.39)
-    ('62.6 %', '0.22 %', '4.120 ± 0.027 %', '2 (0 to 42) %')
+    >>> percent(0.626), percent(0.00219)
+    ('62.6 %', '0.22 %')
     """
     value = 100.0 * fraction
-    if band:
-        return f"{with_band(value, 100.0 * band, 0.0, 100.0)} %".replace("+-", "±")
     if abs(value) >= 0.95:
         return f"{value:.1f} %"
     return f"{plain(value, 2)} %" if value else "0 %"

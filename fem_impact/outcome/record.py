@@ -120,8 +120,8 @@ class Outcome:
     def told(self, key: Key | str, scale: float = 1.0) -> str:
         """Return a number times ``scale`` as text: with its half-width to the digits that hold.
 
-        One that may have a half-width and has none is told to three digits, and as 0 below `ROUND_OFF`; "not
-        known" stands for `Unknown`.
+        One that may have a half-width and has none is told to three digits, and one that is below `ROUND_OFF`
+        with it as 0; "not known" stands for `Unknown`.
 
         Examples
         --------
@@ -134,12 +134,12 @@ class Outcome:
         value, band = self.estimate(key)
         if isinstance(value, Unknown):
             return "not known"
+        least = ROUND_OFF**3 if key.unit == "m3" else ROUND_OFF  # that of a length, cubed
+        if key.banded and abs(value) + (band or 0.0) < least:
+            return "0"
         if band is not None:
             return with_band(scale * value, scale * band, *(scale * end for end in ends_of(key)))
-        if key.banded:
-            least = ROUND_OFF**3 if key.unit == "m3" else ROUND_OFF  # that of a length, cubed
-            return plain(scale * value) if abs(value) >= least else "0"
-        return plain(scale * value, 4)
+        return plain(scale * value) if key.banded else plain(scale * value, 4)
 
     def to_dict(self, keys: Iterable[Key] | None = None) -> dict[str, Any]:
         """Return the flat keys, all unless some are named, with plain JSON values."""

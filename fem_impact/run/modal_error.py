@@ -211,9 +211,11 @@ def half_widths(place: Place, outcome: Outcome, approach: float) -> dict[str, fl
         if or_none(KEY_TABLE[key].of(outcome)) is not None
     }
     # the plastic work of the body that flows is what the other shares leave
-    beside = sum(halves.get(key, 0.0) for key in TOLD[-3:])
-    halves |= {key: beside for key in PLASTIC if or_none(KEY_TABLE[key].of(outcome))}
-    for key in (*TOLD[-3:], *PLASTIC):  # shares lie between 0 and 1
+    plastic = [key for key in PLASTIC if or_none(KEY_TABLE[key].of(outcome))]
+    if not outcome.motion.friction:  # nothing rubs; along an elastic body nothing pushes at all
+        halves |= {"W_friction_over_E_0": 0.0} | ({} if plastic else {"mu": 0.0})
+    halves |= dict.fromkeys(plastic, sum(halves.get(key, 0.0) for key in TOLD[-3:]))
+    for key in (*TOLD[-3:], *plastic):  # shares lie between 0 and 1
         if key in halves:
             share = known(KEY_TABLE[key].of(outcome))
             halves[key] = min(halves[key], max(share, 1.0 - share))

@@ -107,6 +107,12 @@ def replaced(outcome, vibration):
     return dataclasses.replace(outcome, energy=dataclasses.replace(outcome.energy, vibration=vibration))
 
 
+def test_without_friction_an_elastic_body_has_no_impulse_along_the_barrier_and_no_friction_work():
+    outcome = simulate(load("elastic-frictionless"), "modal")
+    assert outcome.told("mu") == outcome.told("W_friction_over_E_0") == "0"
+    assert outcome.half_widths["E_r_over_E_0"] > 0.0
+
+
 def test_an_outcome_tells_half_widths_in_its_units_and_what_it_is_unlike(monkeypatch):
     outcome = simulate(load("t5b"), "modal")
     halves = outcome.half_widths
