@@ -11,7 +11,7 @@ import pytest
 from cost_fakes import pressed
 from own_bodies import taper, write
 
-from fem_impact.answers.refine import extrapolate
+from fem_impact.answers.refine import extrapolate, forecast
 from fem_impact.answers.refine import level as level_module
 from fem_impact.answers.refine.chain import LevelChain
 from fem_impact.answers.refine.forecast import OverBudgetError
@@ -40,6 +40,7 @@ from fem_impact.case.record import ContactRecord
 from fem_impact.errors import SceneError
 from fem_impact.outcome.keys import Unknown, known
 from fem_impact.outcome.record import KEY_TABLE
+from fem_impact.progress import Progress
 from fem_impact.run.modal_error import Stored
 from fem_impact.run.resolution import without_end
 from fem_impact.run.simulate import simulate
@@ -476,6 +477,28 @@ def test_an_assessment_that_is_stopped_keeps_what_ran(monkeypatch, ran):
     assert found.answer == "undecided" and found.more == {"budget_s": 1e5}
     assert f"stopped by hand after {ran} levels" in found.notes[0]
     assert sum(step.startswith("finite elements") for step in found.steps) == ran
+
+
+@pytest.mark.parametrize("growth", [3.0, 40.0])
+def test_an_assessment_keeps_its_budget_within_1_3_times_and_says_what_it_does(monkeypatch, growth):
+    """Levels take three or forty times as long as those before, where their forecast says next to nothing."""
+    clock, told, asked = [0.0], [], meshed(monkeypatch, [-0.02, 0.0] * 20)
+    real = level_module.simulate_recorded
+
+    def slow(scene, fidelity, options, case):
+        found = real(scene, fidelity, options, case)
+        for step in range(1, 101):
+            clock[0] += 0.01 * growth ** (len(asked) - 1)
+            options.progress(Progress(step * 1e-6, 1e-4, step, 0.0, "4 nodes touch"))
+        return found
+
+    monkeypatch.setattr(level_module, "simulate_recorded", slow)
+    monkeypatch.setattr(levels_module, "run_elsewhere", run_elsewhere)
+    monkeypatch.setattr(forecast, "now", lambda: clock[0])
+    found = assess(load("t5b"), tolerance=0.02, budget_s=60.0, tell=told.append)
+    assert 20.0 < clock[0] <= 1.3 * 60.0 and found.answer == "undecided"
+    begun = [sentence for sentence in told if re.search(r", level \d .*\.\.\.$", sentence)]
+    assert len(begun) == len(asked) > 2 - (growth > 3)
 
 
 def test_a_budget_too_small_for_a_finer_level_is_spent_on_another_place_of_the_grid(monkeypatch):
