@@ -13,7 +13,7 @@ from fem_impact.outcome.keys import Unknown, or_none
 from fem_impact.outcome.record import Outcome
 from fem_impact.progress import watched
 from fem_impact.run import simulate as run
-from fem_impact.scene.types import Scene
+from fem_impact.scene.types import Scene, require_scene
 from fem_impact.tables.text import plain, with_band
 
 SPARE = 0.1  # of a budget that is used up, that the modes of the reduced model may still take
@@ -86,6 +86,7 @@ def simulate(
     >>> outcome.told("e_edge"), outcome.told("Omega_rad_per_s")
     ('0.306', '7.75')
     """
+    require_scene(scene)
     fidelity = fidelity or scene.strikes.first
     with watched(options.progress) as progress:
         options = replace(options, progress=progress)

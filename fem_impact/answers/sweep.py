@@ -26,7 +26,7 @@ from fem_impact.options import FIDELITIES
 from fem_impact.outcome.record import KEY_TABLE, KEYS
 from fem_impact.progress import Notice, ProgressMeter, watched
 from fem_impact.scene.shipped import named
-from fem_impact.scene.types import Scene, digest
+from fem_impact.scene.types import Scene, digest, require_scene
 
 FIDELITY = "modal"
 """Fidelity of a sweep unless stated: a run takes some ten milliseconds."""
@@ -98,6 +98,7 @@ def sweep(
     >>> found.numbers("Omega_rad_per_s").round(1).tolist()
     [-5.9, -4.1]
     """
+    require_scene(scene)
     if fidelity not in FIDELITIES:
         hint = did_you_mean(fidelity, FIDELITIES, f"Use one of {', '.join(FIDELITIES)}.")
         raise UsageError("is not a fidelity.", key="fidelity=", value=fidelity, remedy=hint)

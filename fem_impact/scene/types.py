@@ -15,7 +15,7 @@ from typing import Any, get_args
 
 import tomli_w
 
-from fem_impact.errors import SceneError
+from fem_impact.errors import SceneError, UsageError
 from fem_impact.scene import fields
 from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.fields import Fields, Parameter
@@ -254,6 +254,13 @@ def to_toml(scene: Scene, folder: Path | None = None) -> str:
             if key in place and place[key].endswith(ending):
                 place[key] = os.path.relpath(place[key], folder.resolve())
     return tomli_w.dumps(tables)
+
+
+def require_scene(scene: object) -> None:
+    """Refuse what is no scene, such as the name of one (UsageError)."""
+    if not isinstance(scene, Scene):
+        remedy = 'Load one, of a name, a file or a table: fem_impact.load("t5b").'
+        raise UsageError("is not a scene.", key="scene=", value=scene, remedy=remedy)
 
 
 def digest(scene: Scene) -> str:

@@ -620,3 +620,9 @@ def test_finite_elements_of_a_sweep_run_on_levels_and_have_bands(monkeypatch, tm
     assert found.numbers("mu_low") == pytest.approx(table["mu_low"])
     assert f"| {found[0].outcome.told('e_edge')} |" in (tmp_path / "summary.md").read_text(encoding="utf-8")
     assert "e_edge_low" not in sweep(scene, {"surface.friction": [0.2]}, "rigid").to_dataframe().columns
+
+
+@pytest.mark.parametrize("ask", [fem_impact.simulate, fem_impact.assess, lambda name: sweep(name, {})])
+def test_the_name_of_a_scene_is_told_to_be_loaded(ask):
+    with pytest.raises(UsageError, match=r"""scene="t5b": is not a scene\. Load one.*fem_impact\.load"""):
+        ask("t5b")

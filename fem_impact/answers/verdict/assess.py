@@ -20,7 +20,7 @@ from fem_impact.outcome.strikes import StrikeRecord, Strikes
 from fem_impact.progress import tell_cell
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.impact import Following
-from fem_impact.scene.types import Scene
+from fem_impact.scene.types import Scene, require_scene
 from fem_impact.tables.table import Table
 from fem_impact.tables.text import digits_apart, plain
 
@@ -159,6 +159,7 @@ def assess(
     SceneError
         The scene, tolerance or budget cannot be used, or ``solid`` is asked of a scene that has no mesh.
     """
+    require_scene(scene)
     check_means(fidelity, budget_s)
     if of not in CHANGED:
         remedy = f"Use one of {', '.join(CHANGED)}."
