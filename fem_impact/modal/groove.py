@@ -7,14 +7,18 @@ s = (x - X) / R1, so that
 
     F_n = sum (q - T s) dx,    F_t = -sum (T + q s) dx.
 
-Flow starts on an ellipse, (q / 2 b H)^2 + (T / 2 b K)^2 = 1, and follows its normal; b = sqrt(2 R2 g) is half
-the width of the contact at the cell and H the hardness. K is at first that of a contact which sticks; as the
-tip slides, it falls to the shear yield stress k: normal force falls as tangential force rises (Tabor 1959,
-doi:10.1098/rspa.1959.0114). T is at most f q and 2 b k. What the tip ploughs up fills the gap ahead of it, so
-that the contact grows.
+Flow starts where the slip lines under an inclined load say (Green 1954, doi:10.1016/0022-5096(54)90025-3),
+
+    q / 2 b H = 1 - (theta + 1 - cos(theta)) / (2 + pi),    T / 2 b K = sin(theta),
+
+with theta from 0 to pi/2, where q may be less; it follows the normal. b = sqrt(2 R2 g) is half the width of
+the contact at the cell and H the hardness. K is at first that of a contact which sticks; as the tip slides,
+it falls to the shear yield stress k: normal force falls as tangential force rises (Tabor 1959,
+doi:10.1098/rspa.1959.0114). T is at most f q and 2 b k. What the tip ploughs up raises the surface ahead of
+the contact, over as much as the contact is long: so far the slip lines of a punch reach (Prandtl 1920).
 """
 
-from math import atan, exp, inf, log, pi, sqrt
+from math import asin, atan, cos, exp, inf, log, pi, sin, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -29,11 +33,10 @@ LONGEST = CELLS // 4  # cells of a contact on either side of what is lowest
 
 
 class StateIndex(NamedTuple):
-    """Where each number stands in ``Groove.state`` (9,).
+    """Where each number stands in ``Groove.state`` (8,).
 
     The first and last cell visited; the tip's last place and depth, the widest contact radius, the way slid,
-    m; the volume carried before the tip over its width, m2; the ridge's height under the tip and the highest
-    ever, m.
+    the ridge's height under the tip and the highest ever, m.
     """
 
     first: int = 0
@@ -42,9 +45,8 @@ class StateIndex(NamedTuple):
     depth: int = 3
     widest: int = 4
     slid: int = 5
-    carried: int = 6
-    ridge: int = 7
-    top: int = 8
+    ridge: int = 6
+    top: int = 7
 
 
 class WorkIndex(NamedTuple):
@@ -86,7 +88,7 @@ class Groove(NamedTuple):
     Attributes
     ----------
     depth, normal, shift : (CELLS,) depth, m, normal force, N/m, and shift of the tangential spring, m
-    state : (9,) what stands once, see `StateIndex`
+    state : (8,) what stands once, see `StateIndex`
     works : (3,) J, see `WorkIndex`
     size : of a cell, m
     """
@@ -103,7 +105,7 @@ class Groove(NamedTuple):
 @allocating_kernel
 def smooth(reach: float, radius: float) -> Groove:
     """Return a surface without a groove for contacts of a round tip of at most a half length ``reach``, m."""
-    state, cells = np.zeros(9), (np.zeros(CELLS), np.zeros(CELLS), np.zeros(CELLS))
+    state, cells = np.zeros(8), (np.zeros(CELLS), np.zeros(CELLS), np.zeros(CELLS))
     state[AT.last] = -1.0
     return Groove(*cells, state, np.zeros(3), Tip(radius, ROUND, ROUND), reach / ACROSS)
 
@@ -182,20 +184,26 @@ def clear(groove: Groove, cell: int) -> None:
 
 @inlined
 def flowed(q: float, T: float, Q: float, S: float, law: FlowLaw) -> tuple[float, float]:
-    """Return elastic forces q, T brought back along the normal to the ellipse of semi-axes Q, S."""
+    """Return elastic forces q, T brought back along the normal to Green's curve, of at most Q and S."""
     if Q <= 0.0:
         return 0.0, 0.0
-    a, b = law.normal / Q**2, law.shear / S**2
-    x, y, way = (q / Q) ** 2, (T / S) ** 2, 0.0
-    if x + y <= 1.0:
-        return q, T
-    for _ in range(30):
-        u, v = 1 + way * a, 1 + way * b
-        beyond = x / u**2 + y / v**2 - 1
-        if beyond < 1e-6:
+    y, P = abs(T), Q / (2.0 + pi)
+    low, high = 0.0, asin(min(y / S, 1.0))
+    if q <= Q - P * (high + 1.0 - cos(high)):
+        return q, min(max(T, -S), S)
+    at = high if (q - Q) * P * law.shear < y * S * law.normal else 0.0  # else at the corner, where T is 0
+    for _ in range(30 if at > 0.0 else 0):
+        u, v, c, sn = q - Q + P * (at + 1.0 - cos(at)), y - S * sin(at), cos(at), 1.0 + sin(at)
+        beyond = v * S * c / law.shear - u * P * sn / law.normal
+        low, high = (at, high) if beyond > 0.0 else (low, at)
+        slope = (P * P * sn * sn + u * P * c) / law.normal + (S * S * c * c + v * S * (sn - 1.0)) / law.shear
+        before, at = at, at + beyond / slope
+        if not low <= at <= high:
+            at = 0.5 * (low + high)
+        if abs(at - before) < 1e-7:
             break
-        way += beyond / (2 * a * x / u**3 + 2 * b * y / v**3)
-    return q / (1 + way * a), T / (1 + way * b)
+    T = S * sin(at) if T > 0.0 else -S * sin(at)
+    return Q - P * (at + 1.0 - cos(at)), T
 
 
 @inlined
@@ -249,7 +257,7 @@ def slide(groove: Groove, depth: float, place: float, law: FlowLaw) -> tuple[flo
     if state[AT.widest] == 0.0:
         return 0.0, 0.0
     H, K = strengths(groove, law)
-    F_n, F_t, ridge, front, touched = 0.0, 0.0, 0.0, 0, False
+    F_n, F_t, ridge, volume, front, touching = 0.0, 0.0, 0.0, 0.0, 0, 0
     way = 1 if moved > 0.0 else -1
     for step in range(last - first + 1):
         c = first + step if way > 0 else last - step  # from the rear to the front
@@ -262,33 +270,27 @@ def slide(groove: Groove, depth: float, place: float, law: FlowLaw) -> tuple[flo
         s, before = s if law.ploughs else 0.0, g[i]
         ahead = s * moved > 0.0
         q, T = press_cell(groove, i, D, moved - s * sunk, state[AT.ridge] if ahead else 0.0, H, K, law)
+        touching += 1
         F_n += (q - T * s) * size
         F_t -= (T + q * s) * size
         if ahead:
-            state[AT.carried] += min(max(g[i] - before - max(sunk, 0.0), 0.0), s * moved) * size
-            ridge, front, touched = max(ridge, -g[i]), c, True
+            volume += min(max(g[i] - before - max(sunk, 0.0), 0.0), s * moved) * size
+            ridge, front = max(ridge, -g[i]), c
     state[AT.ridge] = ridge
     state[AT.slid] += abs(moved) if F_n > 0.0 else 0.0
-    if touched:
-        pile_up(groove, front, way)
+    if volume > 0.0:
+        pile_up(groove, front, way, touching, volume)
     return F_n, F_t
 
 
 @inlined
-def pile_up(groove: Groove, front: int, way: int) -> None:
-    """Fill the gap between tip and surface before the ``front`` cell with what is carried there."""
-    g, state, size = groove.depth, groove.state, groove.size
-    c = front + way
-    while state[AT.first] <= c <= state[AT.last]:
-        x = (c + 0.5) * size - state[AT.place]
-        gap = g[c % CELLS] - (state[AT.depth] - outline(groove.tip, x)[0])
-        if gap > 0.0:
-            if gap * size > state[AT.carried]:
-                break
-            state[AT.carried] -= gap * size
-            g[c % CELLS] -= gap
+def pile_up(groove: Groove, front: int, way: int, cells: int, volume: float) -> None:
+    """Raise so many cells before the ``front`` one by a volume over its width, m2."""
+    g, state = groove.depth, groove.state
+    for c in range(front + way, front + way * (cells + 1), way):
+        if state[AT.first] <= c <= state[AT.last]:
+            g[c % CELLS] -= volume / (cells * groove.size)
             state[AT.top] = max(state[AT.top], -g[c % CELLS])
-        c += way
 
 
 @inlined
