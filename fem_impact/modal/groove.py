@@ -200,7 +200,7 @@ def flowed(q: float, T: float, Q: float, S: float, law: FlowLaw) -> tuple[float,
         before, at = at, at + beyond / slope
         if not low <= at <= high:
             at = 0.5 * (low + high)
-        if abs(at - before) < 1e-7:
+        if abs(at - before) < 1e-10:
             break
     T = S * sin(at) if T > 0.0 else -S * sin(at)
     return Q - P * (at + 1.0 - cos(at)), T

@@ -1,13 +1,14 @@
 """The local contact: Hertz, a sliding and sticking sphere, a contact that yields."""
 
 from dataclasses import replace
-from math import atan, inf, pi, sqrt
+from math import asin, atan, inf, pi, sqrt
 
+import numpy as np
 import pytest
 
 import fem_impact
 from fem_impact.case.case import Case
-from fem_impact.modal.groove import Flank, Tip, hardness, indent, slide, smooth
+from fem_impact.modal.groove import AT, Flank, Tip, flowed, hardness, indent, slide, smooth
 from fem_impact.modal.impact import drop_round
 from fem_impact.modal.laws import reach
 from fem_impact.modal.motion import CLOCK, SITE, SUM, Bounds, Start
@@ -100,6 +101,36 @@ def test_a_corner_beside_that_of_a_flank_ploughs_in_its_groove():
     for step in range(300):
         force = slide(groove, 2e-4, step * 5e-6, law)
     assert -force[1] / force[0] == pytest.approx(0.5, rel=0.05)
+
+
+@pytest.mark.parametrize("T", [-0.1, 0.4, -0.9, 3.0])
+@pytest.mark.parametrize("q", [0.2, 0.9, 1.5, 4.0])
+def test_a_cell_flows_to_the_nearest_point_of_greens_curve(q, T):
+    """Near by the elastic energy of what is given up; a sheared skin bears any pressure up to a half."""
+    Q, S, law = 1.3, 0.5, flow()
+    theta = np.linspace(0.0, pi / 2, 100_001)
+    x, y = Q * (1 + pi - theta + np.cos(theta)) / (2 + pi), S * np.sin(theta)
+    h = min(abs(T) / S, 1.0)
+    if q <= Q * (1 + pi - asin(h) + sqrt(1 - h**2)) / (2 + pi):
+        nearest = q, min(abs(T), S)
+    else:
+        at = np.argmin((q - x) ** 2 / law.normal + (abs(T) - y) ** 2 / law.shear)
+        nearest = x[at], y[at]
+    found = flowed(q, T, Q, S, law)
+    assert (found[0], abs(found[1])) == pytest.approx(nearest, abs=1e-4)
+    assert T * found[1] >= 0.0
+
+
+def test_what_a_tip_ploughs_up_stands_ahead_of_it():
+    groove, law = smooth(1e-3, R), flow()._replace(normal=1e15)  # springs back by nothing
+    slide(groove, 4e-5, 0.0, law)
+    pressed = groove.depth.sum()
+    for step in range(300):
+        slide(groove, 4e-5, step * 2e-6, law)
+    low = groove.depth < 0.0
+    assert groove.depth.sum() == pytest.approx(pressed, rel=0.02)
+    assert -groove.depth[low].sum() > 0.2 * pressed
+    assert groove.state[AT.top] == -groove.depth.min()
 
 
 def test_hardening_raises_the_force():

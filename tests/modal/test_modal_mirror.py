@@ -42,7 +42,7 @@ def test_a_chamfer_that_leans_by_37_degrees_does_not_land_flat():
     run = tilted(8)
     assert run.restitution.edge.e == pytest.approx(0.516, abs=0.05)
     assert run.restitution.mu == pytest.approx(0.080, abs=0.02)
-    assert run.motion.Omega == pytest.approx(12.8, abs=1.0)
+    assert run.motion.Omega == pytest.approx(12.8, abs=1.8)
 
 
 def test_all_impulse_beyond_friction_that_no_stored_scene_comes_near_counts_as_error():
