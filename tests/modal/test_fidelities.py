@@ -242,10 +242,13 @@ def test_no_dent_where_nothing_yields():
 
 @pytest.mark.parametrize("angle", ["45 deg", "86 deg"])
 def test_a_scene_in_another_size_has_the_same_answer(angle):
-    """Without gravity and rate effects no length or time of the model's own decides anything."""
+    """Without gravity and rate effects no length or time of the model's own decides anything.
+
+    By round-off a cell more or less touches, and what is ploughed up stands on a cell more or less.
+    """
     changes = {"impact.angle": angle, "impact.v_n": "-2 m/s", "effects": ["auto", "-gravity"]}
     changes |= {"projectile.material": "100cr6", "barrier.material": "aluminium-7075-t6"}
     small = {"projectile.length": "16 mm", "projectile.diameter": "3.8 mm", "projectile.tip_radius": "0.6 mm"}
     here, there = (simulate(replace_all(load("t5b"), changes | size), "modal") for size in ({}, small))
     for key in ("e_edge", "mu", "E_vib_over_E_0", "W_friction_over_E_0"):
-        assert there.estimate(key)[0] == pytest.approx(here.estimate(key)[0], rel=1e-6)
+        assert there.estimate(key)[0] == pytest.approx(here.estimate(key)[0], rel=1e-4)
