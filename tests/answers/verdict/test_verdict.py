@@ -156,7 +156,7 @@ def test_a_plate_is_called_a_plate_with_its_thickness(short):
     rest = box(told)[2][1]
     assert "plastic plate 7" in rest and "the plate is 10 mm thick" in rest and "barrier" not in rest
     assert "on a plate of 10 mm of plate-steel (free underneath), 45 degrees" in case_sentence(plate)
-    assert "plastic barrier 60" in box(short)[2][1] and "on plate-steel, 45 degrees" in case_sentence(
+    assert "plastic barrier 7" in box(short)[2][1] and "on plate-steel, 45 degrees" in case_sentence(
         load("t5b")
     )
 
