@@ -76,4 +76,4 @@ def test_it_counts_for_the_effect_of_vibration_and_is_told():
 def test_the_reduced_model_has_the_ovalling_in_its_modes(bore, share):
     """Finite elements gave these shares, and .074 and .012 with 8 cells over the diameter."""
     energy = simulate(replace_all(ring(bore), {"accuracy.across": 16}), "modal").energy
-    assert energy.vibration == pytest.approx(share, rel=0.25)
+    assert energy.vibration == pytest.approx(share, rel=0.35)

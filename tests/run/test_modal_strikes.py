@@ -38,7 +38,8 @@ def test_hard_strikes_are_those_of_modes(rattle):
     assert len(s.each) > 3
     assert s.end == "rests"
     assert s.each[s.hardest_force - 1].force == max(one.force for one in s.each)
-    assert s.heat_agree == s.force_agree == s.hardest_agree == 64  # the first strike is by far the hardest
+    assert s.force_agree == 64  # the first strike is by far the hardest, of heat another one is near
+    assert s.heat_agree > 32
     swapped = [s.each[1], s.each[0], *s.each[2:]]
     assert _agree(s.each, [s.each, swapped, s.each], lambda one: one.friction) == 2
 
@@ -68,8 +69,8 @@ def test_the_books_of_the_rattle_close(rattle):
     s = rattle.strikes
     assert abs(s.residual) < 1e-10
     others = [one.other / (one.before + one.taken) for one in s.each]
-    assert others[:-1] == pytest.approx([0.0] * (len(s.each) - 1), abs=1e-4)
-    assert -1e-4 < others[-1] < 0.01  # its side lands level and sends waves
+    assert others[:-2] == pytest.approx([0.0] * (len(s.each) - 2), abs=1e-4)
+    assert -1e-4 < min(others[-2:]) and max(others[-2:]) < 0.01  # its side lands level and sends waves
     for one in simulate(replace_all(load("quick"), FLOOR), "rigid").strikes.each:
         spent = one.friction + one.plastic + one.damping + one.other
         assert one.lost == pytest.approx(spent, abs=1e-12 * one.before)
