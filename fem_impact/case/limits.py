@@ -4,13 +4,11 @@ import math
 from collections.abc import Collection
 from dataclasses import replace
 
-import numpy as np
-
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.effects.slots import ModelSpec
 from fem_impact.case.layers import flows_below
 from fem_impact.case.plates import is_wider, thin_plate
-from fem_impact.case.shaft import coned, gives_elsewhere
+from fem_impact.case.shaft import coned, gives_elsewhere, lands_on_ridge
 from fem_impact.errors import SceneError
 from fem_impact.outcome.groups import Limitation, limitations
 from fem_impact.physics.contact import FLAT
@@ -24,7 +22,6 @@ from fem_impact.scene.units import format_quantity
 from rigid import Faceted, Turned
 
 BESIDE_AXIS = 1e-3  # of the diameter, within which an upright body stands over its mass centre
-RIDGE = 0.25  # of the diameter, length of the shortest edge that lands along a line
 # Smallest and largest of the 13 measured sets (Tables 2 to 6 of the paper), SI units.
 LENGTHS = (0.08, 0.24)
 DIAMETER = 0.019
@@ -377,7 +374,7 @@ def flat_part(bodies: Bodies) -> str:
 def not_reduced(bodies: Bodies) -> str:
     """Return what the reduced model has no answer for, empty where it has one."""
     obstacles = {
-        "a mesh that lands along a ridge": _lands_on_ridge(bodies),
+        "a mesh that lands along a ridge": lands_on_ridge(bodies),
         "a plate thinner than its contact is wide": is_wider(bodies),
         "a hardened skin": "machined-skin" in bodies.effects,
     }
@@ -385,21 +382,12 @@ def not_reduced(bodies: Bodies) -> str:
     return found or flows_below(bodies) or gives_elsewhere(bodies)
 
 
-def _lands_on_ridge(bodies: Bodies) -> bool:
-    """Return whether an edge of a mesh lands flat, no side with a width; facets of round tips are shorter."""
-    body, touch, angle = bodies.body, bodies.contact.touch, bodies.contact.angle
-    if not isinstance(body, Faceted) or touch.length <= RIDGE * body.diameter:
-        return False
-    middle, half = np.array(touch[:2]), 0.5 * touch.length * np.array([math.cos(angle), math.sin(angle)])
-    return not body.half_widths(middle - half, middle + half, np.array([0.5])).any()
-
-
 def require_own_mesh(bodies: Bodies, fidelity: str) -> None:
     """Refuse what the model cannot do with a user's mesh as the projectile (SceneError)."""
     mesh, scene = bodies.rod.own_mesh, bodies.scene
     if mesh is None:
         return
-    if fidelity == "modal" and _lands_on_ridge(bodies):
+    if fidelity == "modal" and lands_on_ridge(bodies):
         problem = "lands along a ridge, an edge of the mesh, of which the reduced model has no law."
         remedy = "Use fidelity solid, or another angle."
         raise SceneError(problem, key="impact.angle", value=_angle(bodies), remedy=remedy)

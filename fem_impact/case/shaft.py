@@ -1,13 +1,16 @@
-"""What models leave out of a projectile: a shaft that flows, a flattened wall, and sharp shoulders."""
+"""What models leave out of a projectile: a shaft that flows, a flattened wall, sharp shoulders, a ridge."""
 
-from math import cos, pi, sqrt
+from math import cos, pi, sin, sqrt
+
+import numpy as np
 
 from fem_impact.case.bodies import Bodies
 from fem_impact.physics.contact import section_frequency
 from fem_impact.physics.stepped_beam import sections
 from meshes import shoulders
-from rigid import Turned
+from rigid import Faceted, Turned
 
+RIDGE = 0.25  # of the diameter, length of the shortest edge of a mesh that lands along a line
 THIN = 3.0  # middle radius over wall from which on a wall bends as a thin ring
 
 
@@ -80,3 +83,12 @@ def coned(bodies: Bodies) -> str:
     _, heights = shoulders.eased(bodies.body.outline, bodies.scene.across)
     places = " and ".join(f"{z * 1e3:.3g} mm" for z in heights)
     return f"in a mesh the shoulder {places} from the tip is a cone of 63 degrees" if places else ""
+
+
+def lands_on_ridge(bodies: Bodies) -> bool:
+    """Return whether an edge of a mesh lands flat, no side with a width; facets of round tips are shorter."""
+    body, touch, angle = bodies.body, bodies.contact.touch, bodies.contact.angle
+    if not isinstance(body, Faceted) or touch.length <= RIDGE * body.diameter:
+        return False
+    middle, half = np.array(touch[:2]), 0.5 * touch.length * np.array([cos(angle), sin(angle)])
+    return not body.half_widths(middle - half, middle + half, np.array([0.5])).any()
