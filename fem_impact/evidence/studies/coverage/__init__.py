@@ -40,7 +40,7 @@ def scenes(request: Request) -> list[DrawnScene]:
 def plan(request: Request, results: Results) -> list[CoverageRun]:
     """Return the runs of every scene that the results so far call for.
 
-    The reduced model takes no mesh. A finer run follows one that gave numbers and was not dear (`NEXT`); one
+    A finer run follows one that gave numbers and was not dear (`NEXT`); one
     with two levels more, or with a twin, does not if quick.
     """
     runs = []
