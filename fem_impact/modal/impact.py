@@ -366,7 +366,7 @@ def _result(
         contacts=contacts,
         sites=pressed_sites(case, rod, course.held),
         laid=laid,
-        force=tally[SUM.force],
+        force=float(tally[SUM.force]),
         finished=over,
         reason=_reason(ended, bounds, float(clock[CLOCK.free])),
         other_end=ended == NEXT,

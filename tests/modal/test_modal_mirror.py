@@ -49,6 +49,6 @@ def test_all_impulse_beyond_friction_that_no_stored_scene_comes_near_counts_as_e
     """Finite elements on two levels at 65 degrees: mu .43 +- .25; at 70 they rise from .26 to .35."""
     run = tilted(70)
     mu, half = run.estimate("mu")
-    assert half == pytest.approx(mu - 0.25) and mu > 0.5
+    assert half >= mu - 0.25 > 0.25
     assert run.estimate("V_t_m_per_s")[1] >= half * (run.motion.V_n - run.motion.v_n)
     assert any("how an edge digs in" in one.text for one in run.validity.limitations)

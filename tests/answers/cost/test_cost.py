@@ -192,6 +192,6 @@ def test_a_scene_that_asks_for_an_error_is_measured_without_it():
     assert levels.scene.accuracy.target is None
 
 
-def test_a_mesh_of_the_users_own_is_measured_without_the_reduced_model(tmp_path):
+def test_a_mesh_of_the_users_own_is_measured_by_the_same_settings(tmp_path):
     names = [job.name for job in jobs_of(half_box(tmp_path, 8, 4, 10), 1, 30.0)]
-    assert names == ["box: rigid", "box: levels", "box: two places"]
+    assert names == ["box: rigid", "box: modal", "box: levels", "box: two places"]
