@@ -130,8 +130,13 @@ def _moved_place(rod: ProjectileSpec, across: int, x: float, z: float) -> Array:
     """
     points, shape, _ = _modes(rod, across)
     away = (points - np.array([x, 0.0, z])) / (AROUND * rod.diameter)
-    near = np.flatnonzero((away**2).sum(axis=1) < 1.0)
-    affine = np.column_stack([np.ones(len(near)), away[near][:, [0, 2]]])
+    distance, reach = (away**2).sum(axis=1), 1.0
+    while True:
+        near = np.flatnonzero(distance < reach)
+        affine = np.column_stack([np.ones(len(near)), away[near][:, [0, 2]]])
+        if np.linalg.matrix_rank(affine) == 3:
+            break
+        reach *= 2.0  # a mesh of the user's own may be so coarse
     weights = affine @ np.linalg.solve(affine.T @ affine, np.array([1.0, 0.0, 0.0]))
     return np.asarray(np.tensordot(weights, shape[near], axes=1))
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from own_bodies import write
+from own_bodies import box, write
 
 from fem_impact import load, replace
 from fem_impact.case.case import Case
@@ -10,6 +10,7 @@ from fem_impact.errors import SceneError
 from fem_impact.evidence.studies.coverage.bodies import BODIES
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.read import read_dict
+from fem_impact.scene.types import to_dict
 
 SIZES = {"width": 12e-3, "length": 60e-3, "bend": 6e-3}
 
@@ -48,6 +49,18 @@ def test_a_contact_is_as_large_as_the_body_where_it_is_pressed_in(tmp_path):
     assert np.pi * size.a_t * size.a_b == pytest.approx(area, rel=0.02)
 
 
+def test_a_bar_of_few_cells_has_places_for_its_modes(tmp_path):
+    """Of cells of half the bar's width hardly a node lies near a place."""
+    points, cells = box(2, 1, 5, (-6e-3, 0.0, 0.0), (6e-3, 6e-3, 60e-3))
+    bar = scene(tmp_path, "square bar", 10)
+    table = to_dict(bar)
+    del table["projectile"]["mesh_content"]
+    table["projectile"]["mesh"] = str(write(tmp_path / "coarse.vtu", points, cells))
+    coarse, fine = simulate(read_dict(table), "modal"), simulate(bar, "modal")
+    assert coarse.restitution.edge.e == pytest.approx(fine.restitution.edge.e, abs=0.05)
+    assert coarse.energy.vibration == pytest.approx(fine.energy.vibration, rel=0.3)
+
+
 def test_a_side_lands_flat_with_its_width_and_a_ridge_is_refused(tmp_path):
     side = Case.of(scene(tmp_path, "square bar", 90), "modal").bodies.body
     ends = np.array([6e-3, 0.0]), np.array([6e-3, 60e-3])
@@ -63,7 +76,6 @@ def test_a_side_lands_flat_with_its_width_and_a_ridge_is_refused(tmp_path):
 def test_a_rod_written_to_a_mesh_is_that_rod(tmp_path):
     """Facets of 0.8 mm stand for an edge of 3 mm."""
     from fem_impact.fem.body import MeshedBodies
-    from fem_impact.scene.types import to_dict
 
     rod = load("t5b")
     fine = {"effects": ["vibration", "barrier-rigid"], "accuracy.tip_size": "0.79 mm", "accuracy.across": 24}
