@@ -165,8 +165,8 @@ class Faceted:
         """Area, m2, of the convex hull of what lies in the plane at a `height`, m, over the lowest point."""
         ends = np.stack([self.facets, np.roll(self.facets, -1, axis=1)], axis=-1).reshape(-1, 2)
         over = self.heights(alpha)[ends] - height
-        cut = (over.min(axis=1) < 0.0) & (over.max(axis=1) >= 0.0)
-        ends, over = ends[cut], over[cut]
+        crosses = (over.min(axis=1) < 0.0) & (over.max(axis=1) >= 0.0)
+        ends, over = ends[crosses], over[crosses]
         share = (over[:, 0] / (over[:, 0] - over[:, 1]))[:, None]
         x, y, z = (self.points[ends[:, 0]] * (1.0 - share) + self.points[ends[:, 1]] * share).T
         t = x * math.cos(alpha) + z * math.sin(alpha)

@@ -28,7 +28,7 @@ from fem_impact.files.atomic import directory_lock, read_text, write_digests
 from fem_impact.files.run_directory import BESIDE, is_resumable
 from fem_impact.options import RunOptions
 from fem_impact.outcome.groups import limitations
-from fem_impact.outcome.keys import Unknown, known
+from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.record import Outcome
 from fem_impact.outcome.strikes import levels_told
 from fem_impact.progress import Notice
@@ -313,11 +313,8 @@ class LevelChain:
         name = f"{self.scene.id}, level {number}" + f" of {number + len(later)}" * bool(self.done)
         progress = forecast.LevelProgress(show, name, used_s=self.spent_s, limit_s=self.limit_s, begun=begun)
         if self.done:
-            before = self.done[-1].outcome.cost
-            progress.load = before.whole_wall / max(before.whole_cpu, 1e-3)
-            progress.duration_s = known(before.steps) * known(before.min_step)
+            progress.after(self.done[-1].outcome.cost, self._turns)
             progress.halvings = [fine - coarse for coarse, fine in pairwise([splits, *later])]
-            progress.turns = self._turns
         return replace(self.options, out=out, progress=progress)
 
     def _stated(self) -> Outcome:

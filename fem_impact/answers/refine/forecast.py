@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from itertools import zip_longest
 from math import ceil, floor, inf, log10
 from time import perf_counter, process_time
-from typing import Any, TypeVar
+from typing import Any, Self, TypeVar
 
 from fem_impact.case.case import Case
 from fem_impact.case.record import ContactRecord
@@ -17,6 +17,8 @@ from fem_impact.case.size import machine_memory, setup_time
 from fem_impact.errors import RunError, SceneError
 from fem_impact.fem.kernels import COMPILING
 from fem_impact.jobs.executors import LocalProcesses
+from fem_impact.outcome.groups import RunCost
+from fem_impact.outcome.keys import known
 from fem_impact.progress import Notice, Progress, left_text
 from fem_impact.scene.types import Scene
 
@@ -225,6 +227,13 @@ class LevelProgress:
     begun: float = field(default_factory=lambda: now())
     since: tuple[float, float] | None = None
     stands: float = 0.0
+
+    def after(self, before: RunCost, turns: int) -> Self:
+        """Return self, which expects load and duration of a run before, and so many runs in turn."""
+        self.load = before.whole_wall / max(before.whole_cpu, 1e-3)
+        self.duration_s = known(before.steps) * known(before.min_step)
+        self.turns = turns
+        return self
 
     def __getstate__(self) -> dict[str, Any]:
         """Send to another process how long ago the level began: clocks without compilation differ."""

@@ -16,7 +16,6 @@ from fem_impact.case.case import Case
 from fem_impact.case.record import together
 from fem_impact.errors import RunError, SceneError
 from fem_impact.options import RunOptions
-from fem_impact.outcome.keys import known
 
 
 def run_elsewhere(levels: LevelChain) -> bool:
@@ -55,20 +54,17 @@ def _at_other_place(levels: LevelChain, level: LevelRun, turns: forecast.Turns) 
         accuracy = case.scene.accuracy
         shifted = replace(accuracy, grid_shift=(accuracy.grid_shift + GRID_OFFSETS[1]) % 1.0)
         cases.append(Case.of(replace(case.scene, accuracy=shifted), "solid", case.record))
-    workers, before = forecast.at_once(cases, levels.workers), level.outcome.cost
+    workers = forecast.at_once(cases, levels.workers)
     number = 1 + next(at for at, one in enumerate(levels.done) if one.splits == level.splits)
     options = [
         RunOptions(
             progress=forecast.LevelProgress(
                 show,
                 f"{levels.scene.id}, level {number} at another place of the grid",
-                turns=forecast.turns(len(cases), workers),
-                duration_s=known(before.steps) * known(before.min_step),
                 used_s=levels.spent_s,
                 limit_s=levels.limit_s,
-                load=before.whole_wall / max(before.whole_cpu, 1e-3),
                 begun=begun,
-            )
+            ).after(level.outcome.cost, forecast.turns(len(cases), workers))
         )
         for show in (levels.options.progress, *[None] * (len(cases) - 1))
     ]
