@@ -60,6 +60,17 @@ def vibration_pairs() -> tuple[dict[str, float], ...]:
     return _rows("changes.csv")
 
 
+@cache
+def needed_half_widths() -> dict[str, dict[str, float]]:
+    """Return what half-widths of levels need, by the key of a number, see `fem_impact.answers.refine.needed`.
+
+    It holds the number of scenes, and ``times`` and ``share``. ``fem-impact study coverage`` makes the table:
+    its sheet ``level-bands``.
+    """
+    rows = csv.DictReader(_data("level-bands.csv").splitlines())
+    return {row.pop("key"): {name: float(text) for name, text in row.items()} for row in rows}
+
+
 def _rows(name: str) -> tuple[dict[str, float], ...]:
     rows = csv.DictReader(_data(name).splitlines())
     return tuple({key: float(text or "nan") for key, text in row.items() if key != "scene"} for row in rows)

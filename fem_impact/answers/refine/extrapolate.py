@@ -20,6 +20,7 @@ from itertools import pairwise, takewhile
 from math import hypot, log2, sqrt
 from statistics import fmean, stdev
 
+from fem_impact.answers.refine.needed import widened
 from fem_impact.answers.refine.quantities import QUANTITIES, sum_of
 from fem_impact.outcome.groups import ARMS
 from fem_impact.outcome.keys import Key, Unknown, or_none
@@ -181,9 +182,21 @@ def level_limits(levels: Sequence[MeshRuns]) -> tuple[MeshNumbers, MeshNumbers]:
     """Return limits and half-widths, by key, of levels from coarse to fine, or why there are none.
 
     They need two levels, of which the last resolves the contact, and are of every banded number that all runs
-    of the finest two know. Bands hold what the cells of the finest held back, see
+    of the finest two know. Half-widths are those of `own_limits`, as far widened as a study of random scenes
+    found to be needed (`fem_impact.answers.refine.needed`).
+    """
+    limits, bands = own_limits(levels)
+    if isinstance(limits, Unknown) or isinstance(bands, Unknown):
+        return limits, bands
+    return limits, widened(limits, bands, levels[-1].runs[0])
+
+
+def own_limits(levels: Sequence[MeshRuns]) -> tuple[MeshNumbers, MeshNumbers]:
+    """Return limits and half-widths, by key, that levels tell by themselves, or why there are none.
+
+    Half-widths hold what the cells of the finest held back, see
     `held_back`; that of the vibration energy is no less than its runs allow. Shares
-    that flow and friction take have bands alike, see `SHARE`.
+    that flow and friction take have half-widths alike, see `SHARE`.
     """
     if levels and not levels[-1].resolved:
         return UNRESOLVED, UNRESOLVED

@@ -7,7 +7,7 @@ import pytest
 
 from fem_impact.answers.refine import level as level_module
 from fem_impact.answers.refine.chain import LevelChain
-from fem_impact.answers.refine.extrapolate import MeshRuns, level_limit, level_limits
+from fem_impact.answers.refine.extrapolate import MeshRuns, level_limit, level_limits, own_limits
 from fem_impact.answers.refine.forecast import Turns
 from fem_impact.answers.refine.level_meshes import LevelMeshes
 from fem_impact.answers.simulate import compiled, simulate
@@ -200,7 +200,7 @@ def test_shares_that_flow_and_friction_take_have_half_of_the_widest_band_at_leas
     energy = replace(outcome.energy, friction=0.1, plastic_rod=0.0, plastic_barrier=0.5)
     less = replace(energy, plastic_barrier=0.4)
     meshes = [MeshRuns(size, [replace(outcome, energy=of)]) for size, of in ((2.0, energy), (1.0, less))]
-    bands = known(level_limits(meshes)[1])
+    bands = known(own_limits(meshes)[1])
     assert bands["E_plastic_barrier_over_E_0"] > 0.1 and bands["E_plastic_rod_over_E_0"] == 0.0
     assert bands["W_friction_over_E_0"] == bands["E_plastic_barrier_over_E_0"] / 2
 

@@ -14,6 +14,7 @@ from fem_impact.answers.refine.extrapolate import (
     UNRESOLVED,
     MeshRuns,
     level_limits,
+    own_limits,
     pair_limit,
     quantity_limits,
 )
@@ -21,7 +22,7 @@ from fem_impact.outcome.record import KEYS
 
 
 def limits_of(fine, coarse):
-    return level_limits([MeshRuns(runs[0].cost.tip_size, runs) for runs in (coarse, fine)])
+    return own_limits([MeshRuns(runs[0].cost.tip_size, runs) for runs in (coarse, fine)])
 
 
 @pytest.mark.parametrize("ratio", [2.0, 1.5, 3.0])

@@ -12,9 +12,11 @@ from study_fakes import published
 
 import fem_impact
 import meshes
+from fem_impact.answers.refine.chain import LevelChain
 from fem_impact.answers.report import Request
 from fem_impact.errors import ResultError, SceneError
 from fem_impact.evidence.studies import coverage as study
+from fem_impact.evidence.studies.coverage import run as coverage_run
 from fem_impact.evidence.studies.coverage.bodies import BODIES, write
 from fem_impact.evidence.studies.coverage.families import FAMILIES, TWELVE
 from fem_impact.evidence.studies.coverage.judge import (
@@ -155,22 +157,25 @@ def test_bodies_are_whole_and_have_the_volume_of_their_section(body):
     assert meshes.volume(half) == pytest.approx(volume, rel=2e-3)
 
 
+class Chain(LevelChain):
+    """Runs nothing; knows mu on no level by itself."""
+
+    def run(self):
+        assert self.scene.accuracy.levels == 4
+        self.options.progress(Notice("a sentence"))
+        for note, range_s in (("2", (5.0, 9.0)), ("3", (2.0, 4.0))):
+            told = Progress(0.0, 1.0, 0, 0.0, "", 7.0, f"tube-0, level {note} of 3", range_s)
+            self.options.progress(told)
+        return banded({"mu": 0.31}, {"mu": 0.02})
+
+
 def test_a_run_keeps_its_outcome_and_what_was_told(monkeypatch):
-    outcome = banded({"mu": 0.31}, {"mu": 0.02})
-
-    def simulate(scene, fidelity, options=None, **_):
-        if options is not None:
-            assert scene.accuracy.levels == 4
-            options.progress(Notice("a sentence"))
-            for note, ends in (("2", (5.0, 9.0)), ("3", (2.0, 4.0))):
-                told = Progress(0.0, 1.0, 0, 0.0, "", 7.0, f"tube-0, level {note} of 3", ends)
-                options.progress(told)
-        return outcome
-
-    monkeypatch.setattr(fem_impact, "simulate", simulate)
+    monkeypatch.setattr(coverage_run, "LevelChain", Chain)
+    monkeypatch.setattr(coverage_run, "own_limits", lambda levels: ({"mu": 0.31}, {"mu": 0.01}))
     job = CoverageRun(drawn(1, 0)[0], FINER)
     kept = job.read(job.run())
-    assert kept.outcome == outcome and kept.end == "finished" and kept.why == ""
+    assert kept.outcome.estimate("mu") == (0.31, 0.02) and kept.own_halves == {"mu": 0.01}
+    assert kept.end == "finished" and kept.why == ""
     assert kept.notices == ("a sentence",) and kept.forecast_s == (5.0, 9.0) and 0 <= kept.left_s < 10
     assert kept.planned_s is None or kept.planned_s > 0
     with pytest.raises(ResultError, match="damaged"):
@@ -181,10 +186,10 @@ def test_a_run_keeps_its_outcome_and_what_was_told(monkeypatch):
     ("error", "trouble"), [(SceneError("is too thin.", key="a"), "refused"), (KeyError("a"), "fault")]
 )
 def test_refusals_and_faults_are_results(monkeypatch, error, trouble):
-    def simulate(*_, **__):
+    def fails(*_):
         raise error
 
-    monkeypatch.setattr(fem_impact, "simulate", simulate)
+    monkeypatch.setattr(coverage_run, "LevelChain", fails)
     job = CoverageRun(drawn(1, 0)[0], DEFAULT)
     kept = job.read(job.run())
     assert kept.end == kept.trouble == trouble and not kept.has_numbers
@@ -325,11 +330,11 @@ def test_the_report_counts_and_shows(tmp_path):
 
 
 def test_a_run_that_takes_too_long_is_broken_off(monkeypatch):
-    def simulate(scene, fidelity, options):
+    def endless(case, options):
         while True:
             options.progress(Progress(0.0, 1.0, 0, 0.0, "", None, "tube-0, level 2 of 3"))
 
-    monkeypatch.setattr(fem_impact, "simulate", simulate)
+    monkeypatch.setattr(coverage_run, "LevelChain", endless)
     monkeypatch.setitem(MOST, DEFAULT, 0.05)
     job = CoverageRun(drawn(1, 0)[0], DEFAULT)
     kept = job.read(job.run())

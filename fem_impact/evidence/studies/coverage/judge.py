@@ -70,10 +70,10 @@ def told_errors(scenes: Iterable[DrawnScene], results: Results) -> pandas.DataFr
 
 
 def _of_scene(scene: DrawnScene, results: Results) -> Iterator[ToldError]:
-    default, finer, finest = (_known(results.get((scene.name, model))) for model in (DEFAULT, FINER, FINEST))
     place = scene.name, scene.family, scene.group
-    for told, run in ((LEVELS, finer), (LEVELS_TWO, finest)):
-        if default and run and _is_finer(run, default):
+    for told, model in ((LEVELS, FINER), (LEVELS_TWO, FINEST)):
+        default, run = finer_of(scene, results, model)
+        if default and run:
             for name, key in KEYS.items():
                 yield from _row((*place, told, name), default.estimate(key), run, key)
     modal, solid = of_reduced(scene, results)
@@ -81,6 +81,12 @@ def _of_scene(scene: DrawnScene, results: Results) -> Iterator[ToldError]:
         for name, key in KEYS.items():
             if reduced_error(modal, solid, key) is not None:
                 yield from _row((*place, REDUCED, name), modal.estimate(key), solid, key)
+
+
+def finer_of(scene: DrawnScene, results: Results, model: str) -> tuple[Outcome | None, Outcome | None]:
+    """Return a scene by its default run and by a model that came to a finer mesh, None where one did not."""
+    default, run = (_known(results.get((scene.name, one))) for one in (DEFAULT, model))
+    return (default, run) if default and run and _is_finer(run, default) else (None, None)
 
 
 def _known(result: CoverageResult | None) -> Outcome | None:

@@ -21,6 +21,7 @@ from fem_impact.answers.verdict.vibration import (
 from fem_impact.case.case import Case
 from fem_impact.case.measured import summary
 from fem_impact.evidence.studies.coverage import judge
+from fem_impact.evidence.studies.coverage.level_bands import level_bands
 from fem_impact.evidence.studies.coverage.run import DEFAULT, FINER, FINEST, MODAL, MOST, NEXT, TWINS
 from fem_impact.evidence.studies.coverage.scenes import SEED, DrawnScene
 from fem_impact.figures.panels import Mark, Panel, Picture, Series
@@ -151,6 +152,7 @@ def report_of(scenes: Sequence[DrawnScene], results: judge.Results, seed: int) -
             _ends(ended),
             _reasons(ended),
             _pairs(scenes, results),
+            level_bands(scenes, results),
             changes(scenes, results),
             _all("errors", "Every told error beside the truth", errors),
             _all("times", "Every told time beside the time taken, s", taken),

@@ -12,6 +12,8 @@ from pathlib import Path
 from typing import Any, Literal
 
 import fem_impact
+from fem_impact.answers.refine.chain import LevelChain
+from fem_impact.answers.refine.extrapolate import own_limits
 from fem_impact.answers.refine.level import LevelRun
 from fem_impact.answers.verdict.assess import BUDGET, assess
 from fem_impact.answers.verdict.levels import by_levels, next_step
@@ -26,7 +28,7 @@ from fem_impact.answers.verdict.vibration import (
 from fem_impact.errors import FemImpactError, ResultError, SceneError
 from fem_impact.evidence.studies.coverage.scenes import DrawnScene
 from fem_impact.jobs.job import JobKind
-from fem_impact.outcome.keys import Unknown
+from fem_impact.outcome.keys import Unknown, or_none
 from fem_impact.outcome.record import Outcome
 from fem_impact.progress import Notice, Progress
 from fem_impact.run.program import source_digest
@@ -63,6 +65,7 @@ class CoverageResult:
     forecast_s, left_s : least and most time, s, that were told after the pilot to be left, and the processor
         time that it then took, as an idle machine takes; None where nothing was told
     notices : sentences told during the run
+    own_halves : half-widths, by key, that the levels of a run tell by themselves
     changes : of twins: change by vibration and its half-width, by the numbers of `CHANGED`
     verdict : ``answer``, ``model`` and ``levels`` of a verdict, what was ``tried`` last, what is ``missing``,
         and what to type ``next``
@@ -77,6 +80,7 @@ class CoverageResult:
     forecast_s: tuple[float, float] | None = None
     left_s: float | None = None
     notices: tuple[str, ...] = ()
+    own_halves: Mapping[str, float] = field(default_factory=dict)
     changes: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     verdict: Mapping[str, Any] = field(default_factory=dict)
 
@@ -218,9 +222,10 @@ class CoverageRun:
                 return _verdict(scene)
             levels = scene.accuracy.levels + LEVELS.get(self.model, 0)
             scene = replace(scene, accuracy=replace(scene.accuracy, levels=levels))
-            options = fem_impact.RunOptions(progress=listener)
-            outcome = fem_impact.simulate(scene, "solid", options)
-            return CoverageResult(outcome, planned_s=_expected_s(scene))
+            chain = LevelChain(fem_impact.Case(scene), fem_impact.RunOptions(progress=listener))
+            outcome = chain.run()
+            halves = or_none(own_limits([level.runs for level in chain.done[: chain.counted]])[1]) or {}
+            return CoverageResult(outcome, planned_s=_expected_s(scene), own_halves=halves)
         except TooDearError as dear:
             return CoverageResult(None, "too dear", str(dear))
         except SceneError as refusal:
@@ -231,7 +236,10 @@ class CoverageRun:
             return CoverageResult(None, "fault", traceback.format_exc())
 
 
-_PLAIN = ("trouble", "reason", "cpu_s", "wall_s", "planned_s", "forecast_s", "left_s", "changes", "verdict")
+_PLAIN = (
+    *("trouble", "reason", "cpu_s", "wall_s", "planned_s", "forecast_s", "left_s"),
+    *("own_halves", "changes", "verdict"),
+)
 
 
 @dataclass(frozen=True, slots=True)

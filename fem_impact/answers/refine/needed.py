@@ -1,0 +1,50 @@
+"""How far half-widths of levels are widened so that 95 in 100 of them hold a run with one level more.
+
+Levels may agree by chance in one number, but not in all that an impact leaves. The widest half-width of a
+few numbers says how far a scene is from its limit. Scenes drawn at random ran with one level more
+(`fem_impact.evidence.studies.coverage`). A half-width is at least ``times`` what the levels tell by
+themselves and ``share`` of the widest. Both were chosen for each number so that half-widths are narrow in the
+geometric mean, and so large that they hold the differences by split conformal prediction (Lei et al. 2018,
+doi:10.1080/01621459.2017.1307116). No distribution is assumed, only that a scene is of the kind of those that
+were drawn.
+"""
+
+from collections.abc import Mapping
+
+from fem_impact.case.measured import needed_half_widths
+from fem_impact.outcome.record import KEY_TABLE, ROUND_OFF, Outcome
+from fem_impact.run.modal_error import PLASTIC, VIBRATION, unit_of
+
+HELD = 0.95
+"""Share of differences from a run with one level more that a half-width is to hold."""
+JUDGED = ("e_edge", "mu", "Omega_rad_per_s", "W_friction_over_E_0", *PLASTIC)
+"""Keys of the numbers whose widest half-width tells how far a scene is from its limit."""
+FLOWS = dict(zip(PLASTIC, ("rod-plasticity", "barrier-elastoplastic"), strict=True))
+"""Effects that let a body flow, by the key of its plastic work."""
+
+
+def widest(halves: Mapping[str, float], run: Outcome) -> float:
+    """Return the widest half-width of `JUDGED`, over its `unit_of`."""
+    return max((halves[key] / unit_of(key, run) for key in JUDGED if key in halves), default=0.0)
+
+
+def scale_of(key: str, value: float, run: Outcome) -> float | None:
+    """Return the scale by which a share of the widest half-width is one of a number; None: it has none.
+
+    That is `unit_of`, of the vibration energy and of a force the number itself; lengths, areas and heat have
+    none. What is 0 on every level has none: it is so by physics, unless a body may flow whose work it is.
+    """
+    unit = KEY_TABLE[key].unit
+    is_zero = abs(value) < ROUND_OFF and FLOWS.get(key) not in run.provenance.effects
+    if is_zero or unit not in ("-", "m/s", "rad/s", "N"):
+        return None
+    return abs(value) if key == VIBRATION or unit == "N" else unit_of(key, run)
+
+
+def widened(limits: Mapping[str, float], halves: Mapping[str, float], run: Outcome) -> dict[str, float]:
+    """Return half-widths, by key, of limits that levels tell, widened; ``run`` is of the finest level."""
+    most, wide = widest(halves, run), dict(halves)
+    for key, needed in needed_half_widths().items():
+        if key in halves and (scale := scale_of(key, limits[key], run)) is not None:
+            wide[key] = max(halves[key], needed["times"] * halves[key] + needed["share"] * most * scale)
+    return wide

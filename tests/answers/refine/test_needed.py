@@ -1,0 +1,53 @@
+"""Half-widths of levels that are widened as a study found to be needed, and how it finds that."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from study_fakes import outcome
+
+from fem_impact.answers.refine.needed import HELD, PLASTIC, scale_of, widened, widest
+from fem_impact.case.measured import needed_half_widths
+from fem_impact.evidence.studies.coverage.level_bands import LEAST, needed
+
+RUN = outcome(effects=["friction", "rod-plasticity"])
+HALVES = {"e_edge": 0.05, "mu": 1e-5, "E_vib_over_E_0": 1e-7, "V_n_m_per_s": 0.1, "dent_depth_m": 1e-9}
+LIMITS = {"e_edge": 0.3, "mu": 0.2, "E_vib_over_E_0": 0.01, "V_n_m_per_s": 0.4, "dent_depth_m": 1e-5}
+
+
+def test_a_number_that_agrees_by_chance_is_not_known_better_than_a_share_of_the_widest():
+    wide, factors = widened(LIMITS, HALVES, RUN), needed_half_widths()
+    for key, scale in (("mu", 1.0), ("E_vib_over_E_0", 0.01)):
+        times, share = factors[key]["times"], factors[key]["share"]
+        assert wide[key] == pytest.approx(times * HALVES[key] + share * 0.05 * scale)
+        assert wide[key] > 100 * HALVES[key]
+    assert all(wide[key] >= half for key, half in HALVES.items())
+    assert wide["dent_depth_m"] == HALVES["dent_depth_m"]  # lengths have no scale
+
+
+def test_what_is_zero_by_physics_stays_so_but_not_the_work_of_a_body_that_may_flow():
+    zero = {**dict.fromkeys((*PLASTIC, "W_friction_over_E_0"), 0.0), "e_edge": 0.3}
+    halves = {**dict.fromkeys(zero, 0.0), "e_edge": 0.1}
+    wide = widened(zero, halves, RUN)
+    assert wide["E_plastic_rod_over_E_0"] > 0.005
+    assert wide["E_plastic_barrier_over_E_0"] == wide["W_friction_over_E_0"] == 0.0
+    assert scale_of("mu", 0.0, RUN) is None and scale_of("mu", 0.1, RUN) == 1.0
+
+
+def test_the_widest_is_over_speeds_and_spins_of_the_approach():
+    motion = replace(RUN.motion, v_n=3.0, v_t=4.0, k_squared=0.04)
+    assert widest({"Omega_rad_per_s": 5.0, "e_edge": 0.1}, replace(RUN, motion=motion)) == pytest.approx(0.2)
+
+
+def test_half_widths_that_the_study_finds_hold_as_many_of_other_scenes():
+    """Scenes whose levels agree by chance in one number and not in all."""
+    rng = np.random.default_rng(3)
+    width, chance = np.exp(rng.normal(-3, 1, 800)), rng.uniform(0, 1, 800) ** 3
+    errors, halves, most = width * np.abs(rng.normal(0, 0.5, 800)), width * chance, width
+    known, fresh = slice(0, 400), slice(400, 800)
+    times, share = needed(errors[known], halves[known], most[known])
+    told = np.maximum(halves, times * halves + share * most)[fresh]
+    held, own = np.mean(errors[fresh] <= told), np.mean(errors[fresh] <= halves[fresh])
+    assert own < 0.5 and HELD - 0.03 < held < HELD + 0.03
+    assert np.median(told) < 2.5 * np.quantile(errors, HELD)
+    assert needed(errors[: LEAST - 1], halves[: LEAST - 1], most[: LEAST - 1]) is None
