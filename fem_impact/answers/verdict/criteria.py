@@ -155,11 +155,15 @@ class Limited(Criterion):
             (level, value) for level in levels if isinstance(value := self.of_solid(level.outcome), float)
         ]
         used = [level.runs for level, _ in known][-3:]
-        if isinstance(level_limits(used)[0], Unknown):
+        limits, bands = level_limits(used)
+        if isinstance(limits, Unknown) or isinstance(bands, Unknown):
             return None
-        values = [[value] for _, value in known][-3:]
-        sizes, wide, rows = zip(*((one.size, one.wide, one.rows) for one in used), strict=True)
-        value, band = level_limit(sizes, values, wide, rows)
+        if self.column in bands:
+            value, band = limits[self.column], bands[self.column]
+        else:
+            values = [[value] for _, value in known][-3:]
+            sizes, wide, rows = zip(*((one.size, one.wide, one.rows) for one in used), strict=True)
+            value, band = level_limit(sizes, values, wide, rows)
         return _about(value + self.base(known[-1][0].cases[0].scene), band)
 
 
