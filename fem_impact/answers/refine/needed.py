@@ -43,8 +43,10 @@ def scale_of(key: str, value: float, run: Outcome) -> float | None:
 
 def widened(limits: Mapping[str, float], halves: Mapping[str, float], run: Outcome) -> dict[str, float]:
     """Return half-widths, by key, of limits that levels tell, widened; ``run`` is of the finest level."""
-    most, wide = widest(halves, run), dict(halves)
-    for key, needed in needed_half_widths().items():
-        if key in halves and (scale := scale_of(key, limits[key], run)) is not None:
-            wide[key] = max(halves[key], needed["times"] * halves[key] + needed["share"] * most * scale)
+    most, wide, factors = widest(halves, run), dict(halves), needed_half_widths()
+    for key, half in halves.items():
+        # arms a little apart take nearly the same approach, and the paper's are those of the measured rods alone
+        needed = factors.get(key.replace("_paper", "_edge"))
+        if needed is not None and (scale := scale_of(key, limits[key], run)) is not None:
+            wide[key] = max(half, needed["times"] * half + needed["share"] * most * scale)
     return wide

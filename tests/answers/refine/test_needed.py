@@ -51,3 +51,9 @@ def test_half_widths_that_the_study_finds_hold_as_many_of_other_scenes():
     assert own < 0.5 and HELD - 0.03 < held < HELD + 0.03
     assert np.median(told) < 2.5 * np.quantile(errors, HELD)
     assert needed(errors[: LEAST - 1], halves[: LEAST - 1], most[: LEAST - 1]) is None
+
+
+def test_the_arms_of_the_paper_have_the_half_width_of_the_tip_s_own():
+    limits, halves = ({key: number for key in ("e_paper", "e_edge", "mu")} for number in (0.3, 1e-4))
+    wide = widened(limits, {**halves, "mu": 0.1}, RUN)
+    assert wide["e_paper"] == wide["e_edge"] > 0.01

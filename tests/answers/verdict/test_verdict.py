@@ -678,12 +678,14 @@ def test_layers_are_decided_by_the_reduced_model():
 
 def test_vibration_is_not_known_better_than_its_two_counts_agree(monkeypatch):
     """Both meshes give the same energy by chance; the counts by modes and without them differ."""
-    for check, floor in ((0.0215, 0.0015), (0.02, 1e-6)):
+    bands = []
+    for check, floor in ((0.035, 0.015), (0.02, 1e-6)):
         solid_alone(monkeypatch, [0.2, 0.19], check)
         here = assess(load("layered"), "solid", budget_s=1e5).here
-        assert here.E_vib_band == pytest.approx(floor)
-        assert here.errors["vibration"] == pytest.approx(floor)
+        bands.append(here.E_vib_band)
+        assert here.errors["vibration"] == pytest.approx(max(floor, here.E_vib_band))
         assert f"at least {100 * floor:.2g} % of E_0" in here.source
+    assert bands[0] == pytest.approx(0.015) and 1e-6 < bands[1] < 0.005  # a share of what e is open
 
 
 def test_a_plate_thinner_than_its_contact_is_wide_is_decided_by_finite_elements_alone(monkeypatch):
