@@ -45,7 +45,7 @@ def widened(limits: Mapping[str, float], halves: Mapping[str, float], run: Outco
     """Return half-widths, by key, of limits that levels tell, widened; ``run`` is of the finest level."""
     most, wide, factors = widest(halves, run), dict(halves), needed_half_widths()
     for key, half in halves.items():
-        # arms a little apart take nearly the same approach, and the paper's are those of the measured rods alone
+        # arms a little apart take nearly the same approach; the paper's are known of its rods alone
         needed = factors.get(key.replace("_paper", "_edge"))
         if needed is not None and (scale := scale_of(key, limits[key], run)) is not None:
             wide[key] = max(half, needed["times"] * half + needed["share"] * most * scale)
