@@ -12,7 +12,7 @@ from fem_impact.arrays import Array
 from fem_impact.evidence.studies.coverage.judge import Results, finer_of
 from fem_impact.evidence.studies.coverage.run import DEFAULT, FINER
 from fem_impact.evidence.studies.coverage.scenes import DrawnScene
-from fem_impact.tables.table import Table
+from fem_impact.tables.table import Cell, Table
 
 LEAST = ceil(HELD / (1 - HELD))
 """Scenes from which on their largest difference is a limit that holds `HELD`."""
@@ -62,10 +62,9 @@ def level_bands(scenes: Iterable[DrawnScene], results: Results) -> Sheet:
                 scale = scale_of(key, value, default)
                 if scale:
                     found[key].append((abs(value - truth) / scale, half / scale, most))
-    rows = [
-        (key, len(of), *(round(number, 4) for number in factors))
-        for key, of in found.items()
-        if (factors := needed(*np.array(of).T)) is not None
-    ]
+    rows: list[tuple[Cell, ...]] = []
+    for key, of in found.items():
+        if factors := needed(*np.array(of).T):
+            rows.append((key, len(of), round(factors[0], 4), round(factors[1], 4)))
     caption = "Half-widths that hold a run with one level more: multiple of the own, share of the widest"
     return Sheet("level-bands", caption, Table.of(("key", "scenes", "times", "share"), rows), shown=False)
