@@ -182,7 +182,8 @@ def shape(sites: Sites, held: Touched, s: int, turn: float, longest: float) -> N
             flank = flank._replace(end=max(flank.end - gone, 0.0))
         elif np.hypot(u - t, w - n) <= longest and not sites.radius[far].any():
             lean = turn - sites.low[far][0] if side == 0 else sites.high[far][-1] - turn
-            flank = flank._replace(beyond=_slope(lean))
+            # a corner that hangs counts as upright: cells would leave it at once, and what they hold be lost
+            flank = flank._replace(beyond=min(_slope(lean), tan(UPRIGHT)))
             held.site[other, SITE.known] = LAID
         held.tip[s, 1 + 3 * side : 4 + 3 * side] = flank
         longer = max(longer, half_length(float(held.tip[s, 0]), flank, deepest))

@@ -10,7 +10,9 @@ from fem_impact.case.case import Case
 from fem_impact.modal.impact import Arrival, solve
 from fem_impact.modal.rod import modal_rod
 from fem_impact.modal.sites import lowest_place
+from fem_impact.run.modal import closed
 from fem_impact.run.simulate import simulate
+from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load, replace_all
 
 ELASTIC = ("vibration", "friction", "barrier-elastic")
@@ -22,6 +24,13 @@ SPUN = {
     "impact.omega": "-600 rad/s",
 }
 NEARLY_FLAT = {"impact.angle": "86 deg", "impact.v_n": "-1 m/s", "impact.v_t": "-1 m/s"}
+RIM = {
+    "id": "rim",
+    "projectile": {"profile": [["0 mm", "12 mm"], ["2 mm", "12 mm"]], "material": "aluminium-6061-t6"},
+    "barrier": {"material": "copper"},
+    "surface": {"state": "custom", "friction": 0.56, "source": "chosen"},
+    "impact": {"angle": "90 deg", "v_n": "-2.6 m/s", "v_t": "-3.9 m/s", "omega": "54 rad/s"},
+}
 SIDE_DOWN = {"impact.angle": "89 deg", "impact.v_n": "-2 m/s", "impact.v_t": "0 m/s"}
 
 
@@ -88,6 +97,12 @@ def test_a_side_that_slaps_down_in_one_contact_is_borne_by_both_ends_and_loses_n
     first, second = found.sites
     assert second.start < first.end
     assert second.impulse_n == pytest.approx(first.impulse_n, rel=0.1)
+
+
+def test_a_disc_on_its_rim_that_slides_back_closes_its_books():
+    """Cells leave the corner at the far end of the rim under load: .001 of E_0 was lost where they let go."""
+    found = closed(Case.of(read_dict(RIM), "modal"))
+    assert len(found.sites) == 1 and abs(found.residual) < 1e-4 * found.E_0
 
 
 def test_two_elastic_strikes_of_a_stiff_rod_are_those_of_rigid_theory():
