@@ -93,8 +93,9 @@ def as_one(bodies: Bodies) -> Material:
     for at in range(len(strata) - 2, -1, -1):
         depth, upper = strata[at]
         stress = layered.hardness(depth, size.radius, (flows[at], upper.E), (stress, strata[at + 1][1].E))
-    stronger = stress / flows[0] if first.yields else 1.0
-    return replace(first, E=E, nu=nu, yield_stress=first.yield_stress * stronger)
+    starts = first.yield_stress * (stress / flows[0] if first.yields else 1.0)
+    ultimate = max(first.ultimate_stress, starts)  # of a soft thin layer on a hard base the own one is less
+    return replace(first, E=E, nu=nu, yield_stress=starts, ultimate_stress=ultimate)
 
 
 def flows_below(bodies: Bodies) -> str:

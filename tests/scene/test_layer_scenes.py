@@ -110,3 +110,9 @@ def test_layers_of_one_material_leave_the_reduced_model_as_it_is():
     ]
     assert moved[1] == pytest.approx(moved[0], rel=1e-6)
     assert abs(moved[2] - moved[0]) > 0.01
+
+
+def test_a_thin_soft_layer_bears_more_than_its_ultimate_stress_on_a_hard_base():
+    """The scene was refused, as if its author had stated the strength of both together."""
+    scene = layered([{"thickness": "0.05 mm", "material": "aluminium-1350-h14"}], "modal", material="100cr6")
+    assert Case.of(scene, "modal").contact.barrier.yield_stress > scene.barrier.struck.ultimate_stress
