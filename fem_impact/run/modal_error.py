@@ -254,15 +254,15 @@ def factor_of(place: Place, name: str, far: float) -> float:
 
 def unlike(place: Place, outcome: Outcome, table: Stored | None = None) -> tuple[str, ...]:
     """Return in what a scene is unlike all stored ones, of which one place touched, of a table."""
-    return (*(table or stored()).outside(np.array(place)), *_unheard(outcome))
+    return (*(table or stored()).outside(np.array(place)), *unheard(outcome))
 
 
 def farness(place: Place, outcome: Outcome, table: Stored | None = None) -> float:
     """Return how far a scene lies beyond them, 0 to 1; 1 where it touches as none of them does."""
-    return 1.0 if _unheard(outcome) else (table or stored()).far(np.array(place))
+    return 1.0 if unheard(outcome) else (table or stored()).far(np.array(place))
 
 
-def _unheard(outcome: Outcome) -> tuple[str, ...]:
+def unheard(outcome: Outcome) -> tuple[str, ...]:
     """Return how a scene touches as no stored one does: of those hardly one lands flat, and sends waves."""
     several = ("the number of places that touch",) * (len(or_none(outcome.contact.sites) or ()) > 1)
     flat = ("what lands flat",) * (or_none(outcome.energy.radiated) is not None)

@@ -2,6 +2,7 @@
 
 import json
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,7 @@ from fem_impact.answers.refine.chain import LevelChain
 from fem_impact.answers.report import Request
 from fem_impact.errors import ResultError, SceneError
 from fem_impact.evidence.studies import coverage as study
+from fem_impact.evidence.studies.coverage import report
 from fem_impact.evidence.studies.coverage import run as coverage_run
 from fem_impact.evidence.studies.coverage.bodies import BODIES, write
 from fem_impact.evidence.studies.coverage.families import FAMILIES, TWELVE
@@ -238,6 +240,38 @@ def test_shares_have_wilson_intervals_and_the_factor_that_is_needed():
     assert row["high"] == pytest.approx((centre + half) / (1 + z**2 / n), rel=1e-5)
     assert row["half"] == pytest.approx(0.01) and row["error"] == pytest.approx(0.0065)
     assert row["needed"] == pytest.approx(2.0)
+    # of a hundred errors as many as each told error is meant to hold
+    hundred = pandas.DataFrame(
+        {"inside": True, "inside_finest": True, "error": np.arange(1.0, 101), "half": 1.0}
+    )
+    for told, needed in ((LEVELS, 96.0), (REDUCED, 91.0)):
+        (row,) = coverage(hundred.assign(told=told, quantity="e"), ["told", "quantity"]).to_dict("records")
+        assert row["needed"] == needed
+
+
+def test_each_told_error_is_judged_against_what_it_is_meant_for():
+    counts = pandas.DataFrame({"quantity": ["e"], "inside": [85], "n": [100], "high": [0.93]})
+    both = pandas.concat([counts.assign(told=LEVELS), counts.assign(told=REDUCED)])
+    levels, reduced = report._held(both)
+    assert levels.endswith("meant for 95%): e 85 of 100; surely below 95%: e.")
+    assert reduced.endswith("meant for 90%): e 85 of 100.")
+
+
+def test_causes_of_missed_bands_are_counted():
+    """One that is 0, one off by little, one by much; one that holds."""
+    zero = {
+        "plastic rod": KEYS["plastic rod"],
+        "mu": KEYS["mu"],
+        "e": KEYS["e"],
+        "friction": KEYS["friction"],
+    }
+    halves = dict(zip(zero.values(), (0.0, 0.01, 0.01, 0.01), strict=True))
+    default = banded(dict.fromkeys(zero.values(), 0.3), halves)
+    off = dict(zip(zero.values(), (0.1, 0.015, 0.1, 0.0), strict=True))
+    errors = judged(default, finer(**{key: 0.3 + by for key, by in off.items()}))
+    (said,) = report._causes(errors, coverage(errors, ["told", "family"]))
+    assert "3 of 4 bands do not hold. Of these 1 had a half-width of 0 and 1 are off" in said
+    assert said.endswith("least often of: tube 1 of 4.")
 
 
 def both_models(modal=None, **solid):
@@ -264,6 +298,20 @@ def test_half_widths_of_the_reduced_model_are_held_against_what_finite_elements_
     assert set(table["told"]) == {REDUCED} and table["inside"].to_dict() == {"e": True, "mu": False}
     wide = both_models(mesh_band={"mu": 0.2, "e_edge": 0.01})
     assert told_errors([SCENE], wide)["quantity"].tolist() == ["e"]
+
+
+def test_rows_for_the_stored_scenes_leave_out_those_unlike_them_by_kind(tmp_path):
+    """An impulse far beyond friction, and what lands flat, and so sends waves."""
+    scenes = [replace(drawn(1, 0)[0], name=name) for name in ("like", "digs", "flat")]
+    unsent = {"W_radiated_over_E_0": None, "reasons": {"W_radiated_over_E_0": "no waves"}}
+    results = {}
+    for scene, changed in zip(scenes, (unsent, unsent | {"mu": 0.5}, {}), strict=True):
+        found = both_models({"friction_f": 0.3} | changed)
+        results |= {(scene.name, model): result for (_, model), result in found.items()}
+    sheet = report._pairs(scenes, results)
+    assert [row[0] for row in sheet.table.rows] == ["like"]
+    assert "2 scenes left out" in sheet.caption and "1 for how an edge digs in" in sheet.caption
+    assert "1 for what lands flat" in sheet.caption
 
 
 def test_models_that_followed_other_strikes_are_not_compared():

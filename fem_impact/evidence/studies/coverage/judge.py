@@ -5,12 +5,13 @@ from dataclasses import dataclass
 
 import pandas
 
+from fem_impact.answers.refine import needed
 from fem_impact.case.size import time_class
 from fem_impact.evidence.studies.coverage.run import DEFAULT, FINER, FINEST, MODAL, CoverageResult
 from fem_impact.evidence.studies.coverage.scenes import DrawnScene
 from fem_impact.outcome.keys import Unknown, or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
-from fem_impact.run.modal_error import scale_of, unit_of
+from fem_impact.run.modal_error import HELD, scale_of, unit_of
 
 KEYS: Mapping[str, str] = {
     "e": "e_edge",
@@ -29,8 +30,8 @@ ZERO = 1e-9
 """In the unit of the quantity: what is smaller on both sides is zero by physics and tells nothing."""
 KNOWN = 0.1
 """Widest half-width of finite elements, over `unit_of`, that tells an error of the reduced model."""
-AIM = 0.95
-LOWEST, HIGHEST = "low", "high"
+AIM: Mapping[str, float] = {LEVELS: needed.HELD, LEVELS_TWO: needed.HELD, REDUCED: HELD}
+"""Share of truths that each told error is meant to hold."""
 Results = Mapping[tuple[str, str], CoverageResult]
 """Results by scene and model."""
 
@@ -46,6 +47,7 @@ class ToldError:
     value, half : the number and its told half-width
     truth : limit that the finer run's own levels give the number, its value where they give none
     finest : value on the finest mesh of that run
+    unit : `unit_of` the number
     """
 
     scene: str
@@ -57,6 +59,7 @@ class ToldError:
     half: float
     truth: float
     finest: float
+    unit: float
 
 
 def told_errors(scenes: Iterable[DrawnScene], results: Results) -> pandas.DataFrame:
@@ -109,7 +112,7 @@ def _row(
     if len(known) == len(every):
         value, half, truth, finest = known
         if max(abs(value), abs(truth), abs(finest)) > ZERO:
-            yield ToldError(*place, value, half, truth, finest)
+            yield ToldError(*place, value, half, truth, finest, unit_of(key, run))
 
 
 def of_reduced(scene: DrawnScene, results: Results) -> tuple[Outcome | None, Outcome | None]:
@@ -135,11 +138,11 @@ def reduced_error(modal: Outcome, solid: Outcome, key: str) -> float | None:
 
 
 def coverage(errors: pandas.DataFrame, by: list[str]) -> pandas.DataFrame:
-    """Return by columns such as told and quantity how often the truth lies inside.
+    """Return by told error, and columns such as quantity, how often the truth lies inside.
 
     Columns: ``n``, ``inside``, ``inside_finest``, ``share`` with its 95 % Wilson interval ``low`` to
     ``high``, medians ``half`` and ``error``, and ``needed``: by what half-widths had to be multiplied to hold
-    `AIM` of the errors.
+    as many of the errors as `AIM` says.
     """
     from scipy.stats import binomtest
 
@@ -159,7 +162,7 @@ def coverage(errors: pandas.DataFrame, by: list[str]) -> pandas.DataFrame:
                 "high": interval.high,
                 "half": group["half"].median(),
                 "error": group["error"].median(),
-                "needed": ratio.quantile(AIM, interpolation="higher"),
+                "needed": ratio.quantile(AIM[group["told"].iloc[0]], interpolation="higher"),
             }
         )
     return pandas.DataFrame(rows)
