@@ -19,6 +19,8 @@ HELD = 0.95
 """Share of differences from a run with one level more that a half-width is to hold."""
 JUDGED = ("e_edge", "mu", "Omega_rad_per_s", "W_friction_over_E_0", *PLASTIC)
 """Keys of the numbers whose widest half-width tells how far a scene is from its limit."""
+RISE, TEMPERATURE = "flash_rise_K", "flash_temperature_K"
+"""Keys of the rise at the contact and of that over absolute zero, which differ by a constant."""
 FLOWS = dict(zip(PLASTIC, ("rod-plasticity", "barrier-elastoplastic"), strict=True))
 """Effects that let a body flow, by the key of its plastic work."""
 
@@ -31,14 +33,14 @@ def widest(halves: Mapping[str, float], run: Outcome) -> float:
 def scale_of(key: str, value: float, run: Outcome) -> float | None:
     """Return the scale by which a share of the widest half-width is one of a number; None: it has none.
 
-    That is `unit_of`, of the vibration energy and of a force the number itself; lengths, areas and heat have
-    none. What is 0 on every level has none: it is so by physics, unless a body may flow whose work it is.
+    That is `unit_of`, of vibration energy, force and heat the number itself; sizes and times have none. What
+    is 0 on every level has none: it is so by physics, unless a body may flow whose work it is.
     """
     unit = KEY_TABLE[key].unit
     is_zero = abs(value) < ROUND_OFF and FLOWS.get(key) not in run.provenance.effects
-    if is_zero or unit not in ("-", "m/s", "rad/s", "N"):
+    if is_zero or unit in ("m", "m2", "m3", "s"):
         return None
-    return abs(value) if key == VIBRATION or unit == "N" else unit_of(key, run)
+    return unit_of(key, run) if unit in ("m/s", "rad/s") or (unit == "-" and key != VIBRATION) else abs(value)
 
 
 def widened(limits: Mapping[str, float], halves: Mapping[str, float], run: Outcome) -> dict[str, float]:
@@ -49,4 +51,6 @@ def widened(limits: Mapping[str, float], halves: Mapping[str, float], run: Outco
         needed = factors.get(key.replace("_paper", "_edge"))
         if needed is not None and (scale := scale_of(key, limits[key], run)) is not None:
             wide[key] = max(half, needed["times"] * half + needed["share"] * most * scale)
+    if TEMPERATURE in wide and RISE in wide:
+        wide[TEMPERATURE] = wide[RISE]
     return wide
