@@ -186,9 +186,15 @@ def left_text(progress: Progress) -> str:
     """Return the time still needed, with its range where that says more; empty where it cannot be told."""
     if progress.eta_s is None:
         return ""
-    ends = [clock_text(end) for end in progress.eta_range_s or ()]
-    told = f" ({' to '.join(ends)})" if len(set(ends)) > 1 else ""
+    least, most = progress.eta_range_s or (0.0, 0.0)
+    told = f" ({range_text(least, most)})" if round(least) < round(most) else ""
     return f"about {clock_text(progress.eta_s)} left{told}"
+
+
+def range_text(least_s: float, most_s: float) -> str:
+    """Return a range of times in words."""
+    least, most = clock_text(least_s), clock_text(most_s)
+    return f"{least} to {most}" if round(least_s) else f"up to {most}"
 
 
 def clock_text(seconds: float) -> str:

@@ -5,11 +5,12 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
+from fem_impact.answers.refine.level_meshes import LevelMeshes
 from fem_impact.answers.simulate import compiled
 from fem_impact.answers.verdict.screening import screening
 from fem_impact.case.case import Case
 from fem_impact.case.cells import ADVISED, ERROR, advice, contact_radius, expected_cells, kind
-from fem_impact.case.size import RunSize, about, time_class
+from fem_impact.case.size import RunSize, about
 from fem_impact.cli.parser import Options
 from fem_impact.cli.paths import shown_path
 from fem_impact.cli.scene_options import asked_scene, say_kept
@@ -19,7 +20,7 @@ from fem_impact.errors import UsageError
 from fem_impact.figures.outline import drawn
 from fem_impact.outcome.groups import EffectChoice, texts
 from fem_impact.pages.drawing import draw_projectile
-from fem_impact.progress import clock_text
+from fem_impact.progress import clock_text, range_text
 from fem_impact.run.tests import count, doubtful_tests, tests_of
 from fem_impact.scene.inputs import STATED, inputs
 from fem_impact.scene.types import Scene, to_dict, to_toml
@@ -213,8 +214,9 @@ def _size_lines(case: Case) -> list[str]:
             "a coarse pilot finds where, how widely and how often the bodies touch; finer meshes follow what "
             f"it found, about {case.scene.accuracy.levels} in all. Each number comes with its band",
             f"if the contact is as estimated, {1e3 * radius:.2g} mm in radius, the last of them has about "
-            f"{about(size.rod + size.barrier)} elements, {about(size.memory / 1e6)} MB of memory, and takes "
-            f"{time_class(size.time)}; the run tells more after its pilot",
+            f"{about(size.rod + size.barrier)} elements, {about(size.memory / 1e6)} MB of memory",
+            f"all levels take {range_text(*LevelMeshes.of(case).whole_s)} of processor time in nine of ten "
+            "scenes; the run tells more after its pilot",
             _fields_line(case.scene, size),
         )
         return ["", "A run with finite elements", *_wrapped(found)]

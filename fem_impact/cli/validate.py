@@ -3,16 +3,17 @@
 from contextlib import closing
 from typing import Any
 
+from fem_impact.answers.refine.level_meshes import LevelMeshes
 from fem_impact.answers.validate import TERMS, Validation
 from fem_impact.answers.validate import validate as validated
 from fem_impact.case.case import Case
-from fem_impact.case.size import time_class
 from fem_impact.cli.parser import Options
 from fem_impact.cli.scene_options import asked_scene, command_line
 from fem_impact.cli.terminal import chosen_meter, print_answer
 from fem_impact.cli.values import read_values
 from fem_impact.errors import UsageError
 from fem_impact.options import RunOptions
+from fem_impact.progress import range_text
 from fem_impact.tables.table import Table
 from fem_impact.tables.text import wrapped
 
@@ -30,7 +31,7 @@ def validate(options: Options) -> int:
         fidelities = {"fidelity": options.fidelity, "inputs_by": options.inputs_by}
         found = validated(scene, intervals or None, samples=options.samples, options=kept, **fidelities)
     line = f"{command_line(options, 'validate', 'uncertain')} --fidelity solid"
-    solid = time_class(Case(scene).size.time), line
+    solid = range_text(*LevelMeshes.of(Case(scene)).whole_s), line
     print_answer(options, _document(found), _text(found, options.fidelity, solid))
     return 0
 

@@ -13,7 +13,6 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing, nullcontext
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
-from itertools import pairwise
 from pathlib import Path
 
 from fem_impact.answers.refine import extrapolate, forecast
@@ -309,12 +308,15 @@ class LevelChain:
         """
         number, show = len(self.done) + 1, None if run else self.options.progress
         out = self.options.out and self._place(number, repeats, run)
-        later = steps_between(splits, max(self.finest, splits))
-        name = f"{self.scene.id}, level {number}" + f" of {number + len(later)}" * bool(self.done)
+        ends = self.finest, self.meshes.likely(self.done[-1].record if self.done else None)
+        few, many = (steps_between(splits, max(end, splits)) for end in ends)
+        whole = " to ".join(f"{number + more}" for more in dict.fromkeys((len(few), len(many))))
+        name = f"{self.scene.id}, level {number}" + f" of {whole}" * bool(self.done)
         progress = forecast.LevelProgress(show, name, used_s=self.spent_s, limit_s=self.limit_s, begun=begun)
         if self.done:
             progress.after(self.done[-1].outcome.cost, self._turns)
-            progress.halvings = [fine - coarse for coarse, fine in pairwise([splits, *later])]
+        if self.done and show:
+            progress.later_s = [forecast.planned_s(self.done[-1], self.meshes, of) for of in (few, many)]
         return replace(self.options, out=out, progress=progress)
 
     def _stated(self) -> Outcome:

@@ -10,9 +10,14 @@ from fem_impact.case.cells import body_cell, level_size, levels_of, rod_cell
 from fem_impact.case.mesh import SLICES
 from fem_impact.case.record import ContactRecord, expected_record
 from fem_impact.case.recorded import patch_radius
+from fem_impact.errors import SceneError
 from fem_impact.scene.fields import LEVELS
 from fem_impact.scene.types import Scene
 
+# least and most processor time of all levels of a run over what its last one takes by the estimated contact:
+# 5 to 95 % of 287 scenes of the study of coverage (seed 20261801; conformal, with the 24 that were broken off
+# after 60 s counted by Kaplan and Meier, doi:10.1080/01621459.1958.10501452)
+WHOLE = (0.34, 5.0)
 JUMP = 2  # splits between two levels at most: a record holds the places of cells four times as large
 
 
@@ -68,6 +73,31 @@ class LevelMeshes:
         least = self.first + (0 if self.is_sized else LEVELS - 1)
         more = max(self._levels - LEVELS, 0) if self.is_sized else self._levels - LEVELS
         return min(max(wanted, least) + more, self.first + JUMP * max(self._levels - 2, 0) + 1)
+
+    def likely(self, contact: ContactRecord | None) -> int:
+        """Return the splits of the last level, by the estimated contact as long as none was resolved.
+
+        One that presses a cell or two seems as wide as these are. Levels go on until it is resolved, which
+        takes about a halving less than advised (`cells.LEAST`).
+        """
+        last = self.last(contact)
+        return last if contact and contact.resolved else max(last, self.last(None), self.usual - 1)
+
+    @property
+    def whole_s(self) -> tuple[float, float]:
+        """Least and most processor time, s, of all levels before any has run; nine of ten runs lie inside.
+
+        Raises
+        ------
+        SceneError
+            Finite elements cannot compute the scene.
+        """
+        try:
+            last_s = Case.of(self.at(self.likely(None))).size.time
+        except SceneError:  # finer than the scene's own mesh, and too large
+            last_s = self.case.size.time
+        least, most = WHOLE
+        return least * last_s, most * last_s
 
     def lacking(self, splits: int, contact: ContactRecord, finest: int) -> str:
         """Say how often cells that are split so often would be halved for the contact found; empty: never."""

@@ -179,7 +179,7 @@ def test_a_run_keeps_its_outcome_and_what_was_told(monkeypatch):
     assert kept.outcome.estimate("mu") == (0.31, 0.02) and kept.own_halves == {"mu": 0.01}
     assert kept.end == "finished" and kept.why == ""
     assert kept.notices == ("a sentence",) and kept.forecast_s == (5.0, 9.0) and 0 <= kept.left_s < 10
-    assert kept.planned_s is None or kept.planned_s > 0
+    assert kept.planned_s is None or 0 < kept.planned_s[0] < kept.planned_s[1]
     with pytest.raises(ResultError, match="damaged"):
         job.read(json.dumps({"outcome": None}))
 
@@ -325,12 +325,10 @@ def test_every_quantity_of_the_reduced_model_is_told_by_a_real_outcome():
     assert all(half > 0 for half in told.values()) and told["e"] != told["mu"]
 
 
-def test_told_times_are_judged_by_class_and_range():
-    outcome = banded(cpu_s=4.0, setup_cpu_s=1.0)
-    results = {(SCENE.name, DEFAULT): CoverageResult(outcome, "", "", 0, 0, 50.0, (5.0, 20.0), 19.0)}
-    assert times([SCENE], results)["inside"].tolist() == [False, True]
-    results = {(SCENE.name, DEFAULT): CoverageResult(outcome, "", "", 0, 0, 15.0, (5.0, 20.0), 21.0)}
-    assert times([SCENE], results)["inside"].tolist() == [True, False]
+def test_told_times_are_judged_by_their_ranges():
+    for took, left, held in ((9.0, 19.0, [False, True]), (50.0, 21.0, [True, False])):
+        run = CoverageResult(banded(), cpu_s=took, planned_s=(10, 50), forecast_s=(5, 20), left_s=left)
+        assert times([SCENE], {(SCENE.name, DEFAULT): run})["inside"].tolist() == held
 
 
 def test_finer_runs_follow_where_there_are_numbers(tmp_path):
@@ -366,7 +364,7 @@ def test_another_seed_draws_other_scenes(tmp_path):
 def test_the_report_counts_and_shows(tmp_path):
     request, results = Request(tmp_path, quick=True), {}
     for job in study.plan(request, {}):
-        results[job.name] = CoverageResult(banded({"mu": 0.3}, {"mu": 0.02}), planned_s=1.0)
+        results[job.name] = CoverageResult(banded({"mu": 0.3}, {"mu": 0.02}), planned_s=(1.0, 9.0))
     for job in study.plan(request, results):
         results.setdefault(job.name, CoverageResult(finer(mu=0.31), cpu_s=60.0))
     lost = next(job.name for job in study.plan(request, {}) if job.model == DEFAULT)

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 import pandas
 
 from fem_impact.answers.refine import needed
-from fem_impact.case.size import time_class
 from fem_impact.evidence.studies.coverage.run import DEFAULT, FINER, FINEST, MODAL, CoverageResult
 from fem_impact.evidence.studies.coverage.scenes import DrawnScene
 from fem_impact.outcome.keys import Unknown, or_none
@@ -197,22 +196,20 @@ def _bare(outcome: Outcome | None) -> bool:
 
 
 def times(scenes: Iterable[DrawnScene], results: Results) -> pandas.DataFrame:
-    """Return told times beside what was taken, s: columns ``told``, ``said``, ``taken`` and ``inside``.
+    """Return told ranges beside the time taken, s: ``told``, ``least``, ``most``, ``taken``, ``inside``.
 
-    Before a run the class of its last level's processor time is told; after the pilot a range of the time
-    that is left, of which ``said`` is the most.
+    Before a run a range of all its processor time is told, after the pilot one of the time that is left. Runs
+    that were broken off do not count.
     """
-    rows: list[tuple[str, str, float, float, bool]] = []
+    rows: list[tuple[str, str, float, float, float]] = []
     for scene in scenes:
         result = results.get((scene.name, DEFAULT))
         if result is None or result.outcome is None:
             continue
-        took, said = result.outcome.cost.whole_cpu, result.planned_s
-        if said is not None:
-            same = time_class(said) == time_class(took)
-            rows.append((scene.name, "class before the run", said, took, same))
+        if result.planned_s:
+            rows.append((scene.name, "range of the time before the run", *result.planned_s, result.cpu_s))
         if result.forecast_s and result.left_s:
-            least, most = result.forecast_s
-            held = least <= result.left_s <= most
-            rows.append((scene.name, "range of the time left after the pilot", most, result.left_s, held))
-    return pandas.DataFrame(rows, columns=["scene", "told", "said", "taken", "inside"])
+            left = "range of the time left after the pilot"
+            rows.append((scene.name, left, *result.forecast_s, result.left_s))
+    table = pandas.DataFrame(rows, columns=["scene", "told", "least", "most", "taken"])
+    return table.assign(inside=table["taken"].between(table["least"], table["most"]))

@@ -208,7 +208,8 @@ def _times(table: pandas.DataFrame) -> list[str]:
     """Return how often told times held."""
     return [
         f"{told}: met in {int(group['inside'].sum())} of {len(group)} runs, "
-        f"taken over told {plain(float((group['taken'] / group['said']).median()), 2)} in the median."
+        f"{int((group['taken'] > group['most']).sum())} took longer; its most is "
+        f"{plain(float((group['most'] / group['least']).median()), 2)} times its least in the median."
         for told, group in table.groupby("told", sort=False)
     ]
 

@@ -15,6 +15,7 @@ import fem_impact
 from fem_impact.answers.refine.chain import LevelChain
 from fem_impact.answers.refine.extrapolate import own_limits
 from fem_impact.answers.refine.level import LevelRun
+from fem_impact.answers.refine.level_meshes import LevelMeshes
 from fem_impact.answers.verdict.assess import BUDGET, assess
 from fem_impact.answers.verdict.levels import by_levels, next_step
 from fem_impact.answers.verdict.vibration import (
@@ -61,9 +62,10 @@ class CoverageResult:
     outcome : None where there is none
     trouble, reason : why there is none, in a word and in the program's words; empty where there is one
     cpu_s, wall_s : processor and wall time of all of it, s
-    planned_s : processor time, s, that its last level was expected to take before the run; None: not known
-    forecast_s, left_s : least and most time, s, that were told after the pilot to be left, and the processor
-        time that it then took, as an idle machine takes; None where nothing was told
+    planned_s : least and most processor time, s, told before the run; None: nothing was
+    forecast_s, left_s : least and most time, s, that were told after the pilot to be left, at the processor
+        time that a second had given until then, and the processor time that it then took; None where nothing
+        was told
     notices : sentences told during the run
     own_halves : half-widths, by key, that the levels of a run tell by themselves
     changes : of twins: change by vibration and its half-width, by the numbers of `CHANGED`
@@ -76,7 +78,7 @@ class CoverageResult:
     reason: str = ""
     cpu_s: float = 0.0
     wall_s: float = 0.0
-    planned_s: float | None = None
+    planned_s: tuple[float, float] | None = None
     forecast_s: tuple[float, float] | None = None
     left_s: float | None = None
     notices: tuple[str, ...] = ()
@@ -129,13 +131,17 @@ class _Listener:
     notices: list[str] = field(default_factory=list)
     forecast: tuple[tuple[float, float], float] | None = None
     begun: float = field(default_factory=time.process_time)
+    wall: float = field(default_factory=time.perf_counter)
 
     def __call__(self, progress: Progress | Notice) -> None:
         if isinstance(progress, Notice):
             self.notices.append(progress.text)
             return
         if self.forecast is None and progress.eta_range_s is not None and ", level 2" in progress.note:
-            self.forecast = progress.eta_range_s, time.process_time()
+            at = time.process_time()
+            pace = (at - self.begun) / (time.perf_counter() - self.wall)
+            least, most = progress.eta_range_s
+            self.forecast = (pace * least, pace * most), at
         if time.process_time() - self.begun > self.most_s:
             raise TooDearError(f"took more than {self.most_s:g} s of processor time at {progress.note}")
 
@@ -201,7 +207,8 @@ class CoverageRun:
             kept: dict[str, Any] = json.loads(text)
             outcome = kept.pop("outcome")
             kept["notices"] = tuple(kept["notices"])
-            kept["forecast_s"] = kept["forecast_s"] and tuple(kept["forecast_s"])
+            for told in ("planned_s", "forecast_s"):
+                kept[told] = kept[told] and tuple(kept[told])
             return CoverageResult(outcome and Outcome.from_json(outcome, self.name), **kept)
         except (ValueError, TypeError, KeyError) as error:
             raise ResultError(f"{self.name}: its stored result is damaged ({error}).") from error
@@ -295,9 +302,9 @@ def _verdict(scene: Scene) -> CoverageResult:
     return CoverageResult(None, changes={"e": (v.here.value, v.here.band)} if v.here else {}, verdict=told)
 
 
-def _expected_s(scene: Scene) -> float | None:
-    """Return the processor time, s, that the last level was expected to take; None where none can be told."""
+def _expected_s(scene: Scene) -> tuple[float, float] | None:
+    """Return the processor time, s, that is told before the run; None where none can be."""
     try:
-        return fem_impact.Case.of(scene).size.time
+        return LevelMeshes.of(fem_impact.Case(scene)).whole_s
     except SceneError:  # of a scene that the levels alone can compute
         return None
