@@ -295,12 +295,12 @@ class LevelProgress:
             self._require_time(self._left_s(progress), SURELY * self._paced_s(progress))
         if self.later_s is None or left_s is None:
             return self._tell(replace(progress, note=self.name, eta_s=None))
-        planned_s = [self.turns * busy * later for later in self.later_s]
+        later = [self.turns * busy * planned for planned in self.later_s]
         if progress.step == 0:
-            least, about, most = range_s(*(self.turns * self.own_s + later for later in planned_s))
+            least, about, most = range_s(*(self.turns * self.own_s + planned for planned in later))
         else:  # what is left of a run that goes on is known better
-            shown = left_s + (self.turns - 1) * self.own_s
-            least, about, most = (shown + later for later in range_s(*planned_s))
+            going_on = left_s + (self.turns - 1) * self.own_s
+            least, about, most = (going_on + planned for planned in range_s(*later))
         estimated = replace(progress, note=self.name, eta_s=about, eta_range_s=(least, most))
         self._tell(estimated)
         if progress.step == 0 and about > WORTH:

@@ -52,7 +52,7 @@ def test_a_mesh_that_stands_is_forecast_by_the_impact_of_the_level_before():
 
 
 def test_a_contact_that_a_pilot_does_not_resolve_is_forecast_as_wide_as_estimated():
-    meshes = LevelMeshes.of(Case(replace_all(load("t5b"), {"impact.angle": "20 deg"})))
+    meshes = LevelMeshes.of(Case(replace_all(load("t5b"), {"impact.v_n": "-0.3 m/s"})))
     expected = meshes.expected(0)
     wide = replace(expected, rod=replace(expected.rod, touched=5 * expected.rod.touched))
     assert meshes.likely(wide) == meshes.likely(None) == meshes.usual > meshes.last(wide)
@@ -82,7 +82,7 @@ def test_a_pilot_tells_no_time_and_notices_pass():
 def test_a_level_is_given_up_at_its_limit(monkeypatch):
     clock = [0.0]
     monkeypatch.setattr(forecast, "now", lambda: clock[0])
-    level = LevelProgress(None, "level 2", [], limit_s=10.0)
+    level = LevelProgress(None, "level 2", (0.0, 0.0), limit_s=10.0)
     level(at(0, 3.0))
     clock[0] = 10.5
     with pytest.raises(RunError, match="given up after 10 s"):
@@ -103,7 +103,7 @@ def test_a_long_level_is_forecast_by_what_its_mesh_holds():
 def test_a_level_given_up_in_contact_tells_its_budget_by_the_impact_of_the_level_before(monkeypatch):
     clock = [0.0]
     monkeypatch.setattr(forecast, "now", lambda: clock[0])
-    level = LevelProgress(None, "level 2", [], duration_s=1e-4, used_s=10.0, limit_s=20.0)
+    level = LevelProgress(None, "level 2", (0.0, 0.0), duration_s=1e-4, used_s=10.0, limit_s=20.0)
     clock[0] = 25.0
     with pytest.raises(OverBudgetError, match=r"takes about 50 s\. For it give a budget of 88 s\."):
         level(Progress(5e-5, 1e-4, 200, 0.0, "4 nodes touch", None))
@@ -113,8 +113,8 @@ def test_a_level_whose_steps_show_that_it_takes_too_long_is_given_up_before_its_
     """Of an impact of 100 us 20 have taken 4 s; its modes had taken 5 s, and a run before it another 10 s."""
     clock = [10.0]
     monkeypatch.setattr(forecast, "now", lambda: clock[0])
-    level = LevelProgress(None, "level 2", [], duration_s=1e-4, limit_s=40.0, begun=0.0)
-    slow = LevelProgress(None, "level 2", [], duration_s=1e-4, limit_s=28.0, begun=0.0)
+    level = LevelProgress(None, "level 2", (0.0, 0.0), duration_s=1e-4, limit_s=40.0, begun=0.0)
+    slow = LevelProgress(None, "level 2", (0.0, 0.0), duration_s=1e-4, limit_s=28.0, begun=0.0)
     clock[0] = 15.0
     for one in (level, slow):
         one(at(0, 5.0))
@@ -129,7 +129,7 @@ def test_a_level_whose_steps_show_that_it_takes_too_long_is_given_up_before_its_
 def test_the_clock_of_another_process_counts_from_the_levels_beginning(monkeypatch):
     """Its own clock stands elsewhere, as it has compiled something else."""
     monkeypatch.setattr(forecast, "now", lambda: 100.0)
-    sent = pickle.dumps(LevelProgress(None, "level 2", [], begun=93.0))
+    sent = pickle.dumps(LevelProgress(None, "level 2", (0.0, 0.0), begun=93.0))
     monkeypatch.setattr(forecast, "now", lambda: 40.0)
     assert pickle.loads(sent).begun == 33.0
 
@@ -139,7 +139,7 @@ def test_forecasts_follow_the_load_of_the_machine(monkeypatch):
     clocks = {"now": 0.0, "worked": 0.0}
     for name in clocks:
         monkeypatch.setattr(forecast, name, lambda name=name: clocks[name])
-    level = LevelProgress(None, "level 2", [], duration_s=1e-4, limit_s=20.0)
+    level = LevelProgress(None, "level 2", (0.0, 0.0), duration_s=1e-4, limit_s=20.0)
     level(at(0, None))
     clocks.update(now=8.0, worked=2.0)
     with pytest.raises(OverBudgetError, match="it takes about 38 s"):
@@ -148,7 +148,7 @@ def test_forecasts_follow_the_load_of_the_machine(monkeypatch):
 
 def test_a_level_whose_mesh_shows_that_it_takes_too_long_is_given_up_at_once():
     """A pilot only where even a third of its forecast is too much; it tells what budget holds two levels."""
-    level = LevelProgress(None, "level 2", [], duration_s=1e-4, limit_s=10.0)
+    level = LevelProgress(None, "level 2", (0.0, 0.0), duration_s=1e-4, limit_s=10.0)
     with pytest.raises(OverBudgetError, match=r"it takes about 18 s\. For it give a budget of 2\d s\.$"):
         level(at(0, 18.0))
     pilot = LevelProgress(None, "pilot", limit_s=10.0)
