@@ -178,7 +178,8 @@ def test_a_run_keeps_its_outcome_and_what_was_told(monkeypatch):
     kept = job.read(job.run())
     assert kept.outcome.estimate("mu") == (0.31, 0.02) and kept.own_halves == {"mu": 0.01}
     assert kept.end == "finished" and kept.why == ""
-    assert kept.notices == ("a sentence",) and kept.forecast_s == pytest.approx((5.0, 9.0), rel=0.3) and 0 <= kept.left_s < 10
+    assert kept.notices == ("a sentence",) and 0 <= kept.left_s < 10
+    assert kept.forecast_s == pytest.approx((5.0, 9.0), rel=0.5)  # times processor over wall time
     assert kept.planned_s is None or 0 < kept.planned_s[0] < kept.planned_s[1]
     with pytest.raises(ResultError, match="damaged"):
         job.read(json.dumps({"outcome": None}))
