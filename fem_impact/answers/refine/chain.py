@@ -15,7 +15,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from pathlib import Path
 
-from fem_impact.answers.refine import extrapolate, forecast
+from fem_impact.answers.refine import extrapolate, forecast, needed
 from fem_impact.answers.refine.level import STAMP, LevelRun, simulate_level
 from fem_impact.answers.refine.level_meshes import LevelMeshes, steps_between
 from fem_impact.answers.refine.quantities import TARGETED
@@ -367,6 +367,7 @@ class LevelChain:
             outcome,
             validity=validity,
             strikes=strikes,
+            heat=needed.known_heat(outcome, limits, bands),
             provenance=replace(outcome.provenance, scene_digest=digest(self.scene)),
         )
 

@@ -14,13 +14,13 @@ Levels that agree by chance cannot know the energy of vibration better than its 
 (`vibration_floor`).
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise, takewhile
 from math import hypot, log2, sqrt
 from statistics import fmean, stdev
 
-from fem_impact.answers.refine.needed import widened
+from fem_impact.answers.refine.needed import TIME_ABOVE, MeshNumbers, leaves_ignition_open, widened
 from fem_impact.answers.refine.quantities import QUANTITIES, sum_of
 from fem_impact.outcome.groups import ARMS
 from fem_impact.outcome.keys import Key, Unknown, or_none
@@ -59,8 +59,6 @@ def held_back(run: Outcome) -> dict[str, float]:
 
 VIBRATION = KEY_TABLE["E_vib_over_E_0"]
 """Key of the quantity whose band has a floor, see `vibration_floor`."""
-MeshNumbers = Mapping[str, float] | Unknown
-"""Numbers by the key of an outcome that they are about, or why there are none."""
 UNRESOLVED = Unknown("the last level did not resolve the contact")
 ALONE = Unknown("one level alone tells no error")
 
@@ -188,7 +186,11 @@ def level_limits(levels: Sequence[MeshRuns]) -> tuple[MeshNumbers, MeshNumbers]:
     limits, bands = own_limits(levels)
     if isinstance(limits, Unknown) or isinstance(bands, Unknown):
         return limits, bands
-    return limits, widened(limits, bands, levels[-1].runs[0])
+    run = levels[-1].runs[0]
+    bands = widened(limits, bands, run)
+    lost = {TIME_ABOVE} if leaves_ignition_open(limits, bands, run) else set()
+    known, told = ({key: of[key] for key in of if key not in lost} for of in (limits, bands))
+    return known, told
 
 
 def own_limits(levels: Sequence[MeshRuns]) -> tuple[MeshNumbers, MeshNumbers]:

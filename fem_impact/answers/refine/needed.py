@@ -10,17 +10,25 @@ were drawn.
 """
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 from fem_impact.case.measured import needed_half_widths
+from fem_impact.outcome.groups import Heat
+from fem_impact.outcome.keys import Unknown, or_none
 from fem_impact.outcome.record import KEY_TABLE, ROUND_OFF, Outcome
 from fem_impact.run.modal_error import PLASTIC, VIBRATION, unit_of
 
+MeshNumbers = Mapping[str, float] | Unknown
+"""Numbers by the key of an outcome that they are about, or why there are none."""
 HELD = 0.95
 """Share of differences from a run with one level more that a half-width is to hold."""
 JUDGED = ("e_edge", "mu", "Omega_rad_per_s", "W_friction_over_E_0", *PLASTIC)
 """Keys of the numbers whose widest half-width tells how far a scene is from its limit."""
 RISE, TEMPERATURE = "flash_rise_K", "flash_temperature_K"
 """Keys of the rise at the contact and of that over absolute zero, which differ by a constant."""
+TIME_ABOVE = "time_above_ignition_s"
+"""Key of the time for which the contact is hotter than what must not be reached."""
+OPEN = Unknown("not resolved: the flash temperature is not known to either side of the ignition temperature")
 FLOWS = dict(zip(PLASTIC, ("rod-plasticity", "barrier-elastoplastic"), strict=True))
 """Effects that let a body flow, by the key of its plastic work."""
 
@@ -54,3 +62,17 @@ def widened(limits: Mapping[str, float], halves: Mapping[str, float], run: Outco
     if TEMPERATURE in wide and RISE in wide:
         wide[TEMPERATURE] = wide[RISE]
     return wide
+
+
+def leaves_ignition_open(limits: MeshNumbers, halves: MeshNumbers, run: Outcome) -> bool:
+    """Say whether the ignition temperature lies within the half-width of the flash temperature."""
+    at, half = ((or_none(of) or {}).get(TEMPERATURE) for of in (limits, halves))
+    ignition = or_none(run.heat.ignition)
+    return at is not None and half is not None and ignition is not None and abs(at - ignition) <= half
+
+
+def known_heat(run: Outcome, limits: MeshNumbers, halves: MeshNumbers) -> Heat:
+    """Return the heat of a run, without a time above the ignition temperature that its levels leave open."""
+    if not leaves_ignition_open(limits, halves, run):
+        return run.heat
+    return replace(run.heat, time_above_ignition=OPEN)

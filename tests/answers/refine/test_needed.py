@@ -4,9 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from outcome_maker import altered
 from study_fakes import outcome
 
-from fem_impact.answers.refine.needed import HELD, PLASTIC, scale_of, widened, widest
+from fem_impact.answers.refine.extrapolate import MeshRuns, level_limits
+from fem_impact.answers.refine.needed import HELD, OPEN, PLASTIC, known_heat, scale_of, widened, widest
 from fem_impact.case.measured import needed_half_widths
 from fem_impact.evidence.studies.coverage.level_bands import LEAST, needed
 
@@ -57,3 +59,18 @@ def test_the_arms_of_the_paper_have_the_half_width_of_the_tip_s_own():
     limits, halves = ({key: number for key in ("e_paper", "e_edge", "mu")} for number in (0.3, 1e-4))
     wide = widened(limits, {**halves, "mu": 0.1}, RUN)
     assert wide["e_paper"] == wide["e_edge"] > 0.01
+
+
+def test_a_time_above_ignition_is_not_told_where_the_flash_temperature_leaves_it_open():
+    """A default run told 2 of 11 such times right."""
+    hot = [
+        outcome(tip_size_m=size, flash_temperature_K=of, flash_rise_K=of - 293, time_above_ignition_s=1e-5)
+        for size, of in ((2e-4, 620.0), (1e-4, 640.0))
+    ]
+    levels = [MeshRuns(run.cost.tip_size, [altered(run, ignition_temperature_K=700.0)]) for run in hot]
+    limits, halves = level_limits(levels)
+    assert "time_above_ignition_s" not in limits and "time_above_ignition_s" not in halves
+    assert known_heat(levels[1].runs[0], limits, halves).time_above_ignition == OPEN
+    far = [replace(level, runs=[altered(level.runs[0], ignition_temperature_K=5e3)]) for level in levels]
+    assert "time_above_ignition_s" in level_limits(far)[0]
+    assert known_heat(far[1].runs[0], *level_limits(far)).time_above_ignition == 1e-5
