@@ -367,7 +367,7 @@ class LevelChain:
             outcome,
             validity=validity,
             strikes=strikes,
-            heat=needed.known_heat(outcome, limits, bands),
+            heat=needed.known_heat(outcome, needed.unresolved_heat(limits, bands, counted.runs)),
             provenance=replace(outcome.provenance, scene_digest=digest(self.scene)),
         )
 

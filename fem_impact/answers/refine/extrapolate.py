@@ -20,7 +20,7 @@ from itertools import pairwise, takewhile
 from math import hypot, log2, sqrt
 from statistics import fmean, stdev
 
-from fem_impact.answers.refine.needed import TIME_ABOVE, MeshNumbers, leaves_ignition_open, widened
+from fem_impact.answers.refine.needed import MeshNumbers, unresolved_heat, widened
 from fem_impact.answers.refine.quantities import QUANTITIES, sum_of
 from fem_impact.outcome.groups import ARMS
 from fem_impact.outcome.keys import Key, Unknown, or_none
@@ -186,9 +186,8 @@ def level_limits(levels: Sequence[MeshRuns]) -> tuple[MeshNumbers, MeshNumbers]:
     limits, bands = own_limits(levels)
     if isinstance(limits, Unknown) or isinstance(bands, Unknown):
         return limits, bands
-    run = levels[-1].runs[0]
-    bands = widened(limits, bands, run)
-    lost = {TIME_ABOVE} if leaves_ignition_open(limits, bands, run) else set()
+    bands = widened(limits, bands, levels[-1].runs[0])
+    lost = unresolved_heat(limits, bands, levels[-1])
     known, told = ({key: of[key] for key in of if key not in lost} for of in (limits, bands))
     return known, told
 

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, replace
 
 from fem_impact.answers.refine.extrapolate import NARROW, MeshRuns
+from fem_impact.answers.refine.needed import ROWS
 from fem_impact.case.case import Case
 from fem_impact.case.record import ContactRecord
 from fem_impact.files.atomic import read_text, write_text
@@ -15,9 +16,6 @@ from fem_impact.run.resolution import NOT_RESOLVED, without
 from fem_impact.run.simulate import simulate_recorded
 from fem_impact.solid.stepguard import THIN_CRUSHED
 
-# of nodes across the narrow side of a contact, on levels whose values are extrapolated: a line of contact one
-# cell wide is pressed as hard as its cells are large, and two levels of it may agree and be wrong together
-ROWS = 4
 STAMP = "level.stamp"
 """File of a level's directory that says what was computed there."""
 

@@ -11,12 +11,16 @@ were drawn.
 
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from fem_impact.case.measured import needed_half_widths
 from fem_impact.outcome.groups import Heat
 from fem_impact.outcome.keys import Unknown, or_none
 from fem_impact.outcome.record import KEY_TABLE, ROUND_OFF, Outcome
 from fem_impact.run.modal_error import PLASTIC, VIBRATION, unit_of
+
+if TYPE_CHECKING:
+    from fem_impact.answers.refine.extrapolate import MeshRuns
 
 MeshNumbers = Mapping[str, float] | Unknown
 """Numbers by the key of an outcome that they are about, or why there are none."""
@@ -29,6 +33,14 @@ RISE, TEMPERATURE = "flash_rise_K", "flash_temperature_K"
 TIME_ABOVE = "time_above_ignition_s"
 """Key of the time for which the contact is hotter than what must not be reached."""
 OPEN = Unknown("not resolved: the flash temperature is not known to either side of the ignition temperature")
+OF_PATCH = ("contact_patch_m2", "friction_flux_W_per_m2", RISE, TEMPERATURE)
+"""Keys of what rests on the size of the patch."""
+# of nodes across the narrow side of a contact, on levels whose values are extrapolated: a line of contact one
+# cell wide is pressed as hard as its cells are large, and two levels of it may agree and be wrong together
+ROWS = 4
+NARROW_PATCH = (
+    f"not resolved: the heat spreads over a patch whose narrow side takes {ROWS} nodes, and has {{rows}}"
+)
 FLOWS = dict(zip(PLASTIC, ("rod-plasticity", "barrier-elastoplastic"), strict=True))
 """Effects that let a body flow, by the key of its plastic work."""
 
@@ -64,15 +76,30 @@ def widened(limits: Mapping[str, float], halves: Mapping[str, float], run: Outco
     return wide
 
 
-def leaves_ignition_open(limits: MeshNumbers, halves: MeshNumbers, run: Outcome) -> bool:
-    """Say whether the ignition temperature lies within the half-width of the flash temperature."""
+def unresolved_heat(limits: MeshNumbers, halves: MeshNumbers, finest: "MeshRuns") -> dict[str, Unknown]:
+    """Return why numbers of the heat at the contact, by key, are not known from levels up to ``finest``.
+
+    The heat spreads over the patch. A line of contact that is hardly wider than a cell is as wide as its
+    cells, so that flux and temperature grow as cells shrink, without an end where nothing yields. A time
+    above the ignition temperature needs that to lie beside the half-width of the flash temperature.
+    """
+    if finest.resolved and not finest.wide:
+        return dict.fromkeys((*OF_PATCH, TIME_ABOVE), Unknown(NARROW_PATCH.format(rows=finest.rows)))
+    run = finest.runs[0]
     at, half = ((or_none(of) or {}).get(TEMPERATURE) for of in (limits, halves))
     ignition = or_none(run.heat.ignition)
-    return at is not None and half is not None and ignition is not None and abs(at - ignition) <= half
+    if at is None or half is None or ignition is None or abs(at - ignition) > half:
+        return {}
+    return {TIME_ABOVE: OPEN}
 
 
-def known_heat(run: Outcome, limits: MeshNumbers, halves: MeshNumbers) -> Heat:
-    """Return the heat of a run, without a time above the ignition temperature that its levels leave open."""
-    if not leaves_ignition_open(limits, halves, run):
-        return run.heat
-    return replace(run.heat, time_above_ignition=OPEN)
+def known_heat(run: Outcome, lost: Mapping[str, Unknown]) -> Heat:
+    """Return the heat of a run without the numbers, by key, that are lost for a reason.
+
+    What the run did not know keeps its own reason.
+    """
+    heat = run.heat
+    if isinstance(heat.power, Unknown):  # not followed
+        return heat
+    paths = {KEY_TABLE[key].path[1]: why for key, why in lost.items()}
+    return replace(heat, **{at: why for at, why in paths.items() if or_none(getattr(heat, at)) is not None})

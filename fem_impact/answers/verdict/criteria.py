@@ -211,9 +211,10 @@ class HeatCriterion(Limited):
         """Return the limit and the half-width of as many levels as a default run has.
 
         Finer cells heat more: two levels of t5b told 415 to 507 K where three gave 513 K. Where the last one
-        melts a body, the least is the melting point if the one before does so too.
+        melts a body, the least is the melting point if the one before does so too. A contact that is
+        hardly wider than a cell tells none.
         """
-        if len(levels) < LEVELS:
+        if len(levels) < LEVELS or not levels[-1].runs.wide:
             return None
         scene = levels[-1].cases[0].scene
         *_, before, last = (_melts(level.outcome.heat.rise) for level in levels)

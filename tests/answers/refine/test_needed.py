@@ -8,7 +8,17 @@ from outcome_maker import altered
 from study_fakes import outcome
 
 from fem_impact.answers.refine.extrapolate import MeshRuns, level_limits
-from fem_impact.answers.refine.needed import HELD, OPEN, PLASTIC, known_heat, scale_of, widened, widest
+from fem_impact.answers.refine.needed import (
+    HELD,
+    OF_PATCH,
+    OPEN,
+    PLASTIC,
+    known_heat,
+    scale_of,
+    unresolved_heat,
+    widened,
+    widest,
+)
 from fem_impact.case.measured import needed_half_widths
 from fem_impact.evidence.studies.coverage.level_bands import LEAST, needed
 
@@ -70,7 +80,33 @@ def test_a_time_above_ignition_is_not_told_where_the_flash_temperature_leaves_it
     levels = [MeshRuns(run.cost.tip_size, [altered(run, ignition_temperature_K=700.0)]) for run in hot]
     limits, halves = level_limits(levels)
     assert "time_above_ignition_s" not in limits and "time_above_ignition_s" not in halves
-    assert known_heat(levels[1].runs[0], limits, halves).time_above_ignition == OPEN
+    lost = unresolved_heat(limits, halves, levels[1])
+    assert known_heat(levels[1].runs[0], lost).time_above_ignition == OPEN
     far = [replace(level, runs=[altered(level.runs[0], ignition_temperature_K=5e3)]) for level in levels]
     assert "time_above_ignition_s" in level_limits(far)[0]
-    assert known_heat(far[1].runs[0], *level_limits(far)).time_above_ignition == 1e-5
+    lost = unresolved_heat(*level_limits(far), far[1])
+    assert known_heat(far[1].runs[0], lost).time_above_ignition == 1e-5
+
+
+def test_heat_over_a_patch_that_is_hardly_wider_than_a_cell_is_not_told():
+    """A line of contact: one level more told 6.5 times the temperature."""
+    hot = [
+        outcome(
+            tip_size_m=size,
+            flash_temperature_K=of,
+            flash_rise_K=of - 293,
+            friction_flux_W_per_m2=1e9,
+            contact_patch_m2=1e-8,
+            friction_power_W=10.0,
+        )
+        for size, of in ((2e-4, 620.0), (1e-4, 640.0))
+    ]
+    levels = [MeshRuns(run.cost.tip_size, [run], wide=False, rows=2) for run in hot]
+    limits, halves = level_limits(levels)
+    assert "friction_power_W" in limits and not {*OF_PATCH} & ({*limits} | {*halves})
+    heat = known_heat(hot[1], unresolved_heat(limits, halves, levels[1]))
+    assert (
+        "4 nodes, and has 2" in heat.rise.reason and heat.flux == heat.patch == heat.temperature == heat.rise
+    )
+    assert heat.power == 10.0
+    assert {*OF_PATCH} <= {*level_limits([replace(level, wide=True, rows=4) for level in levels])[0]}

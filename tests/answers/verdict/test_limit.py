@@ -173,10 +173,16 @@ def test_a_temperature_beyond_the_melting_point_is_at_least_that(scene):
     melted = Unknown(f"at least 1700 K; rod-steel begins to {MELTS}")
     for rises, low in (((400.0, melted, melted), 1700.15), ((400.0, 1000.0, melted), 293.15)):
         levels = [
-            SimpleNamespace(cases=[Case(hot)], outcome=SimpleNamespace(heat=SimpleNamespace(rise=rise)))
+            SimpleNamespace(
+                cases=[Case(hot)],
+                outcome=SimpleNamespace(heat=SimpleNamespace(rise=rise)),
+                runs=SimpleNamespace(wide=True),
+            )
             for rise in rises
         ]
         assert LIMITED["heat"].solid(levels).low == pytest.approx(low)
+    levels[-1].runs.wide = False  # a contact hardly wider than a cell tells no heat, high or low
+    assert LIMITED["heat"].solid(levels) is None
 
 
 def test_heat_by_finite_elements_follows_the_contact(scene):
