@@ -324,6 +324,7 @@ class LevelChain:
         upto = self.done[: self.counted]
         counted, beyond = upto[-1], self.done[self.counted :]
         limits, bands = extrapolate.level_limits([level.runs for level in upto])
+        lost = needed.unresolved_heat(limits, bands, counted.outcome, counted.runs.across)
         why = bands if isinstance(bands, Unknown) else extrapolate.UNRESOLVED
         if bands is why:
             limits = bands = Unknown(f"{why.reason}; {self._finer}")
@@ -367,7 +368,7 @@ class LevelChain:
             outcome,
             validity=validity,
             strikes=strikes,
-            heat=needed.known_heat(outcome, needed.unresolved_heat(limits, bands, counted.runs)),
+            heat=needed.known_heat(outcome, lost),
             provenance=replace(outcome.provenance, scene_digest=digest(self.scene)),
         )
 

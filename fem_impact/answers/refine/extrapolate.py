@@ -20,7 +20,7 @@ from itertools import pairwise, takewhile
 from math import hypot, log2, sqrt
 from statistics import fmean, stdev
 
-from fem_impact.answers.refine.needed import MeshNumbers, unresolved_heat, widened
+from fem_impact.answers.refine.needed import ROWS, MeshNumbers, unresolved_heat, widened
 from fem_impact.answers.refine.quantities import QUANTITIES, sum_of
 from fem_impact.outcome.groups import ARMS
 from fem_impact.outcome.keys import Key, Unknown, or_none
@@ -116,6 +116,11 @@ class MeshRuns:
     earlier: Sequence[float] = ()
 
     @property
+    def across(self) -> int:
+        """Nodes across the narrow side of the contact, `ROWS` where that is resolved."""
+        return ROWS if self.wide else self.rows
+
+    @property
     def times(self) -> list[float]:
         """Processor time, s, of each run with its repeats."""
         earlier = self.earlier or [0.0] * len(self.runs)
@@ -186,8 +191,9 @@ def level_limits(levels: Sequence[MeshRuns]) -> tuple[MeshNumbers, MeshNumbers]:
     limits, bands = own_limits(levels)
     if isinstance(limits, Unknown) or isinstance(bands, Unknown):
         return limits, bands
-    bands = widened(limits, bands, levels[-1].runs[0])
-    lost = unresolved_heat(limits, bands, levels[-1])
+    run = levels[-1].runs[0]
+    bands = widened(limits, bands, run)
+    lost = unresolved_heat(limits, bands, run, levels[-1].across)
     known, told = ({key: of[key] for key in of if key not in lost} for of in (limits, bands))
     return known, told
 

@@ -11,16 +11,12 @@ were drawn.
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from fem_impact.case.measured import needed_half_widths
 from fem_impact.outcome.groups import Heat
 from fem_impact.outcome.keys import Unknown, or_none
 from fem_impact.outcome.record import KEY_TABLE, ROUND_OFF, Outcome
 from fem_impact.run.modal_error import PLASTIC, VIBRATION, unit_of
-
-if TYPE_CHECKING:
-    from fem_impact.answers.refine.extrapolate import MeshRuns
 
 MeshNumbers = Mapping[str, float] | Unknown
 """Numbers by the key of an outcome that they are about, or why there are none."""
@@ -76,16 +72,19 @@ def widened(limits: Mapping[str, float], halves: Mapping[str, float], run: Outco
     return wide
 
 
-def unresolved_heat(limits: MeshNumbers, halves: MeshNumbers, finest: "MeshRuns") -> dict[str, Unknown]:
-    """Return why numbers of the heat at the contact, by key, are not known from levels up to ``finest``.
+def unresolved_heat(
+    limits: MeshNumbers, halves: MeshNumbers, run: Outcome, across: int
+) -> dict[str, Unknown]:
+    """Return why numbers of the heat at the contact, by key, are not known from levels.
+
+    ``run`` is of the finest, with so many nodes ``across`` the narrow side of its contact, `ROWS` where wide.
 
     The heat spreads over the patch. A line of contact that is hardly wider than a cell is as wide as its
     cells, so that flux and temperature grow as cells shrink, without an end where nothing yields. A time
     above the ignition temperature needs that to lie beside the half-width of the flash temperature.
     """
-    if finest.resolved and not finest.wide:
-        return dict.fromkeys((*OF_PATCH, TIME_ABOVE), Unknown(NARROW_PATCH.format(rows=finest.rows)))
-    run = finest.runs[0]
+    if across < ROWS:
+        return dict.fromkeys((*OF_PATCH, TIME_ABOVE), Unknown(NARROW_PATCH.format(rows=across)))
     at, half = ((or_none(of) or {}).get(TEMPERATURE) for of in (limits, halves))
     ignition = or_none(run.heat.ignition)
     if at is None or half is None or ignition is None or abs(at - ignition) > half:

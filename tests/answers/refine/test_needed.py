@@ -80,11 +80,11 @@ def test_a_time_above_ignition_is_not_told_where_the_flash_temperature_leaves_it
     levels = [MeshRuns(run.cost.tip_size, [altered(run, ignition_temperature_K=700.0)]) for run in hot]
     limits, halves = level_limits(levels)
     assert "time_above_ignition_s" not in limits and "time_above_ignition_s" not in halves
-    lost = unresolved_heat(limits, halves, levels[1])
+    lost = unresolved_heat(limits, halves, levels[1].runs[0], levels[1].across)
     assert known_heat(levels[1].runs[0], lost).time_above_ignition == OPEN
     far = [replace(level, runs=[altered(level.runs[0], ignition_temperature_K=5e3)]) for level in levels]
     assert "time_above_ignition_s" in level_limits(far)[0]
-    lost = unresolved_heat(*level_limits(far), far[1])
+    lost = unresolved_heat(*level_limits(far), far[1].runs[0], far[1].across)
     assert known_heat(far[1].runs[0], lost).time_above_ignition == 1e-5
 
 
@@ -104,7 +104,7 @@ def test_heat_over_a_patch_that_is_hardly_wider_than_a_cell_is_not_told():
     levels = [MeshRuns(run.cost.tip_size, [run], wide=False, rows=2) for run in hot]
     limits, halves = level_limits(levels)
     assert "friction_power_W" in limits and not {*OF_PATCH} & ({*limits} | {*halves})
-    heat = known_heat(hot[1], unresolved_heat(limits, halves, levels[1]))
+    heat = known_heat(hot[1], unresolved_heat(limits, halves, hot[1], levels[1].across))
     assert (
         "4 nodes, and has 2" in heat.rise.reason and heat.flux == heat.patch == heat.temperature == heat.rise
     )
