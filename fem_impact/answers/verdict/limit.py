@@ -170,6 +170,9 @@ def judge(
         two = {place: scenes[place] for place in (worst, mildest)}
         solids, said, more = _by_solids(two, criterion, limit, (budget_s, workers), tell, steps)
         notes += said
+        if fidelity == "solid" and worst not in solids:  # what was asked for tells nothing
+            bound, by, answer = None, "finite elements", "undecided"
+            more = {"fidelity": fidelity, **more} if more else {}
         reduced = bound if fidelity == "auto" and answer == "undecided" else None
         if worst in solids and not (reduced and reduced.holds_against(solids[worst], limit)):
             bound, by = solids[worst], "finite elements"

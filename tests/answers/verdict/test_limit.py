@@ -259,6 +259,14 @@ def test_an_undecided_limit_says_what_is_missing_and_what_comes_next(scene):
     assert judge(scene, Sloped(), 75.0, ANGLE, "modal").missing == ""
 
 
+def test_finite_elements_that_tell_nothing_leave_undecided_who_asked_for_them(monkeypatch, scene):
+    solids(monkeypatch, {45: None})
+    found = judge(scene, Sloped(), 75.0, None, "solid")
+    assert found.answer == "undecided" and found.bound is None and "notes say" in found.missing
+    assert found.more == {"fidelity": "solid", "budget_s": 90}
+    assert judge(scene, Sloped(), 75.0, None, "auto").answer == "yes"
+
+
 def test_finite_elements_elsewhere_are_missing_where_the_reduced_model_is_too_low(monkeypatch, scene):
     solids(monkeypatch, {60: 50.0, 20: 30.0})
     assert judge(scene, Sloped(), 65.0, ANGLE).missing.startswith("finite elements at more places")
