@@ -143,9 +143,8 @@ def judge(
     f = scene.surface.friction_low, scene.surface.friction_high
     friction = {} if f[0] == f[1] else {FRICTION: f}
     intervals = [interval_of(scene, key, ends) for key, ends in {**friction, **(uncertain or {})}.items()]
-    scenes = _places(scene, intervals)
+    scenes, lacking = _places(scene, intervals), not_reduced(Case(scene).bodies)
     steps, notes, more = list[str](), list[str](), finite_elements(budget_s)
-    lacking = not_reduced(Case(scene).bodies)
     if lacking and fidelity != "modal":
         notes.append(LACKING.format(lacking))
     else:
@@ -171,8 +170,7 @@ def judge(
         solids, said, more = _by_solids(two, criterion, limit, (budget_s, workers), tell, steps)
         notes += said
         if fidelity == "solid" and worst not in solids:  # what was asked for tells nothing
-            bound, by, answer = None, "finite elements", "undecided"
-            more = {"fidelity": fidelity, **more} if more else {}
+            bound, answer, more = None, "undecided", more and {"fidelity": "solid", **more}
         reduced = bound if fidelity == "auto" and answer == "undecided" else None
         if worst in solids and not (reduced and reduced.holds_against(solids[worst], limit)):
             bound, by = solids[worst], "finite elements"
