@@ -214,9 +214,8 @@ def _size_lines(case: Case) -> list[str]:
             "a coarse pilot finds where, how widely and how often the bodies touch; finer meshes follow what "
             f"it found, about {case.scene.accuracy.levels} in all. Each number comes with its band",
             f"if the contact is as estimated, {1e3 * radius:.2g} mm in radius, the last of them has about "
-            f"{about(size.rod + size.barrier)} elements, {about(size.memory / 1e6)} MB of memory",
-            f"all levels take {range_text(*LevelMeshes.of(case).whole_s)} of processor time in nine of ten "
-            "scenes; the run tells more after its pilot",
+            f"{about(size.rod + size.barrier)} elements, {about(size.memory / 1e6)} MB of memory, and "
+            f"all take {range_text(*LevelMeshes.of(case).whole_s)} of processor time in nine of ten scenes",
             _fields_line(case.scene, size),
         )
         return ["", "A run with finite elements", *_wrapped(found)]
