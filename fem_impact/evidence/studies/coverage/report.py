@@ -23,7 +23,7 @@ from fem_impact.case.measured import summary
 from fem_impact.evidence.studies.coverage import judge
 from fem_impact.evidence.studies.coverage.level_bands import level_bands
 from fem_impact.evidence.studies.coverage.run import DEFAULT, FINER, FINEST, MODAL, MOST, NEXT, TWINS
-from fem_impact.evidence.studies.coverage.scenes import SEED, DrawnScene
+from fem_impact.evidence.studies.coverage.scenes import DrawnScene
 from fem_impact.figures.panels import Mark, Panel, Picture, Series
 from fem_impact.outcome.keys import or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
@@ -163,7 +163,7 @@ def report_of(scenes: Sequence[DrawnScene], results: judge.Results, seed: int) -
         ],
         [
             f"Scenes drawn with seed {seed}; each family of projectiles as often as every other."
-            + f" By scenes of seed {SEED} the reduced model tells its error.",
+            + " The reduced model tells its errors by scenes of other seeds.",
             "The truth is a finer run of the same program: it knows no error that all meshes share.",
             f"A default run was broken off after {MOST[DEFAULT]:g} s of processor time, one with one level "
             f"more after {MOST[FINER]:g} s, with two after {MOST[FINEST]:g} s. A run with one level more "
