@@ -309,14 +309,14 @@ class LevelChain:
         number, show = len(self.done) + 1, None if run else self.options.progress
         out = self.options.out and self._place(number, repeats, run)
         ends = self.finest, self.meshes.likely(self.done[-1].record if self.done else None)
-        few, many = (steps_between(splits, max(end, splits)) for end in ends)
-        whole = " to ".join(f"{number + more}" for more in dict.fromkeys((len(few), len(many))))
+        plans = dict.fromkeys(tuple(steps_between(splits, max(end, splits))) for end in ends)  # one or two
+        whole = " to ".join(dict.fromkeys(f"{number + len(of)}" for of in plans))
         name = f"{self.scene.id}, level {number}" + f" of {whole}" * bool(self.done)
         progress = forecast.LevelProgress(show, name, used_s=self.spent_s, limit_s=self.limit_s, begun=begun)
         if self.done:
             progress.after(self.done[-1].outcome.cost, self._turns)
-        if self.done and show:
-            progress.later_s = [forecast.planned_s(self.done[-1], self.meshes, of) for of in (few, many)]
+            planned = [forecast.planned_s(self.done[-1], self.meshes, of) for of in plans if show]
+            progress.later_s = (planned[0], planned[-1]) if planned else None
         return replace(self.options, out=out, progress=progress)
 
     def _stated(self) -> Outcome:
