@@ -2,6 +2,7 @@
 
 import json
 import tempfile
+import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -179,10 +180,18 @@ def test_a_run_keeps_its_outcome_and_what_was_told(monkeypatch):
     assert kept.outcome.estimate("mu") == (0.31, 0.02) and kept.own_halves == {"mu": 0.01}
     assert kept.end == "finished" and kept.why == ""
     assert kept.notices == ("a sentence",) and 0 <= kept.left_s < 10
-    assert kept.forecast_s == pytest.approx((5.0, 9.0), rel=0.5)  # times processor over wall time
+    assert kept.forecast_s[1] / kept.forecast_s[0] == pytest.approx(9 / 5)
     assert kept.planned_s is None or 0 < kept.planned_s[0] < kept.planned_s[1]
     with pytest.raises(ResultError, match="damaged"):
         job.read(json.dumps({"outcome": None}))
+
+
+def test_a_forecast_is_told_in_processor_time():
+    begun, wall = time.process_time() - 100.0, time.perf_counter() - 200.0  # two runs share a core
+    listener = coverage_run._Listener(1000.0, begun=begun, wall=wall)
+    for note, range_s in (("2", (5.0, 9.0)), ("3", (2.0, 4.0))):
+        listener(Progress(0.0, 1.0, 0, 0.0, "", 7.0, f"tube-0, level {note} of 3", range_s))
+    assert listener.forecast[0] == pytest.approx((2.5, 4.5), rel=0.05)
 
 
 @pytest.mark.parametrize(
