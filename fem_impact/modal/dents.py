@@ -25,14 +25,14 @@ class Dent:
     site : number of the site
     across : R2, m, of the contact that pressed it, in which each cell is as wide as its depth makes it
     place, depth : (m,) m, on the barrier from where the sequence began, or along the skin of the site
-    widest, size : m, of the contact and of a cell, see `fem_impact.modal.groove.Groove`
+    deepest, size : m, of the tip and of a cell, see `fem_impact.modal.groove.Groove`
     """
 
     site: int
     across: float
     place: Array
     depth: Array
-    widest: float
+    deepest: float
     size: float
 
     @classmethod
@@ -48,7 +48,7 @@ class Dent:
         place = (cells + 0.5) * held.size[s] - _origin(sites, s, now, along, law.ploughs)
         # the ridge that was piled up is left out: a strike begins at the level of the surface beside it
         depth = np.maximum(held.depth[s][cells % CELLS], 0.0)
-        return cls(s, law.R2, place, depth, float(state[IN_GROOVE.widest]), float(held.size[s]))
+        return cls(s, law.R2, place, depth, float(state[IN_GROOVE.deepest]), float(held.size[s]))
 
     def meets(self, held: Touched, s: int, sites: Sites, now: ModalState, along: float) -> bool:
         """Put the dent under a site that has just touched, if it is one of that site and lies there."""
@@ -66,7 +66,11 @@ class Dent:
         held.depth[s][cells % CELLS] = np.interp((cells + 0.5) * size, x, self.depth, 0.0, 0.0)
         state = held.state[s]
         state[IN_GROOVE.first], state[IN_GROOVE.last] = cells[0], cells[-1]
-        state[IN_GROOVE.widest] = self.widest
+        dent = state[IN_GROOVE.dent] = self.depth.max()
+        state[IN_GROOVE.deepest], state[IN_GROOVE.sinks] = (
+            self.deepest,
+            1.0 - 2.0 * dent / (self.deepest + dent),
+        )
         return True
 
 

@@ -2,8 +2,11 @@
 
 Cell x of the surface carries a normal force q and a tangential force T a metre of the row. It is an elastic
 spring (Popov & Hess 2015, doi:10.1007/978-3-642-53876-6) on a bed that flows. With the tip at depth d and
-place X it is pressed by D = d - (x - X)^2 / (2 R1), g of it for good. The tip is met at its slope
-s = (x - X) / R1, so that
+place X it is pressed by D = d - c (x - X)^2 / (2 R1), g of it for good. Beside an elastic contact the surface
+sinks, beside a flowing one it does not: c = 2 d / (d + g) of the deepest, so that the contact of a round tip
+has the radius sqrt(R d) of Hertz at first and sqrt(2 R d) in the end (Johnson 1985, Contact Mechanics, 6.3);
+what rises as c falls is flow. Along a straight flank it sinks by s x / 2, too: Abel's transform of the
+outline (Popov & Hess) has .57 s x far from the round part. The tip is met at its slope s, so that
 
     F_n = sum (q - T s) dx,    F_t = -sum (T + q s) dx.
 
@@ -11,20 +14,22 @@ Flow starts where the slip lines under an inclined load say (Green 1954, doi:10.
 
     q / 2 b H = 1 - (theta + 1 - cos(theta)) / (2 + pi),    T / 2 b K = sin(theta),
 
-with theta from 0 to pi/2, where q may be less; it follows the normal. b = sqrt(2 R2 g) is half the width of
-the contact at the cell and H the hardness. K is at first that of a contact which sticks; as the tip slides,
-it falls to the shear yield stress k: normal force falls as tangential force rises (Tabor 1959,
-doi:10.1098/rspa.1959.0114). T is at most f q and 2 b k. What the tip ploughs up raises the surface ahead of
+with theta from 0 to pi/2, where q may be less; it follows the normal. b = sqrt(R2 (D + g)) is half the width
+of the contact at the cell and H the hardness: Hertz' contact begins to flow at p0 = 4/pi H, and in the end
+all of it bears H. K is at first that of a contact which sticks; as the tip slides, it falls to the shear
+yield stress k: normal force falls as tangential force rises (Tabor 1959, doi:10.1098/rspa.1959.0114). T is
+at most f q and 2 b k. What the tip ploughs up raises the surface ahead of
 the contact, over as much as the contact is long: so far the slip lines of a punch reach (Prandtl 1920).
 """
 
-from math import asin, atan, cos, exp, inf, log, pi, sin, sqrt
+from math import asin, atan, cos, exp, log, pi, sin, sqrt
 from typing import NamedTuple
 
 import numpy as np
 
 from fem_impact.arrays import Array
 from fem_impact.fem.kernels import allocating_kernel, inlined
+from fem_impact.modal.tip import ROUND, Tip, half_length, outline, steeper
 from fem_impact.physics.contact_law import FULLY_PLASTIC, REPRESENTATIVE, RUN_IN, STUCK, FlowLaw
 
 CELLS = 512  # of the ring that follows the tip
@@ -33,20 +38,24 @@ LONGEST = CELLS // 4  # cells of a contact on either side of what is lowest
 
 
 class StateIndex(NamedTuple):
-    """Where each number stands in ``Groove.state`` (8,).
+    """Where each number stands in ``Groove.state`` (11,).
 
-    The first and last cell visited; the tip's last place and depth, the widest contact radius, the way slid,
-    the ridge's height under the tip and the highest ever, m.
+    The first and last cell visited; the tip's last place and depth, its deepest, the way slid, the ridge's
+    height under the tip and the highest ever, the deepest cell, m; how far the surface sinks beside the
+    contact, 1 of an elastic one, 0 of one that flows, and how much less what flowed last pays for.
     """
 
     first: int = 0
     last: int = 1
     place: int = 2
     depth: int = 3
-    widest: int = 4
+    deepest: int = 4
     slid: int = 5
     ridge: int = 6
     top: int = 7
+    dent: int = 8
+    sinks: int = 9
+    pays: int = 10
 
 
 class WorkIndex(NamedTuple):
@@ -60,35 +69,13 @@ class WorkIndex(NamedTuple):
 AT, WORK = StateIndex(), WorkIndex()
 
 
-class Flank(NamedTuple):
-    """A side of a tip: a straight part that it goes over into.
-
-    Its slope, how far it reaches along t, m, and the slope beyond; all are infinite where the tip is round.
-    """
-
-    slope: float
-    end: float
-    beyond: float
-
-
-ROUND = Flank(inf, inf, inf)
-
-
-class Tip(NamedTuple):
-    """What presses: its radius, m, and its sides."""
-
-    radius: float
-    behind: Flank
-    ahead: Flank
-
-
 class Groove(NamedTuple):
     """The groove that a tip leaves, cell by cell along its way.
 
     Attributes
     ----------
     depth, normal, shift : (CELLS,) depth, m, normal force, N/m, and shift of the tangential spring, m
-    state : (8,) what stands once, see `StateIndex`
+    state : (11,) what stands once, see `StateIndex`
     works : (3,) J, see `WorkIndex`
     size : of a cell, m
     """
@@ -105,52 +92,39 @@ class Groove(NamedTuple):
 @allocating_kernel
 def smooth(reach: float, radius: float) -> Groove:
     """Return a surface without a groove for contacts of a round tip of at most a half length ``reach``, m."""
-    state, cells = np.zeros(8), (np.zeros(CELLS), np.zeros(CELLS), np.zeros(CELLS))
-    state[AT.last] = -1.0
+    state, cells = np.zeros(11), (np.zeros(CELLS), np.zeros(CELLS), np.zeros(CELLS))
+    state[AT.last], state[AT.sinks] = -1.0, 1.0
     return Groove(*cells, state, np.zeros(3), Tip(radius, ROUND, ROUND), reach / ACROSS)
 
 
 @inlined
-def outline(tip: Tip, x: float) -> tuple[float, float]:
-    """Return height, m, and slope of a tip at a distance x, m, from what is lowest of it."""
-    radius, behind, ahead = tip
-    slope, past = min(max(x / radius, -behind.slope), ahead.slope), max(x - ahead.end, -x - behind.end)
-    if past <= 0.0:
-        return slope * (x - 0.5 * radius * slope), slope
-    way, side = (1.0, ahead) if x > 0.0 else (-1.0, behind)
-    return slope * (way * side.end - 0.5 * radius * slope) + side.beyond * past, way * side.beyond
+def widest(state: Array, law: FlowLaw) -> float:
+    """Return the largest contact radius, m (squared R d elastic, 2 R d plastic)."""
+    return sqrt(law.R * (state[AT.deepest] + state[AT.dent]))
 
 
 @inlined
-def half_length(radius: float, side: Flank, depth: float) -> float:
-    """Return how far, m, a tip of a radius, m, touches on a side at a depth, m."""
-    slope, end, beyond = side
-    if slope > 0.0 and depth <= 0.5 * radius * slope**2:
-        return sqrt(2 * radius * depth)
-    rise = slope * (end - 0.5 * radius * slope)
-    return depth / slope + 0.5 * radius * slope if depth <= rise else end + (depth - rise) / beyond
-
-
-@inlined
-def borne(widest: float, stress: float, slope: float, exponent: float, law: FlowLaw) -> float:
+def borne(radius: float, stress: float, slope: float, exponent: float, law: FlowLaw) -> float:
     """Return a plane body's hardness, Pa: Johnson's cavity up to Tabor's contact, at the strain .2 a/R."""
-    stress *= (1.0 + slope * REPRESENTATIVE * widest / law.R) ** exponent
-    strained = law.E_star * widest / (law.R * stress)
+    stress *= (1.0 + slope * REPRESENTATIVE * radius / law.R) ** exponent
+    strained = law.E_star * radius / (law.R * stress)
     nu = law.nu
     cavity = 2 / 3 * (2 + log((strained + 4 * (1 - 2 * nu)) / (6 * (1 - nu))))
     return float(stress * min(FULLY_PLASTIC, cavity))
 
 
 @inlined
-def hardness(widest: float, law: FlowLaw) -> float:
+def hardness(radius: float, tip: Tip, law: FlowLaw) -> float:
     """Return H, Pa: that of the body that flows, at most that of the other one.
 
-    The tip bears less than a plane body: its flanks rise beside the contact, and slip lines turn by less.
+    The tip bears less than a plane body: its flanks rise beside the contact, and slip lines turn by less. One
+    in its groove cannot flow to one side alone: it leans by the mean of both.
     """
-    own = borne(widest, law.yield_stress, law.slope, law.exponent, law)
-    other = borne(widest, law.other_yield_stress, law.other_slope, law.other_exponent, law)
-    flanks = 1.0 - atan(widest / sqrt(law.R * law.R1)) / (1.0 + 0.5 * pi)
-    return min(own, flanks * other) if law.ploughs else min(flanks * own, other)
+    own = borne(radius, law.yield_stress, law.slope, law.exponent, law)
+    other = borne(radius, law.other_yield_stress, law.other_slope, law.other_exponent, law)
+    if law.ploughs:
+        return min(own, other * (1.0 - atan(radius / sqrt(law.R * law.R1)) / (1.0 + 0.5 * pi)))
+    return min(own * (1.0 - steeper(tip, 0.5 * radius**2 / law.R) / (1.0 + 0.5 * pi)), other)
 
 
 @inlined
@@ -209,9 +183,10 @@ def flowed(q: float, T: float, Q: float, S: float, law: FlowLaw) -> tuple[float,
 @inlined
 def strengths(groove: Groove, law: FlowLaw) -> tuple[float, float]:
     """Return H and K, Pa, of the contact as it is."""
-    H = hardness(groove.state[AT.widest], law)
+    radius = widest(groove.state, law)
+    H = hardness(radius, groove.tip, law)
     slid = min(law.skin, STUCK * H)
-    way = groove.state[AT.slid] / (RUN_IN * groove.state[AT.widest])
+    way = groove.state[AT.slid] / (RUN_IN * radius)
     return H, slid + (STUCK * H - slid) * exp(-way)
 
 
@@ -225,15 +200,17 @@ def press_cell(
     """
     g, normal, shift, _, works, _, size = groove
     before, sheared = g[i], law.shear * shift[i]
-    trial, b = sheared + law.shear * moved, sqrt(2 * law.R2 * max(g[i] + up, 0.0))
-    q, stuck = flowed(law.normal * (D - g[i]), trial, 2 * b * H, 2 * b * K, law)
+    trial, b = sheared + law.shear * moved, sqrt(law.R2 * max(D + g[i] + 2 * up, 0.0))
+    held = min(max(trial, -2 * b * K), 2 * b * K)  # a long step moves on: no more than that was ever held
+    q, stuck = flowed(law.normal * (D - g[i]), held, 2 * b * H, 2 * b * K, law)
     g[i] = max(g[i], D - q / law.normal)
     works[WORK.flow] += 0.5 * (normal[i] + q) * (g[i] - before) * size
     limit = min(law.friction * q, 2 * b * law.skin)
     T = min(max(stuck, -limit), limit)
     mean = 0.5 * (sheared + T) * size / law.shear
-    works[WORK.shear] += mean * (trial - stuck)
-    works[WORK.friction if law.friction * q <= 2 * b * law.skin else WORK.shear] += mean * (stuck - T)
+    slipped = mean * (trial - held + stuck - T)
+    works[WORK.shear] += mean * (held - stuck)
+    works[WORK.friction if law.friction * q <= 2 * b * law.skin else WORK.shear] += slipped
     normal[i], shift[i] = q, T / law.shear
     return q, T
 
@@ -253,29 +230,39 @@ def slide(groove: Groove, depth: float, place: float, law: FlowLaw) -> tuple[flo
     state[AT.depth], state[AT.place] = depth, place
     middle = place if law.ploughs else 0.0  # a tip that is flattened takes its cells along
     first, last = window(groove, depth, middle)
-    state[AT.widest] = max(state[AT.widest], sqrt(2 * law.R * max(depth, 0.0)))
-    if state[AT.widest] == 0.0:
+    state[AT.deepest] = max(state[AT.deepest], depth)
+    if state[AT.deepest] <= 0.0:
         return 0.0, 0.0
+    # no more rises beside the contact than what flows pays for: flow never gives energy
+    flat = 1.0 - 2.0 * state[AT.dent] / (state[AT.deepest] + state[AT.dent])
+    rises = min(state[AT.sinks] - flat, state[AT.pays])
+    state[AT.sinks] = sinks = state[AT.sinks] - rises
+    flow, lift = groove.works[WORK.flow], 0.0
     H, K = strengths(groove, law)
     F_n, F_t, ridge, volume, front, touching = 0.0, 0.0, 0.0, 0.0, 0, 0
     way = 1 if moved > 0.0 else -1
     for step in range(last - first + 1):
         c = first + step if way > 0 else last - step  # from the rear to the front
         i, x = c % CELLS, (c + 0.5) * size - middle
-        height, s = outline(groove.tip, x)
+        height, s, rate = outline(groove.tip, x, sinks)
         D = depth - height
         if D <= g[i]:
             release_cell(groove, i, law)
             continue
-        s, before = s if law.ploughs else 0.0, g[i]
+        s, before, bore = s if law.ploughs else 0.0, g[i], groove.normal[i]
         ahead = s * moved > 0.0
         q, T = press_cell(groove, i, D, moved - s * sunk, state[AT.ridge] if ahead else 0.0, H, K, law)
         touching += 1
+        lift += 0.5 * (bore + q) * rate * size
+        state[AT.dent] = max(state[AT.dent], g[i])
         F_n += (q - T * s) * size
         F_t -= (T + q * s) * size
         if ahead:
             volume += min(max(g[i] - before - max(sunk, 0.0), 0.0), s * moved) * size
             ridge, front = max(ridge, -g[i]), c
+    flow = groove.works[WORK.flow] - flow
+    groove.works[WORK.flow] -= lift * rises
+    state[AT.pays] = max(flow + min(flow - lift * rises, 0.0), 0.0) / lift if lift > 0.0 else 0.0
     state[AT.ridge] = ridge
     state[AT.slid] += abs(moved) if F_n > 0.0 else 0.0
     if volume > 0.0:
@@ -302,7 +289,7 @@ def meets(groove: Groove, depth: float, place: float, law: FlowLaw) -> bool:
     first, last = window(groove, depth, middle)
     for c in range(first, last + 1):
         x = (c + 0.5) * groove.size - middle
-        if depth - outline(groove.tip, x)[0] > groove.depth[c % CELLS]:
+        if depth - outline(groove.tip, x, groove.state[AT.sinks])[0] > groove.depth[c % CELLS]:
             return True
     return False
 

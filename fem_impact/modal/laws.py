@@ -6,13 +6,14 @@ from math import atan, cos, inf, pi, sin, sqrt, tan
 import numpy as np
 
 from fem_impact.case.case import Case
-from fem_impact.modal.groove import ACROSS, LONGEST, Flank, half_length
+from fem_impact.modal.groove import ACROSS, LONGEST
 from fem_impact.modal.groove import AT as IN_GROOVE
 from fem_impact.modal.hertz import springs_over
 from fem_impact.modal.landing import height_of, in_body, lay_flat
 from fem_impact.modal.motion import AT, SITE, ModalState, Sites, Start, Touched
 from fem_impact.modal.rod import ModalRod
 from fem_impact.modal.sites import lowest, settle, skin
+from fem_impact.modal.tip import Flank, half_length
 from fem_impact.modal.touch import LAID
 from fem_impact.physics.contact import ContactPair
 from fem_impact.physics.contact_law import ContactLaw, FlowLaw, contact_law, flow_law
@@ -107,7 +108,8 @@ def set_law(held: Touched, s: int, law: ContactLaw, flow: FlowLaw, energy: float
     row[SITE.known], row[SITE.awake], row[SITE.wake] = 1.0, 0.0, 0.0
     held.law[s], held.flow[s] = law, flow
     held.place[s], held.width[s], held.shift[s] = springs_over(widest)
-    held.state[s, IN_GROOVE.last], held.size[s] = -1.0, widest / ACROSS
+    held.state[s, IN_GROOVE.last], held.state[s, IN_GROOVE.sinks] = -1.0, 1.0
+    held.size[s] = widest / ACROSS
     held.tip[s, 0], held.tip[s, 1:] = flow.R1, inf
 
 

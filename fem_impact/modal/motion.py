@@ -6,6 +6,7 @@ import numpy as np
 
 from fem_impact.arrays import Array, Bools, Ints
 from fem_impact.modal.flat import Flats
+from fem_impact.modal.groove import AT as IN_GROOVE
 from fem_impact.modal.groove import CELLS
 from fem_impact.physics.contact_law import ContactLaw, FlowLaw
 
@@ -196,7 +197,7 @@ class Touched(NamedTuple):
     site : (s, 22) see `SiteIndex`
     law, flow : (s, 10), (s, 17) numbers of a `ContactLaw` and a `FlowLaw`
     place, width, shift : (s, SPRINGS) tangential springs: distances from the centre, widths and shifts, m
-    depth, normal, sheared : (s, CELLS) cells, and ``state`` (s, 8), ``works`` (s, 3), J, ``tip`` (s, 7),
+    depth, normal, sheared : (s, CELLS) cells, and ``state`` (s, 11), ``works`` (s, 3), J, ``tip`` (s, 7),
         its radius, m, and the numbers of both flanks, and ``size`` (s,), m, of a
         `fem_impact.modal.groove.Groove`
     work_t : (s,) work of the tangential force, J
@@ -232,7 +233,7 @@ class Touched(NamedTuple):
         springs = rows(SPRINGS), rows(SPRINGS), rows(SPRINGS)
         cells = rows(CELLS), rows(CELLS), rows(CELLS)
         once = np.zeros(sites), np.zeros(sites)
-        whole = *laws, *springs, *cells, rows(8), rows(3), rows(7), *once
+        whole = *laws, *springs, *cells, rows(len(IN_GROOVE)), rows(3), rows(7), *once
         return cls(rows(len(SITE)), *whole, Flats.none(), over_speed)
 
 

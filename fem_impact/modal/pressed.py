@@ -30,10 +30,10 @@ def pressed_sites(case: Case, rod: ModalRod, held: Touched) -> tuple[ContactSite
 def _pressed(case: Case, rod: ModalRod, held: Touched, s: int) -> ContactSite:
     """Return a site with a contact of its own."""
     flow, of = FlowLaw(*held.flow[s].tolist()), held.site[s]  # `flow_of` would be compiled in each process
-    across = 2.0 * of[SITE.deepest] if flow.yields else of[SITE.deepest]  # a Hertzian contact is narrower
+    dent = float(held.depth[s].max()) if flow.yields else 0.0
+    across = of[SITE.deepest] + dent  # as wide as `fem_impact.modal.groove` says
     half, wide = sqrt(flow.R1 * across), sqrt(flow.R2 * across)
     middle = skin(rod.sites, s, float(of[SITE.turned]))[0] - _first(case)
-    dent = float(held.depth[s].max()) if flow.yields else 0.0
     depth = _of_barrier(case, float(of[SITE.deepest]), dent, bool(flow.ploughs))
     return _site([of], middle - half, middle + half, 2.0 * wide, depth)
 

@@ -7,9 +7,10 @@ from fem_impact.fem.kernels import inlined
 from fem_impact.fem.sliding import factor_at
 from fem_impact.modal.flat import LAW, flat_energy, flat_meets, press_flat
 from fem_impact.modal.groove import AT as IN_GROOVE
-from fem_impact.modal.groove import WORK, Flank, Groove, Tip, meets, move_apart, slide, stored_energy
+from fem_impact.modal.groove import WORK, Groove, meets, move_apart, slide, stored_energy
 from fem_impact.modal.hertz import grip, press, stored
 from fem_impact.modal.motion import AT, CLOCK, SITE, ModalState, Modes, Sites, Springs, Start, Touched
+from fem_impact.modal.tip import Flank, Tip
 from fem_impact.physics.contact_law import ContactLaw, FlowLaw
 
 OWN, LAID = 1.0, 2.0  # what a site that is known has: a law of its own, or that of a flat part

@@ -10,9 +10,11 @@ none of them from an impact:
 
 - hardness H = 3 times the flow stress at the strain .2 a/R (Tabor 1951, The Hardness of Metals), and below
   that Johnson's expanding cavity (1985, Contact Mechanics, eq 6.32),
-- of a tip, whose flanks meet the contact at an angle theta, (1 + pi/2 - theta) / (1 + pi/2)
-  of that: by Hencky's relation pressure grows by 2 k times the angle by which slip lines turn on their way
-  from a free surface to the contact. Tabor's 3 is that of dents, lip and slope included,
+- of a tip that is flattened, whose steeper flank meets the contact at an angle theta,
+  (1 + pi/2 - theta) / (1 + pi/2) of that: by Hencky's relation pressure grows by 2 k times the angle by which
+  slip lines turn on their way from a free surface to the contact, and metal flows to that side where they
+  turn least (the least upper bound, Hill 1950); of one in its groove the mean of both flanks counts. Tabor's
+  3 is that of dents, lip and slope included,
 - shear yield stress k = sigma(1) / sqrt(3) of the skin, von Mises, which is sheared by strains of about one;
   that of the weaker body of two that flow.
 
@@ -96,6 +98,7 @@ def thornton(ratio: float) -> float:
     return float(sqrt(6 * sqrt(3) / 5) * sqrt(1 - y**2 / 6) * losses)
 
 
+BEGINS = 1.1  # mean pressure over the yield stress at which a round contact begins to yield (Johnson)
 FULLY_PLASTIC = 3.0  # H over the flow stress (Tabor)
 REPRESENTATIVE = 0.2  # strain of an indentation over a/R (Tabor)
 SKIN_STRAIN = 1.0  # of the sheared skin
@@ -158,12 +161,12 @@ def longer(ratio: float) -> float:
 def flow_law(pair: ContactPair, rod: HardeningLaw | None, barrier: HardeningLaw | None) -> FlowLaw:
     """Return the law of two bodies and their flow curves, None of one that does not yield.
 
-    The softer body flows, at the strain rate of the indentation, if the first contact reaches its hardness.
-    A table of its flow stress is stood for by the nearest power law.
+    The softer body flows, at the strain rate of the indentation, if the first contact reaches the pressure at
+    which a round one begins to yield. A table of its flow stress is stood for by the nearest power law.
     """
     size, soft, E_star = pair.estimate, pair.softer, pair.modulus
     R1, R2 = size.R1, size.R2
-    flows = soft is not None and size.pressure >= LIMIT_PRESSURE * soft.yield_stress
+    flows = soft is not None and size.pressure >= BEGINS * soft.yield_stress
     both = [(law.power, metal == soft) for law, metal in ((barrier, pair.barrier), (rod, pair.rod)) if law]
     both.sort(key=lambda one: not one[1])
     curve, other, *_ = (*(power for power, _ in both), *2 * [Hardening(inf, 0.0, 0.0)])
@@ -186,7 +189,7 @@ def flow_law(pair: ContactPair, rod: HardeningLaw | None, barrier: HardeningLaw 
         exponent=curve.exponent,
         skin=skin,
         friction=pair.f,
-        ploughs=pair.barrier_conforms,
+        ploughs=flows and pair.barrier_yields and soft == pair.barrier,
         yields=flows,
         other_yield_stress=other_faster * other.yield_stress,
         other_slope=other.slope,

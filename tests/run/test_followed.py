@@ -254,10 +254,10 @@ def test_a_ball_on_its_dent_rebounds_nearly_elastically_by_modes_as_by_finite_el
     data["projectile"] = {"shape": "ball", "diameter": "20 mm", "material": material}
     outcome = simulate(read_dict(data), "modal")
     first, second = outcome.strikes.each
-    assert first.e < 0.65
+    assert first.e < 0.66
     assert 0.98 < second.e < 1.0002  # gravity acts over the depth of its dent
     assert second.force == pytest.approx(first.force, rel=0.02)
-    assert second.plastic < 0.012 * first.plastic
+    assert second.plastic < 0.02 * first.plastic  # slower, steel yields at a lower stress
     told = " ".join(texts(outcome.validity.limitations, "model"))
     assert "of which 2 meet the dents of earlier ones" in told
     assert "land in the dent" not in told
@@ -295,7 +295,7 @@ def test_half_widths_grow_from_the_models_own_as_the_sequence_goes_on(steep):
     loss = max(steep.half_width(1, "E_after_J"), steep.half_width(1, "W_friction_J"))
     assert steep.half_width(1, "E_plastic_J") == pytest.approx(loss, rel=1.0)
     assert times[0] == 0.0
-    assert times[-1] > 5.0 * times[1] > 0.0
+    assert times[-1] > 2.0 * times[1] > 0.0
     assert 0.0 < steep.friction_half < steep.friction
 
 

@@ -109,7 +109,7 @@ def test_layers_of_one_material_leave_the_reduced_model_as_it_is():
         for layers in ((), same, (Layer(0.5e-3, load("layered").barrier.struck),))
     ]
     assert moved[1] == pytest.approx(moved[0], rel=1e-6)
-    assert abs(moved[2] - moved[0]) > 0.01
+    assert abs(moved[2] - moved[0]) > 0.002
 
 
 def test_a_thin_soft_layer_bears_more_than_its_ultimate_stress_on_a_hard_base():
