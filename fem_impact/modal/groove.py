@@ -6,7 +6,8 @@ place X it is pressed by D = d - c (x - X)^2 / (2 R1), g of it for good. Beside 
 sinks, beside a flowing one it does not: c = 2 d / (d + g) of the deepest, so that the contact of a round tip
 has the radius sqrt(R d) of Hertz at first and sqrt(2 R d) in the end (Johnson 1985, Contact Mechanics, 6.3);
 what rises as c falls is flow. Along a straight flank it sinks by s x / 2, too: Abel's transform of the
-outline (Popov & Hess) has .57 s x far from the round part. The tip is met at its slope s, so that
+outline (Popov & Hess) has .57 s x far from the round part. The tip is met at its slope s over the surface
+that sinks, c (x - X) / R1 where it is round, so that
 
     F_n = sum (q - T s) dx,    F_t = -sum (T + q s) dx.
 

@@ -21,8 +21,8 @@ none of them from an impact:
 `STUCK` and `RUN_IN` have no closed form for a growing contact of a hardening body. They were chosen on a grid
 by least difference of e, mu, vibration and sheared skin from finite elements, on six oblique impacts of other
 lengths, tips, angles, speeds, frictions and flow curves than the measured ones
-(`fem_impact.evidence.studies.reduced.CALIBRATION`), with an ellipse in place of Green's curve and another
-form of what is piled up (`fem_impact.modal.groove`), and hold for every scene.
+(`fem_impact.evidence.studies.reduced.CALIBRATION`), with an ellipse in place of Green's curve, another form
+of what is piled up (`fem_impact.modal.groove`) and a contact elastic up to p_y, and hold for every scene.
 """
 
 from math import inf, pi, sqrt

@@ -184,9 +184,9 @@ def _without_each(weights: Array, errors: Array) -> Array:
 
 
 def unit_of(key: str, outcome: Outcome) -> float:
-    """Return 1, the speed, m/s, or that over the radius of gyration, rad/s, as the unit of a key is."""
-    motion, unit = outcome.motion, KEY_TABLE[key].unit
-    speed = hypot(motion.v_n, motion.v_t)
+    """Return 1, the speed over the barrier, m/s, or that over the radius of gyration, by a key's unit."""
+    motion, barrier, unit = outcome.motion, outcome.barrier, KEY_TABLE[key].unit
+    speed = hypot(motion.v_n - barrier.v_bn, motion.v_t - barrier.v_bt)
     return {"m/s": speed, "rad/s": speed / sqrt(motion.k_squared)}.get(unit, 1.0)
 
 
