@@ -14,6 +14,7 @@ from fem_impact.physics.contact import FLAT, ContactPair, impedance
 from fem_impact.physics.contact_law import FULLY_PLASTIC, REPRESENTATIVE, FlowLaw, flow_law
 from rigid import Faceted
 
+NEAR = 0.5  # radii of gyration, beyond which a flank presses too far from its end to act there
 LEANS = 0.5  # rise over length beyond which a straight part that touches with an end does not land flat
 ON_SIDE = 0.25 * pi  # stiffness of a side over E* times its length (Popov 2010)
 RIGID = 1e-9  # share of the contact's give that a barrier which gives nothing is taken to have
@@ -26,7 +27,7 @@ def lay_flat(
 
     It is where its middle lies within `FLAT` depths of the contact of its end (``pair``), over a surface that
     neither end has touched, and it rises by less than `LEANS` of its length; of two parts that meet there the
-    one that leans less. A flank not ``longest``, m, presses into the groove of its end instead.
+    one that leans less. A flank not ``longest``, m, and near its end presses into the groove of that.
     Returns both sites and the stiffness of the whole, N/m; None where nothing is.
     """
     count, free = len(rod.sites.along_t), held.flats.law[:, LAW.known] == 0.0
@@ -43,7 +44,7 @@ def lay_flat(
             continue
         gap = height_of(rod, now, other) - low
         ends = [in_body(case, *skin(rod.sites, k, turn)) for k in (s, other)]
-        short = not _is_face(ends) and dist(*ends) <= longest
+        short = not _is_face(ends) and dist(*ends) <= min(longest, NEAR * sqrt(rod.k2))
         if not short and lean(other) < LEANS and gap <= 2 * FLAT * depth and _is_straight(case, ends, depth):
             f = int(np.argmax(free))
             held.flats.ends[f] = s, other

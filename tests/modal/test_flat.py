@@ -78,6 +78,14 @@ def test_a_long_rod_that_lands_on_its_side_bends_and_does_not_turn():
     assert abs(found.residual) < 1e-5 * found.E_0
 
 
+def test_a_side_that_yields_lands_flat_too():
+    """It pressed into the groove of one end, which threw that up: e was -.5 and the spin 202 rad/s."""
+    copper = {"barrier.material": "copper", "impact.v_n": "-3 m/s"}
+    _, found = land(90, PLAIN, copper)
+    assert abs(found.Omega) < 0.5 and found.V_n > 0.0
+    assert abs(found.residual) < 1e-5 * found.E_0
+
+
 def test_a_dumb_bell_lands_on_two_places_at_once():
     """Two round bulges of one height: nothing lies between them, and each takes half of the impulse."""
     bulges = [["0 mm", "6 mm"], ["10 mm", "10 mm"], ["20 mm", "6 mm"], ["60 mm", "6 mm"], ["70 mm", "10 mm"]]
