@@ -59,7 +59,19 @@ def _may(v: Verdict) -> str:
     if here:
         told = f"vibration changes {number} by {here.told}{doubt(here)}, by {here.model}"
     at = f"at this inclination, {degrees(v.scene.impact.angle):.4g} degrees"
-    return f"{v.answer.upper()}: {at}, {told} (allowed: {v.tolerance:g}). {_anywhere(v)}"
+    return f"{v.answer.upper()}: {at}, {told} (allowed: {v.tolerance:g}).{_beyond(v)} {_anywhere(v)}"
+
+
+def _beyond(v: Verdict) -> str:
+    """Say where a yes holds for the stated friction alone, not over its interval."""
+    most, surface = max(v.over_friction or (0.0,), key=abs), v.scene.surface
+    if v.answer != "yes" or abs(most) <= v.tolerance:
+        return ""
+    ends = f"{surface.friction_low:g},{surface.friction_high:g}"
+    return (
+        f" That is for f = {surface.friction:g} alone: within its interval the change reaches {most:+.3f} by "
+        f"the reduced model; --uncertain surface.friction={ends} answers for all of it."
+    )
 
 
 def doubt(change: VibrationEffect) -> str:

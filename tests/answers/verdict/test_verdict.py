@@ -781,6 +781,17 @@ def test_friction_without_an_interval_is_said_to_count_as_exact():
     assert "no friction" in dict(document(assess(smooth, "modal"))["basis"])["uncertain friction"]
 
 
+@pytest.mark.parametrize(("over", "alone"), [((-0.06, 0.01), True), ((-0.04, 0.01), False), (None, False)])
+def test_a_yes_that_the_interval_of_friction_changes_is_told_as_one_at_its_friction_alone(short, over, alone):
+    """A titanium pin was told YES, and far below that its f changes e by more than what was allowed."""
+    sure = replace(short, here=replace(short.here, band=0.0), tolerance=0.05, over_friction=over)
+    sure = replace(sure, here=replace(sure.here, value=0.01), scene=load("t5b"))
+    told = box(sure)[0][1]
+    assert told.startswith("YES") and ("That is for f = 0.57 alone" in told) == alone
+    if alone:
+        assert "reaches -0.060" in told and "--uncertain surface.friction=0.45,0.7" in told
+
+
 def test_an_undecided_reduced_model_names_the_command_that_may_decide(cli):
     line = ("assess", "t5b", "--fidelity", "modal", "--within", "e 0.02", "--set", "impact.angle=44 deg")
     _, out, _ = cli(*line)
