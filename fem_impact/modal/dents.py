@@ -7,7 +7,7 @@ from typing import Self
 import numpy as np
 
 from fem_impact.arrays import Array
-from fem_impact.modal.groove import ACROSS, CELLS, WORK
+from fem_impact.modal.groove import ACROSS, CELLS, WORK, sunk_beside
 from fem_impact.modal.groove import AT as IN_GROOVE
 from fem_impact.modal.laws import contact_rate, contact_stiffness
 from fem_impact.modal.motion import AT, SITE, ModalState, Sites, Start, Touched
@@ -67,10 +67,7 @@ class Dent:
         state = held.state[s]
         state[IN_GROOVE.first], state[IN_GROOVE.last] = cells[0], cells[-1]
         dent = state[IN_GROOVE.dent] = self.depth.max()
-        state[IN_GROOVE.deepest], state[IN_GROOVE.sinks] = (
-            self.deepest,
-            1.0 - 2.0 * dent / (self.deepest + dent),
-        )
+        state[IN_GROOVE.deepest], state[IN_GROOVE.sinks] = self.deepest, sunk_beside(self.deepest, dent)
         return True
 
 

@@ -93,9 +93,15 @@ class Groove(NamedTuple):
 @allocating_kernel
 def smooth(reach: float, radius: float) -> Groove:
     """Return a surface without a groove for contacts of a round tip of at most a half length ``reach``, m."""
-    state, cells = np.zeros(11), (np.zeros(CELLS), np.zeros(CELLS), np.zeros(CELLS))
+    state, cells = np.zeros(len(AT)), (np.zeros(CELLS), np.zeros(CELLS), np.zeros(CELLS))
     state[AT.last], state[AT.sinks] = -1.0, 1.0
     return Groove(*cells, state, np.zeros(3), Tip(radius, ROUND, ROUND), reach / ACROSS)
+
+
+@inlined
+def sunk_beside(deepest: float, dent: float) -> float:
+    """Return how far the surface sinks beside a tip at its deepest, m, with a deepest cell of a depth, m."""
+    return 1.0 - 2.0 * dent / (deepest + dent)
 
 
 @inlined
@@ -235,8 +241,7 @@ def slide(groove: Groove, depth: float, place: float, law: FlowLaw) -> tuple[flo
     if state[AT.deepest] <= 0.0:
         return 0.0, 0.0
     # no more rises beside the contact than what flows pays for: flow never gives energy
-    flat = 1.0 - 2.0 * state[AT.dent] / (state[AT.deepest] + state[AT.dent])
-    rises = min(state[AT.sinks] - flat, state[AT.pays])
+    rises = min(state[AT.sinks] - sunk_beside(state[AT.deepest], state[AT.dent]), state[AT.pays])
     state[AT.sinks] = sinks = state[AT.sinks] - rises
     flow, lift = groove.works[WORK.flow], 0.0
     H, K = strengths(groove, law)
