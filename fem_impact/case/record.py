@@ -52,6 +52,10 @@ class BodyRecord:
         """Return the record with so many times the room around it."""
         return replace(self, reach=factor * self.reach, spread=factor * self.spread)
 
+    def and_touched(self, places: Array) -> "BodyRecord":
+        """Return the record with more ``places`` (k, 3) of skin that was pressed."""
+        return replace(self, touched=np.concatenate([self.touched, places]))
+
 
 @dataclass(frozen=True, slots=True)
 class Site:

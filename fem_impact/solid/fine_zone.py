@@ -7,11 +7,13 @@ Finer meshes move work from friction into plastic work right below the surface.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from fem_impact.arrays import Array, Ints
+from fem_impact.case.record import ContactRecord
 from fem_impact.fem.hexmodes import CORNERS, SIGNS
 from fem_impact.solid.contact.surface import SurfaceContact
 from fem_impact.solid.model import Model
@@ -83,6 +85,7 @@ def _work_above(zone: YieldingZone, nodes: Array) -> float:
 
 DEEP = 0.25  # depth over the tip size at which skin outside the contact stops the run
 LEVEL = 1e-9  # m, within which a node lies on the barrier's face
+SQUARE = np.array([[False, False], [True, False], [True, True], [False, True]])  # corners of a face in order
 PROOF_STRAIN = 0.002  # conventional proof strain: below it an element has hardly yielded
 
 
@@ -99,9 +102,11 @@ class SkinWatch:
 
     def __init__(self, model: Model, bends: bool = False) -> None:
         contact, mesh = model.contact, model.geometry.rod.mesh
-        skin = model.layout.rod[np.unique(mesh.faces_with(SKIN))]
-        touching = contact.rod.places if isinstance(contact, SurfaceContact) else skin
-        self.places = skin[~np.isin(skin[:, 2], touching[:, 2])]
+        skin = np.unique(mesh.faces_with(SKIN))
+        places = model.layout.rod[skin]
+        touching = contact.rod.places if isinstance(contact, SurfaceContact) else places
+        outside = ~np.isin(places[:, 2], touching[:, 2])
+        self.nodes, self.places = skin[outside], places[outside]
         self.ground = model.ground
         self.top = _top(model) if bends else None
         self.lowest = np.inf
@@ -131,6 +136,30 @@ class SkinWatch:
 
         nodes, cells = self.top
         return np.asarray(n - LinearNDInterpolator(cells, x[nodes[:, 2]], fill_value=0.0)(t, np.abs(b)))
+
+    def with_landed(self, record: ContactRecord, model: Model, x: Array) -> ContactRecord:
+        """Return the record with skin that came down outside, if that ended the run, as touched.
+
+        The mesh of the next run is fine there too. Cells outside are wide: the skin between two nodes counts
+        as low as a straight line between them.
+        """
+        if not self.reason:
+            return record
+        mesh = model.geometry.rod.mesh
+        heights = np.full(len(mesh.points), np.inf)
+        heights[self.nodes] = self._heights(x)
+        quads = mesh.faces_with(SKIN)
+        quads = quads[(heights[quads] < 0).any(axis=1) & np.isfinite(heights[quads]).all(axis=1)]
+        widest = np.ptp(mesh.points[quads], axis=1).max(initial=0.0)
+        s = np.linspace(0.0, 1.0, 2 + int(widest / record.rod.edge))
+        at = np.stack(np.meshgrid(s, s), axis=-1).reshape(-1, 2)
+        shape = np.prod(np.where(SQUARE, at[:, None], 1 - at[:, None]), axis=2)  # (places, corners)
+        low = shape @ heights[quads].T < 0
+        rod, now = (
+            np.einsum("pc,qcd->pqd", shape, of[quads])[low] for of in (mesh.points, x[model.layout.rod])
+        )
+        barrier = record.barrier and record.barrier.and_touched(now * (1.0, 1.0, 0.0))
+        return replace(record, rod=record.rod.and_touched(rod), barrier=barrier)
 
     def below(self) -> str:
         """Say that skin went below the barrier's surface, an empty string where none did."""

@@ -258,7 +258,7 @@ def _result(
             *limitations("resolution", *outside_zones(model, watchers.skin)),
         ),
         record=replace(
-            watchers.contact.record(),
+            watchers.skin.with_landed(watchers.contact.record(), model, state.x),
             left=left_zones(model, watchers.skin),
             crushed=bool(watchers.guard.reason),
         ),

@@ -12,7 +12,9 @@ from fem_impact.fem.geometry import build_geometry
 from fem_impact.run.simulate import simulate
 from fem_impact.run.solid import reduce
 from fem_impact.scene.shipped import load, replace, replace_all
-from fem_impact.solid.fine_zone import outside_zones
+from fem_impact.solid.build import build
+from fem_impact.solid.contact_watch import ContactWatch
+from fem_impact.solid.fine_zone import SkinWatch, outside_zones
 from fem_impact.solid.run import solve
 
 SCENE = replace(load("t6-17"), "accuracy.tip_size", "0.6 mm")
@@ -144,3 +146,22 @@ def test_nodes_that_leave_the_barriers_zone_are_told_with_what_makes_it_wider():
     for key, value in (("accuracy.fine_zone", "even"), ("accuracy.barrier_size", f"{2e3 * size} mm")):
         assert key in told
         assert Case.of(replace(scene, key, value)).zones.barrier[-1][0] > 1.2 * width
+
+
+def test_skin_that_came_down_elsewhere_has_a_fine_zone_in_the_next_mesh():
+    model = build(Case.of(SCENE))
+    state, watch = model.initial_state(), SkinWatch(model)
+    z = model.geometry.rod.mesh.points[:, 2]
+    tail = model.layout.rod[z > 0.95 * z.max()]
+    before = ContactWatch(model, 1.0, moves=False).record()
+    assert watch.with_landed(before, model, state.x) is before
+    state.x[tail[:, 2]] = -2e-3 + 0.1 * (state.x[tail[:, 0]] - state.x[tail[:, 0]].mean())
+    assert watch.observe(state)
+    after = watch.with_landed(before, model, state.x)
+    skin, under = after.rod.touched, after.barrier.touched
+    assert len(skin) == len(under) > 50 and skin[:, 2].min() > 0.8 * z.max()
+    t = state.x[tail[:, 0]]
+    assert t.min() <= under[:, 0].min() < under[:, 0].max() <= t.max() and not under[:, 2].any()
+    places = np.unique(skin.round(9), axis=0)  # without corners that faces share
+    gap = np.linalg.norm(places[:, None] - places, axis=2) + np.where(np.eye(len(places)), np.inf, 0.0)
+    assert gap.min(axis=1).max() < 1.01 * after.rod.edge  # as close as cells of the record

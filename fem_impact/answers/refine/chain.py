@@ -289,7 +289,8 @@ class LevelChain:
                 continue
             if not record.left or record.crushed or (ended and not last) or repeats == MOST_REPEATS:
                 break
-            known, smaller = (record, level) if ended else (known, smaller)
+            # of a run that stopped what touched so far, and skin that came down outside its zones
+            known, smaller = (record, level) if ended else (together([known, record]), smaller)
             known, room = replace(known, crushed=before.crushed), 2.0 * room
             before = known.wider(room)  # a record has the room of a first run
         self.done.append(replace(level, wall_s=max(level.wall_s, forecast.now() - begun)))

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from fem_impact.answers.refine import level as level_module
@@ -145,6 +146,22 @@ def test_what_left_its_zones_counts_where_no_repeat_comes_to_its_end(level, ends
     assert levels.done[-1].left.endswith(
         "after 0 repeats with more room. Another repeat has no outcome. It was given up."
     )
+
+
+def test_a_level_that_stopped_where_skin_came_down_runs_again_with_room_there(level, monkeypatch):
+    """What a run that ended knew before stays known: what touched until a stop is not all that will."""
+    far, ran = np.array([[0.0, 0.0, 0.02]]), []
+
+    def stops(scene, fidelity, options, case):
+        ran.append(case)
+        validity = replace(level.outcome.validity, finished=len(ran) > 1)
+        record = replace(level.record, rod=replace(level.record.rod, touched=far), left=len(ran) == 1)
+        return replace(level.outcome, validity=validity), record
+
+    monkeypatch.setattr(level_module, "simulate_recorded", stops)
+    LevelChain(Case(QUICK), done=[level])._run_level(2, Turns())
+    first, again = (case.record.rod.touched for case in ran)
+    assert (again == np.concatenate([first, far])).all()
 
 
 def test_a_level_whose_thin_rows_are_crushed_runs_again_without_them(level, monkeypatch):
