@@ -25,18 +25,19 @@ COUNTLESS = {"_nrt": False}  # no reference counts of arrays
 def _cache_folder() -> Path:
     """Return the cache folder, named after a digest of all sources with compiled code.
 
-    numba checks one source file per kernel only: a kernel would keep an outdated copy of a helper inlined
-    from another file.
+    It lies in the folder that NUMBA_CACHE_DIR states, else beside this file. numba checks one source file
+    per kernel only: a kernel would keep an outdated copy of a helper inlined from another file.
     """
     digest = hashlib.sha256()
     for path in sorted(Path(__file__).parents[1].rglob("*.py")):
         source = path.read_bytes()
         if b"fem_impact.fem.kernels import" in source or b"numba" in source:
             digest.update(source)
-    return Path(__file__).parent / "__pycache__" / f"kernels-{digest.hexdigest()[:16]}"
+    folder = os.environ.get("NUMBA_CACHE_DIR") or Path(__file__).parent / "__pycache__"
+    return Path(folder) / f"kernels-{digest.hexdigest()[:16]}"
 
 
-if "NUMBA_CACHE_DIR" not in os.environ and os.access(Path(__file__).parent, os.W_OK):
+if os.environ.get("NUMBA_CACHE_DIR") or os.access(Path(__file__).parent, os.W_OK):
     SETTINGS.CACHE_DIR = str(_cache_folder())
 
 

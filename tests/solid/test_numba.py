@@ -99,6 +99,20 @@ def test_numba_has_what_the_kernels_use(part):
         pytest.fail(f"numba {numba.__version__} changed {part}: {error!r}", pytrace=False)
 
 
+def test_kernels_of_other_sources_have_another_folder_where_a_user_states_it_too(monkeypatch, tmp_path):
+    from fem_impact.fem import kernels
+
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "stated"))
+    copy = tmp_path / "package" / "fem" / "kernels.py"
+    copy.parent.mkdir(parents=True)
+    monkeypatch.setattr(kernels, "__file__", str(copy))
+    folders = []
+    for source in ("import numba", "import numba  # changed"):
+        copy.write_text(source, encoding="utf-8")
+        folders.append(kernels._cache_folder())
+    assert folders[0] != folders[1] and {one.parent for one in folders} == {tmp_path / "stated"}
+
+
 def test_the_locked_and_the_present_numba_are_in_the_tested_range():
     listed = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["dependencies"]
     asked = {one.name: one.specifier for one in map(Requirement, listed)}
