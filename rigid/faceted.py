@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from .arms import Arms, point_arms
 from .chord import mirrored_chord
 from .inputs import ArrayLike, Floats, ShapeError, floats
-from .rounds import Round, cut, hull, rounds_of
+from .rounds import Round, cut, hull, rounds_of, steps_of
 from .slenderness import slenderness
 from .touch import Touch, level_part, on_side, require_inclination
 from .turned import CORNER
@@ -143,16 +143,11 @@ class Faceted:
     def tip_curvature(self, alpha: float) -> float:
         """Radius of curvature, m, of the outline in the plane of motion at the lowest point; 0 on an edge.
 
-        Facets that meet at an angle above `CORNER` make an edge.
+        Facets that meet at an angle above `CORNER`, or between straight sides, make an edge.
         """
         k = int(self._lowest(np.array(alpha)))
-        before, after = (self._outline[[k - 1, (k + 1) % len(self._outline)]] - self._outline[k]) * [
-            [-1],
-            [1],
-        ]
-        lengths = np.hypot(*before), np.hypot(*after)
-        turn = math.acos(float(np.clip(before @ after / (lengths[0] * lengths[1]), -1.0, 1.0)))
-        return float(min(lengths)) / turn if 0.0 < turn < CORNER else 0.0
+        turn, shorter, joined = steps_of(self._outline, CORNER)
+        return float(shorter[k] / turn[k]) if joined[k] or joined[k - 1] else 0.0
 
     def reaches(self, alpha: float, height: float) -> tuple[float, float]:
         """As `Projectile.reaches`, of the convex outline."""

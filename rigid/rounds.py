@@ -10,6 +10,7 @@ from itertools import accumulate, pairwise
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .inputs import Floats
 
@@ -77,16 +78,10 @@ def rounds_of(line: Floats, corner: float = 0.0) -> list[Round]:
     On a curve a vertex is the arc that touches both sides, the shorter one in its middle, so that a body
     rolls on without a jump; neighbours on one circle are one arc.
     """
-    step = np.roll(line, -1, axis=0) - line
-    after, length = np.arctan2(step[:, 1], step[:, 0]), np.hypot(*step.T)
-    first = int(np.argmin(np.roll(after, 1)))
-    line, after, length = (np.roll(part, -first, axis=0) for part in (line, after, length))
-    low = np.roll(after, 1)  # inclination at which the side before it lies on the barrier
-    turn = (after - low) % TURN
-    high = low[0] + np.cumsum(turn)
-    shorter, smooth = np.minimum(length, np.roll(length, 1)), turn < corner
-    steps = np.where(smooth, shorter, 0.0)
-    joined = smooth & np.roll(smooth, -1) & (length <= LONG * np.maximum(steps, np.roll(steps, -1)))
+    first = int(np.argmin(np.roll(_directions(line), 1)))
+    line = np.roll(line, -first, axis=0)
+    turn, shorter, joined = steps_of(line, corner)
+    high = _directions(line)[-1] + np.cumsum(turn)  # from the inclination at which a side lies on the barrier
     bend = np.where(joined | np.roll(joined, 1), 0.5 * shorter / np.tan(0.5 * turn), 0.0)
     middle, inside = high - 0.5 * turn, bend / np.cos(0.5 * turn)
     x, z = line[:, 0] - inside * np.sin(middle), line[:, 1] + inside * np.cos(middle)
@@ -94,6 +89,33 @@ def rounds_of(line: Floats, corner: float = 0.0) -> list[Round]:
     columns = (part.tolist() for part in (x, z, bend, high - turn, high, curve))
     same = SAME * float(np.ptp(line, axis=0).max())
     return _merged([Round(*row) for row in zip(*columns, strict=True)], same)
+
+
+def steps_of(line: Floats, corner: float) -> tuple[Floats, Floats, NDArray[np.bool_]]:
+    """Return what makes a curve of the steps of a closed convex polygon (k, 2), m, counterclockwise.
+
+    These are the turn at each vertex, rad, the length, m, of the shorter side there, and whether the side
+    behind it `is_step` of a smooth curve, if a turn above ``corner``, rad, is an edge.
+    """
+    length, after = np.hypot(*(np.roll(line, -1, axis=0) - line).T), _directions(line)
+    turn, shorter = (after - np.roll(after, 1)) % TURN, np.minimum(length, np.roll(length, 1))
+    steps = np.where(turn < corner, shorter, 0.0)
+    return turn, shorter, is_step(length, steps, np.roll(steps, -1))
+
+
+def _directions(line: Floats) -> Floats:
+    """Return the angle (k,), rad, of the side behind each vertex (k, 2) of a closed line."""
+    step = np.roll(line, -1, axis=0) - line
+    return np.asarray(np.arctan2(step[:, 1], step[:, 0]))
+
+
+def is_step(length: Floats, start: Floats, end: Floats) -> NDArray[np.bool_]:
+    """Return whether each side of an outline is a step of a smooth curve, no straight part between edges.
+
+    ``length`` (k,), m, of the sides; ``start`` and ``end`` (k,), m, the shorter side at its two vertices, 0
+    at one that turns more than a curve may.
+    """
+    return np.asarray((start > 0.0) & (end > 0.0) & (length <= LONG * np.maximum(start, end)))
 
 
 def cut(rounds: list[Round], angle: float) -> list[Round]:

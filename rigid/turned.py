@@ -9,7 +9,7 @@ import numpy as np
 from .arms import Arms, point_arms
 from .chord import both_sides, mirrored_chord
 from .inputs import ArrayLike, Floats, ShapeError, TooLongError, floats
-from .rounds import LONG, Round, cut, hull, rounds_of
+from .rounds import LONG, Round, cut, hull, is_step, rounds_of
 from .slenderness import slenderness
 from .touch import LEVEL, Touch, level_part, on_side, require_inclination
 
@@ -255,13 +255,18 @@ class Turned:
         return np.concatenate([[-slope[0]], slope]), np.concatenate([slope, [np.pi]])
 
     def _bends(self) -> Floats:
-        """(k,) radius of curvature of the meridian at each vertex, m; 0 on an edge."""
+        """(k,) radius of curvature of the meridian at each vertex, m; 0 on an edge.
+
+        A vertex between straight parts is an edge, however little the profile turns there.
+        """
         length = np.hypot(*np.diff(self.outline, axis=0).T)
         shorter = np.minimum(np.append(length[0], length), np.append(length, length[-1]))
         low, high = self._normals()
         turn = high - low
-        smooth = (turn > 0.0) & (turn < CORNER)
-        return np.where(smooth, shorter / np.where(smooth, turn, 1.0), 0.0)
+        steps = np.where((turn > 0.0) & (turn < CORNER), shorter, 0.0)
+        joined = is_step(length, steps[:-1], steps[1:])
+        curved = np.append(joined[0], joined) | np.append(joined, joined[-1])
+        return np.where(curved, shorter / np.where(curved, turn, 1.0), 0.0)
 
 
 def _vertices(points: ArrayLike, what: str) -> Floats:

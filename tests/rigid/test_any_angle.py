@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from rigid import Faceted, Projectile, Turned, corner_arms, critical_ratio
+from rigid.turned import CORNER
 
 L, R, RHO = 0.08, 0.0095, 7850.0
 ARC = np.linspace(0.0, pi / 2, 13)
@@ -80,6 +81,16 @@ def test_a_step_of_a_smooth_curve_is_a_point():
     flat = float(np.arctan2(steps[5, 1], steps[5, 0]))
     assert BODIES["round"].touch(flat).length == 0
     assert BODIES["round"].touch(0.0) == (0.0, 0.0, 0.0)
+
+
+def test_a_shoulder_between_straight_sides_is_an_edge_however_little_it_turns():
+    """Taken as a curve it touched beside the body, where the arm d_c was half as long."""
+    body = Turned(np.array([[0.0, 0.0], [0.8 * R, 0.0], [R, L / 3], [R, L]]), [(L, RHO)])
+    turn = np.arctan2(0.2 * R, L / 3)
+    alpha = pi / 2 - 0.5 * turn
+    assert 0.0 < turn < CORNER
+    assert body.contact_point(alpha) == pytest.approx((R, L / 3), rel=1e-12)
+    assert body.tip_curvature(alpha) == 0.0
 
 
 def test_arms_of_a_corner_and_the_critical_ratio_change_their_signs():

@@ -101,7 +101,11 @@ def test_a_part_without_mass_is_refused():
 def chamfered(steps):
     """A bar of 20 mm by 100 mm with chamfers of 3 mm at 45 degrees, with nodes all along them."""
     slope = np.linspace(0.0, 3e-3, steps + 1)
-    side = np.column_stack([7e-3 + slope, slope])
+    return with_side(np.column_stack([7e-3 + slope, slope]))
+
+
+def with_side(side):
+    """A bar 20 mm wide and 100 mm long with these places (x, z) of its side before z = 100 mm."""
     outline = np.vstack([side, [[1e-2, 0.1], [-1e-2, 0.1]], side[::-1] * [-1, 1]])
     # in a file of six digits
     outline = (outline + 1e-8 * np.cos(7.0 * np.arange(len(outline)))[:, None]).round(8)
@@ -112,6 +116,13 @@ def chamfered(steps):
     faces = np.stack([ring, np.roll(ring, -1), np.roll(ring, -1) + count, ring + count], axis=1)
     m = RHO * 2e-6
     return Faceted(points, faces, np.array([[0.0, 0.1, m, 0.0, 0.05 * m, 3e-5 * m, 3.3e-3 * m]]))
+
+
+def test_straight_sides_that_meet_at_a_small_angle_make_an_edge():
+    alpha = np.arctan2(0.03, 3e-3) + np.radians(3.0)
+    body = with_side(np.array([[7e-3, 0.0], [1e-2, 0.03]]))
+    assert body.contact_point(alpha) == pytest.approx((1e-2, 0.03), abs=3e-8)
+    assert body.tip_curvature(alpha) == 0.0
 
 
 @pytest.mark.parametrize("degrees", [10.0, 30.0])
