@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 from fem_impact.arrays import Array
 from fem_impact.scene.material import Material
-from rigid import Body, Faceted, Touch, point_arms
+from rigid import Body, Faceted, Touch, point_arms, sliding_path
 
 LIMIT_PRESSURE = 2.8  # mean pressure of a fully plastic indentation over the yield stress
 SECTION = 1.8412  # first zero of J1': cut-off k R of shear modes within the round section
@@ -160,6 +160,17 @@ class ContactPair:
     def sliding(self) -> float:
         """The velocity, m/s, of the contact point up the slope before the impact, spin included."""
         return self.v_t - self.arms[1] * self.omega
+
+    @cached_property
+    def most_sliding(self) -> float:
+        """The largest speed, m/s, at which the contact point slides in a rigid impact that loses nothing.
+
+        That is when it touches or when it leaves, with friction or without: the normal force turns a leaning
+        rod, so that its tip slides even where it did not at first touch.
+        """
+        (d_c, d_d), (_, k2), fs = self.arms, self.reduced, [0.0, self.f]
+        left = sliding_path(self.v_n, self.v_t, omega=self.omega, e=1.0, f=fs, d_c=d_c, d_d=d_d, k2=k2).motion
+        return float(max(abs(self.sliding), *abs(left.V_t - d_d * left.Omega)))
 
     @cached_property
     def principal_radii(self) -> tuple[float, float]:

@@ -106,17 +106,17 @@ Halves = tuple[Half, Half]
 
 
 def expected_rise(pair: ContactPair, friction: float, halves: Halves) -> float:
-    """Return the rise, K, of the estimated contact at its mean pressure and half its first sliding speed."""
-    q = friction * pair.estimate.pressure * 0.5 * abs(pair.sliding)
-    return steady_flash(pair, q, halves).peak
+    """Return the rise, K, of the estimated contact at its mean pressure and half its largest sliding speed."""
+    speed = 0.5 * pair.most_sliding
+    return steady_flash(pair, friction * pair.estimate.pressure * speed, speed, halves).peak
 
 
-def steady_flash(pair: ContactPair, q: float, halves: Halves) -> Flash:
-    """Return the flash of the estimated contact under an even flux, W/m2, at half its first speed.
+def steady_flash(pair: ContactPair, q: float, speed: float, halves: Halves) -> Flash:
+    """Return the flash of the estimated contact under an even flux, W/m2, that moves at a speed, m/s.
 
     The short-time rise under an even flux is 2 q sqrt(t / pi) over the effusivity.
     """
-    size, speeds = pair.estimate, (0.0, 0.5 * abs(pair.sliding))
+    size, speeds = pair.estimate, (0.0, speed)
     t = np.linspace(0.0, size.duration, 101)
     short = (2 * q * np.sqrt(t / pi) / body.effusivity for body in halves)
     steady = (moving_rise(q, size.radius, v, body) for v, body in zip(speeds, halves, strict=True))
@@ -126,11 +126,12 @@ def steady_flash(pair: ContactPair, q: float, halves: Halves) -> Flash:
 def closed_form(pair: ContactPair, friction_work: float, halves: Halves) -> tuple[Flash, float, float, float]:
     """Return flash, power, W, flux, W/m2, and patch, m2, of the estimated contact.
 
-    The friction work, J, is spread evenly over its patch and its time.
+    The friction work, J, is spread evenly over its patch and its time, at half the first sliding speed.
     """
     size = pair.estimate
     patch, power = pi * size.a_t * size.a_b, friction_work / size.duration
-    return steady_flash(pair, power / patch, halves), power, power / patch, patch
+    flash = steady_flash(pair, power / patch, 0.5 * abs(pair.sliding), halves)
+    return flash, power, power / patch, patch
 
 
 def flash_bound(pair: ContactPair, friction: float, halves: Halves) -> float:

@@ -110,6 +110,22 @@ def test_heating_is_weighed_by_the_rise_to_ignition():
     )
 
 
+def test_a_leaning_rod_heats_its_contact_that_does_not_slide_at_first_touch():
+    """Without friction and loss its contact point leaves at 2 v d_c d_d / (k^2 + d_c^2); f = 0.57 holds it.
+
+    Upright it does not slide: where the scene states what its heat is judged by, that is said.
+    """
+    still = {"impact.v_t": "0 m/s", "heating.ignition": "200 degC"}
+    leaning, upright = (replace_all(load("t5b"), still | {"impact.angle": a}) for a in ("45 deg", "0 deg"))
+    (d_c, d_d), k2 = Case(leaning).contact.arms, Case(leaning).bodies.body.k2
+    slides = 2 * Case(leaning).contact.approach * d_c * d_d / (k2 + d_c**2)
+    assert Case(leaning).contact.most_sliding == pytest.approx(slides)
+    assert "contact-heating" in Case(leaning).active and "contact-heating" not in Case(upright).active
+    said = [one.text for one in Case(upright).limitations if "heating.ignition, 473.15 K" in one.text]
+    assert len(said) == 1 and 'effects = ["auto", "contact-heating"]' in said[0]
+    assert not [one for one in Case(leaning).limitations if "heat of the contact is not" in one.text]
+
+
 def test_the_contact_is_that_of_its_own_approach():
     """A spin that brings the tip down as fast as a fall without it makes the same contact."""
     stated = load("t5b")
