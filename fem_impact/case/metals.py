@@ -17,7 +17,7 @@ from fem_impact.scene.types import Heating
 from fem_impact.scene.units import format_quantity
 
 RATES = (1e2, 1e3, 1e4)  # 1/s, at which flow stresses are told
-HOT = 0.3  # expected flash rise over that to ignition: finite elements gave up to 3.3 times one that is no more
+HOT = 0.3  # expected flash rise over that to ignition; finite elements gave up to 3.3 times the expected rise
 YIELDS = {"rod": "rod-plasticity", "barrier": "barrier-elastoplastic"}
 
 

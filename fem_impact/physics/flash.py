@@ -106,7 +106,7 @@ Halves = tuple[Half, Half]
 
 
 def expected_rise(pair: ContactPair, friction: float, halves: Halves) -> float:
-    """Return the rise, K, of the estimated contact at its mean pressure and half its largest sliding speed."""
+    """Return the rise, K, of the estimated contact at its mean pressure and half its largest speed."""
     speed = 0.5 * pair.most_sliding
     return steady_flash(pair, friction * pair.estimate.pressure * speed, speed, halves).peak
 

@@ -131,7 +131,7 @@ def test_the_steels_are_those_of_the_paper():
 
 
 def test_a_volume_of_a_solid_holds_as_much_heat_as_its_atoms_can():
-    """3 k for each of the 3e28 to 1.3e29 atoms of 1 m3, less where light atoms do not yet swing (Dulong, Petit)."""
+    """3 k for each of the 3e28 to 1.2e29 atoms of 1 m3, less where light atoms do not yet swing."""
     held = {name: one.rho * one.heat_capacity for name, one in materials().items() if one.heat_capacity}
     assert {name: per_volume for name, per_volume in held.items() if not 1.2e6 < per_volume < 4.5e6} == {}
 

@@ -158,10 +158,14 @@ class LevelChain:
             if self._decided or cut or ran >= finest + MOST_FINER:
                 return None
             finest = max(finest, ran + 1)
-        unresolved = not (record.resolved or self.meshes.is_sized)
-        if unresolved and len(self.done) < self.scene.accuracy.levels + MOST_FINER:
+        least = self.scene.accuracy.levels + (0 if record.resolved else MOST_FINER)
+        if not self.meshes.is_sized and len(self.done) < least:
             finest = max(finest, ran + 1)
-        return next(iter(steps_between(ran, finest)), None)
+        return next(iter(self._steps(ran, finest, len(self.done))), None)
+
+    def _steps(self, ran: int, finest: int, count: int) -> list[int]:
+        """Return the splits of the levels from one that ran, of so many with it, to the finest."""
+        return steps_between(ran, finest, self.scene.accuracy.levels - count)
 
     @property
     def _decided(self) -> bool:
@@ -310,7 +314,7 @@ class LevelChain:
         number, show = len(self.done) + 1, None if run else self.options.progress
         out = self.options.out and self._place(number, repeats, run)
         ends = self.finest, self.meshes.likely(self.done[-1].record if self.done else None)
-        plans = dict.fromkeys(tuple(steps_between(splits, max(end, splits))) for end in ends)  # one or two
+        plans = dict.fromkeys(tuple(self._steps(splits, end, number)) for end in ends)  # one or two
         whole = " to ".join(dict.fromkeys(f"{number + len(of)}" for of in plans))
         name = f"{self.scene.id}, level {number}" + f" of {whole}" * bool(self.done)
         progress = forecast.LevelProgress(show, name, used_s=self.spent_s, limit_s=self.limit_s, begun=begun)

@@ -165,10 +165,14 @@ class LevelMeshes:
         return self._splits[1] if self._bodies.contact.compliant else self._splits[0]
 
 
-def steps_between(ran: int, finest: int) -> list[int]:
-    """Return the splits of the levels from one that ran to the finest, which is one split after another."""
-    steps = []
+def steps_between(ran: int, finest: int, wanted: int) -> list[int]:
+    """Return the splits of the levels from one that ran to the finest, which is one split after another.
+
+    They are as many as ``wanted`` if there are so many splits between, else as few as `JUMP` lets them be.
+    """
+    steps: list[int] = []
     while ran < finest:
-        ran = finest if finest - ran == 1 else min(ran + JUMP, finest - 1)
+        single = finest - ran <= max(wanted - len(steps), 1)
+        ran = ran + 1 if single else min(ran + JUMP, finest - 1)
         steps.append(ran)
     return steps

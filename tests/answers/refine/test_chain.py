@@ -1,6 +1,7 @@
 """Levels of a run: what they find, which of them run, their bands, files, repeats and budget."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -55,10 +56,23 @@ def test_a_pilot_and_two_finer_levels_end_on_the_stated_size(quick):
     assert outcome.provenance.scene_digest == digest(QUICK)
 
 
-@pytest.mark.parametrize(("levels", "splits"), [(2, [1, 2]), (3, [0, 1, 2]), (4, [0, 2, 3])])
+@pytest.mark.parametrize(("levels", "splits"), [(2, [1, 2]), (3, [0, 1, 2]), (4, [0, 1, 2, 3])])
 def test_a_stated_size_is_that_of_the_last_level_unless_more_are_asked_for(levels, splits):
     chained = LevelChain(Case(replace(QUICK, accuracy=replace(QUICK.accuracy, levels=levels))))
     assert chained.meshes.first == splits[0] and chained.finest == splits[-1]
+    assert chained._steps(splits[0], splits[-1], 1) == splits[1:]
+
+
+def test_a_contact_found_wider_than_before_takes_no_level_away_that_is_stated():
+    """The second of three levels skipped a halving for a narrow contact: a third one halves its cells."""
+    chained = LevelChain(Case(load("t5b")))
+    wide = chained.meshes.expected(0)
+    wide = replace(wide, rod=replace(wide.rod, touched=5 * wide.rod.touched))
+    record, first = replace(wide, resolved=True), chained.meshes.first
+    chained.done = [SimpleNamespace(splits=splits, record=record) for splits in (first, first + 2)]
+    assert chained.finest == first + 2 and chained.following == first + 3
+    chained.done += [SimpleNamespace(splits=first + 3, record=record)]
+    assert chained.following is None
 
 
 def test_the_pilot_of_a_bar_that_lands_on_its_edge_has_a_face_to_touch_in_the_barrier(tmp_path):

@@ -62,14 +62,14 @@ def test_more_levels_run_where_the_last_resolved_nothing(level):
 
 
 def test_a_smaller_step_follows_where_the_budget_does_not_hold_the_larger(level):
-    """More levels asked for give no fewer and no coarser ones."""
+    """Of four levels two are done and two left for three splits; of three one is, for two."""
     for levels in (3, 4):
         scene = replace(QUICK, accuracy=replace(QUICK.accuracy, levels=levels))
-        chain = LevelChain(Case(scene), done=[lasting(level, 10.0)])
+        chain = LevelChain(Case(scene), done=[lasting(level, 10.0)] * (levels - 2))
         one_s, two_s = (chain.forecast_s(level.splits + more) for more in (1, 2))
-        chain.budget_s = 10.0 + 0.5 * (one_s + two_s)
+        chain.budget_s = chain.spent_s + 0.5 * (one_s + two_s)
         assert chain._next == level.splits + 1
-        chain.budget_s = 10.0 + 2.0 * two_s
+        chain.budget_s = chain.spent_s + 2.0 * two_s
         assert chain._next == level.splits + (1 if levels == 3 else 2)
 
 
