@@ -161,11 +161,7 @@ class LevelChain:
         least = self.scene.accuracy.levels + (0 if record.resolved else MOST_FINER)
         if not self.meshes.is_sized and len(self.done) < least:
             finest = max(finest, ran + 1)
-        return next(iter(self._steps(ran, finest, len(self.done))), None)
-
-    def _steps(self, ran: int, finest: int, count: int) -> list[int]:
-        """Return the splits of the levels from one that ran, of so many with it, to the finest."""
-        return steps_between(ran, finest, self.scene.accuracy.levels - count)
+        return next(iter(steps_between(ran, finest, self.scene.accuracy.levels - len(self.done))), None)
 
     @property
     def _decided(self) -> bool:
@@ -314,7 +310,8 @@ class LevelChain:
         number, show = len(self.done) + 1, None if run else self.options.progress
         out = self.options.out and self._place(number, repeats, run)
         ends = self.finest, self.meshes.likely(self.done[-1].record if self.done else None)
-        plans = dict.fromkeys(tuple(self._steps(splits, end, number)) for end in ends)  # one or two
+        left = self.scene.accuracy.levels - number
+        plans = dict.fromkeys(tuple(steps_between(splits, end, left)) for end in ends)  # one or two
         whole = " to ".join(dict.fromkeys(f"{number + len(of)}" for of in plans))
         name = f"{self.scene.id}, level {number}" + f" of {whole}" * bool(self.done)
         progress = forecast.LevelProgress(show, name, used_s=self.spent_s, limit_s=self.limit_s, begun=begun)

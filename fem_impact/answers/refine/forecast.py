@@ -187,7 +187,7 @@ def require_pilot(pilot: Case, limit_s: float) -> None:
     """Refuse a pilot that surely takes more than ``limit_s``, s (OverBudgetError)."""
     size = pilot.size
     if max(PILOT * size.time, SURELY * setup_of(pilot)) > limit_s:
-        reason, enough = f"The coarsest level would take about {about_s(size.time)}", _for_two_s(size.time)
+        reason, enough = f"The coarsest level would take about {about_s(size.time)}", for_two_s(size.time)
         raise OverBudgetError(f"{reason}: it is not begun. {FOR_TWO.format(enough)}", enough)
 
 
@@ -226,7 +226,7 @@ def advice(number: int, used_s: float, each_s: Sequence[float]) -> tuple[str, in
 FOR_TWO = "For it and a finer one, which tell the error of each number, give a budget of {} s."
 
 
-def _for_two_s(pilot_s: float) -> int:
+def for_two_s(pilot_s: float) -> int:
     """Return a budget, s, that holds two levels, by the time of the first, s."""
     return enough_s(pilot_s, MIDDLE * pilot_s)
 
@@ -348,7 +348,7 @@ class LevelProgress:
             return
         reason = f"It was given up after {about_s(spent_s)}, as the budget does not hold it: it takes about"
         whole_s = spent_s + left_s
-        enough = enough_s(self.used_s, whole_s) if self.duration_s else _for_two_s(whole_s)
+        enough = enough_s(self.used_s, whole_s) if self.duration_s else for_two_s(whole_s)
         more = f"For it give a budget of {enough} s."
         if not self.duration_s:
             more = f"The coarsest level gave no number. {FOR_TWO.format(enough)}"

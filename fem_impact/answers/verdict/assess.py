@@ -106,15 +106,17 @@ class Verdict:
         size, band = abs(self.here.value), self.here.band
         margin, enough = abs(self.tolerance - size), size + band
         digits = digits_apart(margin, band)
-        return (
-            f"an error below {plain(margin, digits)} instead of {plain(band, digits)}; or a change of "
-            f"{plain(enough, digits_apart(self.tolerance, enough))} that may be neglected."
-        )
+        missing = f"an error below {plain(margin, digits)} instead of {plain(band, digits)}"
+        if enough >= 1.0:  # no change that may be neglected
+            return f"{missing}."
+        wider = plain(enough, digits_apart(self.tolerance, enough))
+        return f"{missing}; or a change of {wider} that may be neglected."
 
     @property
     def worst(self) -> vibration.VibrationEffect | None:
         """The largest change over all inclinations, None where only this one is known."""
-        return self.elsewhere and vibration.largest([one for one in (self.here, self.elsewhere) if one])
+        here = [self.here] if self.here and self.here.is_known else []
+        return self.elsewhere and vibration.largest([*here, self.elsewhere])
 
     @property
     def worst_answer(self) -> vibration.Answer:
@@ -177,7 +179,7 @@ def assess(
     steps += [f"the reduced model: {_told(quick)}: {quick.answer(tolerance)}"] if quick else []
     for step in steps:
         tell(step)
-    effect, used, more = quick, "modal", finite_elements(budget_s)
+    effect, used = quick, "modal"
     # where nothing like the scene was computed both ways, the reduced model's error is not known well enough
     open_still = quick is None or not quick.alike or quick.answer(tolerance) == "undecided"
     if fidelity == "solid" or (fidelity == "auto" and open_still):
@@ -198,6 +200,8 @@ def assess(
         if quick and solid and fidelity == "auto" and quick.holds_against(solid, tolerance):
             effect, used, notes = quick, "modal", [*notes, WIDER.format(_told(solid))]
         more = {"fidelity": fidelity, **more} if more and fidelity == "solid" else more
+    else:
+        more = finite_elements(twins(vibration.untargeted(scene))[0], budget_s) if open_still else {}
     off = 0.0 if quick is None or effect is None else abs(quick.value - effect.value)
     others, not_known = _over_angles(scene, of, off) if reduced else (None, ((), ""))
     return Verdict(
@@ -251,14 +255,16 @@ def _over_angles(
         try:
             one = inclined(scene, angle)
             pair = vibration.modal_pair(one)
-            failed = vibration.unfinished(pair, of)
+            if not (failed := vibration.unfinished(pair, of)):
+                change = vibration.modal_effect(one, pair, of).at_least(off)
+                failed = "" if change.is_known else f"{of} changes by {change.told}"
         except SceneError as error:
             failed = str(error)
         if failed:
             missing.append(angle)
             why = why or failed
         else:
-            changes.append(vibration.modal_effect(one, pair, of).at_least(off))
+            changes.append(change)
     return (vibration.largest(changes) if changes else None), (tuple(missing), why)
 
 

@@ -6,11 +6,13 @@ from math import ceil, log2
 from typing import Any, Protocol, TypeVar
 
 from fem_impact.answers.refine.chain import MOST_FINER, LevelChain
-from fem_impact.answers.refine.forecast import about_s
+from fem_impact.answers.refine.forecast import about_s, for_two_s, turns
 from fem_impact.answers.refine.level import LevelRun
+from fem_impact.answers.refine.level_meshes import LevelMeshes
 from fem_impact.answers.refine.places import run_elsewhere
 from fem_impact.answers.verdict.vibration import Answer
 from fem_impact.case.case import Case
+from fem_impact.errors import SceneError
 from fem_impact.jobs.executors import cores
 from fem_impact.options import RunOptions
 from fem_impact.progress import Notice, Progress
@@ -141,9 +143,17 @@ def with_budget(budget_s: int | None) -> Means:
     return {} if budget_s is None else {"budget_s": budget_s}
 
 
-def finite_elements(budget_s: float) -> Means:
-    """Return the means that let finite elements answer within a wall time, s."""
-    return {"fidelity": "solid", "budget_s": budget_s}
+def finite_elements(scene: Scene, budget_s: float) -> Means:
+    """Return the means that let finite elements answer: a wall time, s, that holds two levels of twins.
+
+    None help where finite elements cannot compute the scene.
+    """
+    try:
+        pilot_s = LevelMeshes.of(Case(scene)).pilot.size.time
+    except SceneError:
+        return {}
+    both_s = pilot_s * turns(2, min(AT_ONCE, cores()))
+    return {"fidelity": "solid", "budget_s": max(budget_s, for_two_s(both_s))}
 
 
 def next_step(command: str, more: Means) -> str | None:

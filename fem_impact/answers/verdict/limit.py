@@ -144,7 +144,7 @@ def judge(
     friction = {} if f[0] == f[1] else {FRICTION: f}
     intervals = [interval_of(scene, key, ends) for key, ends in {**friction, **(uncertain or {})}.items()]
     scenes, lacking = _places(scene, intervals), not_reduced(Case(scene).bodies)
-    steps, notes, more = list[str](), list[str](), finite_elements(budget_s)
+    steps, notes = list[str](), list[str]()
     if lacking and fidelity != "modal":
         notes.append(LACKING.format(lacking))
     else:
@@ -179,6 +179,8 @@ def judge(
                 low = [one.high - known[at].value for at, one in solids.items() if at in known]
                 within = worst in known and known[worst].value + max(low) <= limit and not why
                 answer, notes = ("yes", [*notes, CONFIRMED]) if within else ("undecided", notes)
+    else:
+        more = finite_elements(criterion.meshed(scene)[0], budget_s) if answer == "undecided" else {}
     return LimitVerdict(
         scene,
         criterion,

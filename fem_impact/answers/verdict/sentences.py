@@ -314,7 +314,7 @@ def document(v: Verdict, command: str = "fem-impact assess") -> dict[str, Any]:
 def _change_entry(change: VibrationEffect) -> dict[str, Any]:
     return {
         "angle_rad": change.angle,
-        "change": change.value,
+        "change": change.value if change.is_known else None,
         "band": change.band,
         "rests_on": change.model,
         "E_vib_over_E_0": change.E_vib,

@@ -183,8 +183,15 @@ class VibrationEffect:
         return replace(self, band=off, source=f"{self.source} {text}")
 
     @property
+    def is_known(self) -> bool:
+        """Whether the band is smaller than the change of a number between 0 and 1 can be."""
+        return self.band < 1.0
+
+    @property
     def told(self) -> str:
         """Value and band as text."""
+        if not self.is_known:
+            return f"an amount that is not known: its half-width of {self.band:.2g} is as large as it can be"
         return f"{self.value:+.3f} ± {self.band:.3f}"
 
     def answer(self, tolerance: float) -> Answer:

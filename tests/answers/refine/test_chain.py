@@ -10,7 +10,7 @@ from fem_impact.answers.refine import level as level_module
 from fem_impact.answers.refine.chain import LevelChain
 from fem_impact.answers.refine.extrapolate import MeshRuns, level_limit, level_limits, own_limits
 from fem_impact.answers.refine.forecast import Turns
-from fem_impact.answers.refine.level_meshes import LevelMeshes
+from fem_impact.answers.refine.level_meshes import LevelMeshes, steps_between
 from fem_impact.answers.simulate import compiled, simulate
 from fem_impact.case.case import Case
 from fem_impact.case.record import ContactRecord
@@ -60,7 +60,7 @@ def test_a_pilot_and_two_finer_levels_end_on_the_stated_size(quick):
 def test_a_stated_size_is_that_of_the_last_level_unless_more_are_asked_for(levels, splits):
     chained = LevelChain(Case(replace(QUICK, accuracy=replace(QUICK.accuracy, levels=levels))))
     assert chained.meshes.first == splits[0] and chained.finest == splits[-1]
-    assert chained._steps(splits[0], splits[-1], 1) == splits[1:]
+    assert steps_between(splits[0], splits[-1], levels - 1) == splits[1:]
 
 
 def test_a_contact_found_wider_than_before_takes_no_level_away_that_is_stated():

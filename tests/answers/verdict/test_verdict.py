@@ -15,6 +15,7 @@ from fem_impact.answers.refine import extrapolate, forecast
 from fem_impact.answers.refine import level as level_module
 from fem_impact.answers.refine.chain import LevelChain
 from fem_impact.answers.refine.forecast import OverBudgetError
+from fem_impact.answers.refine.level_meshes import LevelMeshes
 from fem_impact.answers.refine.places import run_elsewhere
 from fem_impact.answers.verdict import levels as levels_module
 from fem_impact.answers.verdict import vibration
@@ -540,6 +541,26 @@ def test_inclinations_without_an_answer_are_named_and_leave_the_worst_open(monke
     assert (found.answer, found.worst_answer) == ("yes", "undecided")
 
 
+def test_a_change_known_no_better_than_it_can_be_is_no_number(monkeypatch):
+    """A number between 0 and 1 changes by 1 at most: 80 degrees told -0.871 +- 1.657."""
+    real = vibration.modal_effect
+
+    def vague(scene, pair, of):
+        steep = math.degrees(scene.impact.angle) > 72
+        return replace(real(scene, pair, of), **({"value": -0.871, "band": 1.657} if steep else {}))
+
+    monkeypatch.setattr(vibration, "modal_effect", vague)
+    found = assess(load("t5b"), "modal", tolerance=0.2)
+    assert math.degrees(found.worst.angle) < 72 and found.worst.band < 1
+    assert [round(math.degrees(angle)) for angle in found.not_known[0]] == [75, 80]
+    assert "an amount that is not known: its half-width of 1.7" in found.not_known[1]
+    steep = assess(replace_all(load("t5b"), {"impact.angle": "75 deg"}), "modal")
+    told = document(steep)
+    assert "-0.871" not in str(told["box"]) + told["missing"] and told["here"]["change"] is None
+    assert steep.answer == "undecided" and steep.worst is steep.elsewhere
+    assert "that may be neglected" not in steep.missing
+
+
 @pytest.mark.parametrize(
     ("means", "words"),
     [({"fidelity": "rigid"}, "fidelity"), ({"tolerance": 2.0}, "tolerance"), ({"budget_s": -1.0}, "budget")],
@@ -797,6 +818,9 @@ def test_an_undecided_reduced_model_names_the_command_that_may_decide(cli):
     _, out, _ = cli(*line)
     command = "fem-impact assess t5b --set 'impact.angle=44 deg' --within 'e 0.02' --fidelity solid"
     assert f"Next step: {command} --budget '60 s'\n" in out and "Missing: an error below" in out
+    small = cli(*line, "--set", "accuracy.tip_size=0.03 mm")[1].split("--budget '")[1].split(" s'")[0]
+    fine = replace_all(load("t5b"), {"impact.angle": "44 deg", "accuracy.tip_size": "0.03 mm"})
+    assert float(small) > 2 * LevelMeshes.of(Case(fine)).pilot.size.time > 60
     _, out, _ = cli("assess", "t5b", "--fidelity", "modal", "--within", "e 0.5")
     assert "Next step" not in out
 
