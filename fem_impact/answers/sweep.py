@@ -13,7 +13,7 @@ import numpy as np
 
 from fem_impact.answers.report import Request, Sheet, StudyReport, StudyResult, publish
 from fem_impact.answers.simulate import compiled, simulate
-from fem_impact.answers.sweep_results import HIGH, SHORT, Results, SweepRow, require_columns, row_of
+from fem_impact.answers.sweep_results import HIGH, LOW, SHORT, Results, SweepRow, require_columns, row_of
 from fem_impact.answers.vary import Variation, cases, in_unit, listed, measure
 from fem_impact.case.effects.heating import thermal
 from fem_impact.errors import FemImpactError, UsageError, did_you_mean
@@ -257,7 +257,8 @@ def _panel(
 ) -> Panel:
     values, series = results.numbers(name), []
     has_band = name + HIGH in results.table((name,)).names
-    bands = results.numbers(name + HIGH) - values if has_band else None
+    ends = [results.numbers(name + end) for end in (LOW, HIGH)] if has_band else []
+    bands = np.maximum(values - ends[0], ends[1] - values) if ends else None  # one end may be cut
     for title, places in list(curves.items())[:MOST_CURVES]:
         known = [at for at in places if np.isfinite(values[at])]
         if known:

@@ -243,9 +243,10 @@ def _ended(row: SweepRow, columns: Sequence[str]) -> list[Cell]:
         return [False, row.reason, *([None] * len(columns))]
     validity, e = row.outcome.validity, KEY_TABLE["e_edge"].of(row.outcome)
     values = row.outcome.to_dict([KEY_TABLE[name] for name in columns if name in KEY_TABLE])
-    for name, band in known_bands(row.outcome).items():
-        limit = values[name] = known(row.outcome.estimate(name)[0])
-        values |= {name + LOW: limit - band, name + HIGH: limit + band}
+    for name in known_bands(row.outcome):
+        values[name] = known(row.outcome.estimate(name)[0])
+        ends = row.outcome.band_of(KEY_TABLE[name]) or (None, None)
+        values |= dict(zip((name + LOW, name + HIGH), ends, strict=True))
     reason = (e.reason if isinstance(e, Unknown) else "") if validity.finished else validity.stopped_because
     target, achieved = validity.accuracy_target, or_none(validity.achieved_error)
     if not reason and isinstance(target, float) and achieved is not None and achieved > target:

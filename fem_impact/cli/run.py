@@ -18,6 +18,7 @@ from fem_impact.errors import RunError, UsageError
 from fem_impact.files.run_directory import is_resumable
 from fem_impact.jobs.executors import cores
 from fem_impact.options import RunOptions
+from fem_impact.outcome.ground import moves, on_the_ground
 from fem_impact.outcome.groups import WRONG_NUMBERS
 from fem_impact.outcome.keys import Key, Num, Unknown, or_none, why_unknown
 from fem_impact.outcome.record import KEY_TABLE, Outcome
@@ -180,7 +181,8 @@ def print_outcome(
         of = ", at the stop of this unfinished run"
     gravity = or_none(ADDED.of(outcome.energy))
     added = "" if gravity is None else f", to which gravity added {outcome.told(ADDED.key, 100.0)} %"
-    lines += ["", *wrapped(f"of the initial energy, E_0 = {_number(outcome.energy.E_0)} J{added}{of}:")]
+    seen = " as seen from the barrier" if moves(outcome) else ""
+    lines += ["", *wrapped(f"of the initial energy{seen}, E_0 = {_number(outcome.energy.E_0)} J{added}{of}:")]
     # the keys of the listed shares of E_0 by their labels
     energy = outcome.energy
     listed = {
@@ -194,6 +196,7 @@ def print_outcome(
     if above := above_modes(outcome.energy):
         lines += [_line(ABOVE, plain(100 * above), "%")]
     lines += [_line("not accounted for", _share(outcome, RESIDUAL), "%")]
+    lines += ["", *wrapped(named(on_the_ground(outcome)))] if moves(outcome) else []
     lines += ["", _line(HEATING, outcome.told(SKIN, 100.0), "%", _changed(spread, SKIN, 100.0))]
     # peak force and flash temperature, where they are known or withheld as e is
     contact = {

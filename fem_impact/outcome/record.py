@@ -28,6 +28,8 @@ ROUND_OFF = 1e-9
 """Size below which a number of a run, SI or a share of E_0, is told as 0."""
 SIGNED = "E_ln_", "E_lt_", "W_gravity_"
 """How those shares of E_0 with half-widths begin that may be below 0."""
+NOT_BELOW_0 = "peak_force_", "dent_", "contact_patch_", "friction_", "flash_rise_", "time_above_"
+"""How other numbers with half-widths begin that are sizes."""
 _version = cache(metadata.version)  # a file is read each time else
 
 
@@ -111,6 +113,21 @@ class Outcome:
         half = halves.get(key.name)
         return (key.of(self) if half is None else limits.get(key.name, key.of(self))), half
 
+    def ends_of(self, key: Key) -> tuple[float, float]:
+        """Return between which ends a number lies: the contact is no colder than before the impact."""
+        at, rise = or_none(self.heat.temperature), or_none(self.heat.rise)
+        if key.path == ("heat", "temperature") and at is not None and rise is not None:
+            return at - rise, inf
+        return ends_of(key)
+
+    def band_of(self, key: Key) -> tuple[float, float] | None:
+        """Return the ends of the band of a number, None where it has none: none beyond `ends_of` it."""
+        value, half = self.estimate(key)
+        if half is None or isinstance(value, Unknown):
+            return None
+        low, high = self.ends_of(key)
+        return min(value, max(low, value - half)), max(value, min(high, value + half))
+
     @property
     def half_widths(self) -> Mapping[str, float] | Unknown:
         """Half-widths by key: of the limits of meshes, of the reduced model about its values."""
@@ -138,7 +155,7 @@ class Outcome:
         if key.banded and abs(value) + (band or 0.0) < least:
             return "0"
         if band is not None:
-            return with_band(scale * value, scale * band, *(scale * end for end in ends_of(key)))
+            return with_band(scale * value, scale * band, *(scale * end for end in self.ends_of(key)))
         return plain(scale * value) if key.banded else plain(scale * value, 4)
 
     def to_dict(self, keys: Iterable[Key] | None = None) -> dict[str, Any]:
@@ -223,9 +240,9 @@ def _key_named(key: Key | str) -> Key:
 
 
 def ends_of(key: Key) -> tuple[float, float]:
-    """Return between which ends a number lies in every model: 0 and 1 of a share of the energy."""
+    """Return between which ends a number lies in every model: 0 and 1 of a share, 0 of a size."""
     share = key.name.endswith("_over_E_0") and not key.name.startswith(SIGNED)
-    return (0.0, 1.0) if share else (-inf, inf)
+    return (0.0, 1.0) if share else (0.0 if key.name.startswith(NOT_BELOW_0) else -inf, inf)
 
 
 def utc_now() -> str:

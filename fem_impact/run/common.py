@@ -39,7 +39,7 @@ def strikes_again(case: Case, V_n: float, Omega: float) -> str:
     faster than it rises. Gravity is left out.
     """
     if not V_n > 0:
-        return f"The mass centre still comes down at {-V_n:.3g} m/s, so that the rod strikes again later."
+        return "The mass centre still comes down, so that the rod strikes again later."
     body = case.contact.body
     if abs(Omega) * hypot(body.length, body.diameter) < V_n:  # no part of it comes down
         return ""

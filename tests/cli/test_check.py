@@ -68,6 +68,7 @@ def test_check_names_segments_layers_plates_and_a_friction_that_counts_as_exact(
         ("layered", "2 mm of steel-4340 on aluminium-6061-t6"),
         ("plate-10mm", "thickness 10 mm"),
         ("moving-barrier", "v_n 2"),
+        ("moving-barrier", "E_0 = 0.3544 J, both as seen from the barrier"),
     ):
         assert words in " ".join(cli("check", scene)[1].split())
     custom = "surface={state='custom', friction=0.3, source='mine'}"

@@ -33,6 +33,23 @@ def test_an_own_rod_has_its_restitution_with_the_arms_of_its_tip(cli, stand):
     assert f"restitution e (paper's arms){0.327:>22}\n" in cli("run", "t5b", "--quiet")[1]
 
 
+def test_a_moving_barrier_has_its_energy_seen_from_it_and_both_bodies_on_the_ground(cli):
+    """A free barrier of 60 times the mass loses what the rod gains, less what the impact loses."""
+    line = ("run", "moving-barrier", "--fidelity", "modal", "--quiet", "--set")
+    out = " ".join(cli(*line, "barrier.mass=10 kg", "--json")[1].split())
+    told = json.loads(out)
+    out = " ".join(cli(*line, "barrier.mass=10 kg")[1].split())
+    assert f"initial energy as seen from the barrier, E_0 = {told['E_0_J']:.4g} J" in out
+    rod = 0.5 * told["mass_kg"] * (told["V_n_m_per_s"] ** 2 + told["V_t_m_per_s"] ** 2)
+    struck = 5.0 * (told["V_bn_m_per_s"] ** 2 + told["V_bt_m_per_s"] ** 2)
+    both = (
+        f"the rod has 0 J before and {rod:.4g} J after; the barrier has 20 J before and {struck:.4g} J after"
+    )
+    assert f"On the ground, 0.5 m v^2: {both}." in out and 0 < rod < 20 - struck < rod + told["E_0_J"]
+    resting = cli("run", "t5b", "--fidelity", "modal", "--quiet")[1]
+    assert "as seen from" not in resting and "On the ground" not in resting
+
+
 def test_changes_are_applied_and_filed_apart(cli, stand):
     code, _, _ = cli("run", "t5b", "--set", "accuracy.tip_size=0.5 mm", "--set", "save.frames=10", "--quiet")
     _, (scene, _, options, *_) = stand.calls[0]

@@ -317,6 +317,25 @@ def test_an_estimate_is_asked_for_by_the_name_of_its_key():
 
 
 @pytest.mark.parametrize(
+    ("name", "value", "half", "ends"),
+    [
+        ("W_friction_over_E_0", 0.1, 0.3, (0.0, 0.4)),
+        ("E_lt_edge_over_E_0", 0.1, 0.3, (-0.2, 0.4)),
+        ("dent_depth_m", 1e-4, 3e-4, (0.0, 4e-4)),
+        ("flash_rise_K", 100.0, 120.0, (0.0, 220.0)),
+        ("flash_temperature_K", 393.15, 120.0, (293.15, 513.15)),
+        ("V_n_m_per_s", 0.1, 0.3, (-0.2, 0.4)),
+        ("dent_depth_m", -1e-5, 3e-4, (-1e-5, 2.9e-4)),
+    ],
+)
+def test_a_band_ends_where_its_number_can_be(name, value, half, ends):
+    """The table of a sweep had dents below 0 and temperatures below that of the surroundings."""
+    hot = {"flash_rise_K": 100.0, "flash_temperature_K": 393.15}
+    run = altered(OUTCOME, **hot | {name: value}, mesh_limit={name: value}, mesh_band={name: half})
+    assert run.band_of(KEY_TABLE[name]) == pytest.approx(ends)
+
+
+@pytest.mark.parametrize(
     ("key", "value", "text"),
     [("dent_volume_m3", 9.32e-11, "9.32e-11"), ("dent_depth_m", 1e-10, "0"), ("W_skin_over_E_0", 2e-10, "0")],
 )

@@ -95,7 +95,7 @@ def test_every_fidelity_says_that_a_rod_strikes_again():
     turned = replace_all(load("t2"), {"impact.angle": "59 deg"})
     outcome = simulate(turned, "rigid")
     assert outcome.motion.V_n < 0
-    assert f"still comes down at {-outcome.motion.V_n:.3g} m/s" in outcome.validity.stopped_because
+    assert "still comes down, so that" in outcome.validity.stopped_because and outcome.motion.V_n < 0
     assert "still comes down" in texts(outcome.validity.limitations, "result")[-1]
     assert not texts(simulate(load("t5b"), "rigid").validity.limitations, "result")
 

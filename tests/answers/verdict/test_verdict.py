@@ -818,8 +818,8 @@ def test_an_undecided_reduced_model_names_the_command_that_may_decide(cli):
     _, out, _ = cli(*line)
     command = "fem-impact assess t5b --set 'impact.angle=44 deg' --within 'e 0.02' --fidelity solid"
     assert f"Next step: {command} --budget '60 s'\n" in out and "Missing: an error below" in out
-    small = cli(*line, "--set", "accuracy.tip_size=0.03 mm")[1].split("--budget '")[1].split(" s'")[0]
-    fine = replace_all(load("t5b"), {"impact.angle": "44 deg", "accuracy.tip_size": "0.03 mm"})
+    small = cli(*line, "--set", "accuracy.tip_size=0.02 mm")[1].split("--budget '")[1].split(" s'")[0]
+    fine = replace_all(load("t5b"), {"impact.angle": "44 deg", "accuracy.tip_size": "0.02 mm"})
     assert float(small) > 2 * LevelMeshes.of(Case(fine)).pilot.size.time > 60
     _, out, _ = cli("assess", "t5b", "--fidelity", "modal", "--within", "e 0.5")
     assert "Next step" not in out
