@@ -17,6 +17,7 @@ def an_outcome(**changed):
     """Return a complete outcome; what a test does not set is a plausible value of its kind, or not known."""
     nulls = {key.name: None for key in KEYS if key.nullable}
     plain = {"scene_id": "t5b", "E_vib_below_floor": False, "E_0_J": 0.39, "mu": 0.5}
+    plain |= {"v_bn_m_per_s": 0.0, "v_bt_m_per_s": 0.0}
     limits = {"mesh_limit": {"mu": 0.5}, "mesh_band": {"mu": 0.01}, "contacts": []}
     why = {"reasons": dict.fromkeys(nulls, "not in the stand-in")}
     return outcome_maker.outcome(**nulls | plain | limits | why | changed)
