@@ -1,7 +1,7 @@
 """What may be asked of a scene by a limit: rigid theory's error, heat, force and dent, by both models."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import inf, pi
 
@@ -26,6 +26,7 @@ from fem_impact.run.modal_error import factor_of, farness, place_of
 from fem_impact.scene.fields import LEVELS
 from fem_impact.scene.inputs import first_melting
 from fem_impact.scene.types import Scene
+from fem_impact.tables.text import with_band
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +34,7 @@ class Bound:
     """A number with its least and most, SI; ``alike``: its error was found on scenes like this one.
 
     Beyond a ``ceiling`` it is not known, for the reason ``beyond``: value and least are at most the ceiling,
-    and the most is infinite.
+    and the most is infinite. ``counts`` says what alone the number counts, empty if all.
     """
 
     value: float
@@ -42,6 +43,7 @@ class Bound:
     alike: bool = True
     ceiling: float = inf
     beyond: str = ""
+    counts: str = ""
 
     def answer(self, limit: float) -> vibration.Answer:
         """Say whether the number stays below a limit."""
@@ -133,6 +135,10 @@ class Limited(Criterion):
         """Return what of the number is known beforehand: of a temperature that of the surroundings."""
         return 0.0
 
+    def counts(self, told: Callable[[str], str]) -> str:
+        """Return what alone the number counts, empty if all; ``told`` gives shares of E_0 by key."""
+        return ""
+
     def reduced(self, scene: Scene) -> Bound | Unknown:
         """Return the number between those over and times its factor."""
         case = Case.of(scene, "modal")
@@ -143,7 +149,8 @@ class Limited(Criterion):
         place, value, base = place_of(case, outcome), self.of_reduced(case, result), self.base(scene)
         far = farness(place, outcome)
         factor = factor_of(place, self.column, far)
-        return Bound(base + value, base + value / factor, base + value * factor, far == 0.0)
+        ends = base + value, base + value / factor, base + value * factor
+        return Bound(*ends, far == 0.0, counts=self.counts(lambda name: outcome.told(name, 100.0)))
 
     def meshed(self, scene: Scene) -> tuple[Scene, Scene | None]:
         """Return the scene without a film."""
@@ -164,7 +171,14 @@ class Limited(Criterion):
             values = [[value] for _, value in known][-3:]
             sizes, wide, rows = zip(*((one.size, one.wide, one.rows) for one in used), strict=True)
             value, band = level_limit(sizes, values, wide, rows)
-        return _about(value + self.base(known[-1][0].cases[0].scene), band)
+
+        def told(name: str) -> str:
+            if name not in bands:
+                return "not known"
+            return with_band(100 * limits[name], 100 * bands[name], 0.0, 100.0)
+
+        base = self.base(known[-1][0].cases[0].scene)
+        return replace(_about(value + base, band), counts=self.counts(told))
 
 
 def _about(value: float, band: float, alike: bool = True) -> Bound:
@@ -176,6 +190,19 @@ class HeatCriterion(Limited):
 
     called, column = "the flash temperature of the contact", "flash_rise_K"
     dimension, unit, per_unit = "temperature", "K", 1.0
+
+    def counts(self, told: Callable[[str], str]) -> str:
+        """Return the shares of friction, which is counted, and of all that can heat the contact."""
+        sure = " (its error is not known)"
+        friction, skin = (
+            share if share == "not known" else f"{share} % of E_0" + sure * (" " not in share)
+            for share in map(told, ("W_friction_over_E_0", "W_skin_over_E_0"))
+        )
+        return (
+            f"the power of friction alone, over the mean of the patch, in the first strike. Friction takes "
+            f"{friction}. The larger bound of what can heat the contact is W_skin, friction and the plastic "
+            f"work down to 0.1 mm below both surfaces: {skin}."
+        )
 
     def of_reduced(self, case: Case, result: ModalResult) -> float:
         """Return the rise, K, of the patch, see `fem_impact.physics.flash`.
@@ -242,7 +269,8 @@ def _solid_metal(scene: Scene, bound: Bound) -> Bound:
     beyond = (
         f"{name} begins to melt at {ceiling:.0f} K, and beyond that conduction of heat alone does not hold"
     )
-    return Bound(min(bound.value, ceiling), min(bound.low, ceiling), inf, bound.alike, ceiling, beyond)
+    value, low = min(bound.value, ceiling), min(bound.low, ceiling)
+    return replace(bound, value=value, low=low, high=inf, ceiling=ceiling, beyond=beyond)
 
 
 class ForceCriterion(Limited):

@@ -311,6 +311,8 @@ def limit_document(v: LimitVerdict, command: str) -> dict[str, Any]:
         worst = "At the worst place" if v.least is not None else "Where all have their middle values"
         place = f"{worst}, {at}:" if at else "Here:"
         box.append([place, f"{_told(of, bound)}{far[bound.answer(v.limit)]}, by {v.by}."])
+    if bound is not None and bound.counts:
+        box.append(["It counts", bound.counts])
     if v.least is not None and over:
         box.append([f"Of {v.places} places of the reduced model", f"the least has {_in_unit(of, v.least)}."])
     lacking = [f"The reduced model does not answer everywhere: {v.not_known}"] if v.not_known else []
