@@ -45,12 +45,23 @@ def statement_of(case: Case) -> dict[str, Any]:
         },
         "laws": laws(case.bodies),
         "flow_stress_Pa": _flow_stresses(case),
-        "defaults": [{"key": d.key, "value": d.value, "source": d.source} for d in DEFAULTS],
+        "defaults": _defaults(scene),
         "effects": [{key.name: key.of(choice) for key in keys_of(EffectChoice)} for choice in case.choices],
         "limitations": [asdict(one) for one in case.limitations],
         "fidelities": refusals,
         "size": None if scene.accuracy.target else _size_entry(case.size),
     }
+
+
+def _defaults(scene: Scene) -> list[dict[str, str]]:
+    """Return the values that are used where a scene states none, without those of which it states another."""
+    tables, unstated = to_dict(scene), []
+    for default in DEFAULTS:
+        section, _, name = default.key.partition(".")
+        stated = tables.get(section, {}).get(name, default.value)
+        if str(stated) == str(default.value):
+            unstated.append({"key": default.key, "value": default.value, "source": default.source})
+    return unstated
 
 
 def _mesh_entry(scene: Scene) -> list[str]:

@@ -95,6 +95,12 @@ def test_check_prints_values_units_sources_and_effects_on_demand(cli):
         assert words in out or words in " ".join(out.split())
 
 
+def test_check_lists_no_default_of_which_the_scene_states_another(cli):
+    out = cli("check", "quick", "--long", "--set", "heating.ignition=200 degC")[1]
+    assert "heating.ignition = 703" not in out and "accuracy.tip_size = 5" not in out
+    assert 'ignition = "473.15 K"' in out and "heating.ambient = 293.15 K: room" in out
+
+
 def test_check_tells_number_threshold_and_time_of_each_effect(cli):
     text = cli("check", "t5b", "--long", "--set", "effects=['auto', 'barrier-elastic']")[1]
     parts = [part.partition("\n\n")[0] for part in re.split(r"\n  (?:on  |off )", text)[1:]]
