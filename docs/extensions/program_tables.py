@@ -37,6 +37,7 @@ def scene_numbers() -> str:
     parts = []
     for name, group in _groups():
         rows = [(f"`{f.key}`", f.meaning, f.si_unit, _default(f, name), f.bounds, f.source) for f in group]
+        rows += [(f"`{key}`", *words) for key, words in _WORDS.get(name, {}).items()]
         parts += [f"### {_PLACES.get(name, f'`[{name}]`')}", Table.of(head, rows, left=range(6)).markdown()]
     return "\n\n".join(parts)
 
@@ -53,6 +54,14 @@ _PLACES |= {
     for key, laws in _LAWS.items()
     for law in laws
 }
+_WORDS = {
+    "surface": {
+        "state": ("what the friction is known of", "text", "`pair`", "see Words", ""),
+        "source": ("where your own friction is from", "text", "must be given beside `custom`", "", ""),
+        "sliding_law": ("how friction changes with speed", "text or table", "it does not", "see Words", ""),
+    }
+}
+"""Keys without a number that belong to the table of a group."""
 _OPTIONAL = ("top", "surface")  # a shipped surface brings its friction along
 
 

@@ -39,6 +39,15 @@ def compiled(scene: Scene, fidelity: str) -> Case:
     return case
 
 
+def refused_by(scene: Scene, fidelity: str) -> str:
+    """Return why a fidelity refuses a scene, nothing where it answers it."""
+    try:
+        compiled(scene, fidelity)
+    except SceneError as error:
+        return str(error)
+    return ""
+
+
 def on_levels(scene: Scene, fidelity: str) -> bool:
     """Say whether a scene runs on several meshes."""
     return fidelity == "solid" and (scene.accuracy.levels > 1 or scene.accuracy.target is not None)

@@ -13,7 +13,16 @@ import numpy as np
 
 from fem_impact.answers.report import Request, Sheet, StudyReport, StudyResult, publish
 from fem_impact.answers.simulate import compiled, simulate
-from fem_impact.answers.sweep_results import HIGH, LOW, SHORT, Results, SweepRow, require_columns, row_of
+from fem_impact.answers.sweep_results import (
+    HIGH,
+    LOW,
+    SHORT,
+    Results,
+    SweepRow,
+    known_bands,
+    require_columns,
+    row_of,
+)
 from fem_impact.answers.vary import Variation, cases, in_unit, listed, measure
 from fem_impact.case.effects.heating import thermal
 from fem_impact.errors import FemImpactError, UsageError, did_you_mean
@@ -24,9 +33,11 @@ from fem_impact.jobs.job import STORE, Failure, Job
 from fem_impact.jobs.run import run_jobs
 from fem_impact.options import FIDELITIES
 from fem_impact.outcome.record import KEY_TABLE, KEYS
+from fem_impact.outcome.shares import HEATS, heat_ends
 from fem_impact.progress import Notice, ProgressMeter, watched
 from fem_impact.scene.shipped import named
 from fem_impact.scene.types import Scene, digest, require_scene
+from fem_impact.tables.text import plain
 
 FIDELITY = "modal"
 """Fidelity of a sweep unless stated: a run takes some ten milliseconds."""
@@ -171,7 +182,13 @@ def publish_sweep(
     report = StudyReport(
         "sweep",
         f"Sweep: {title}",
-        [*_findings(results, drawn), *_not_known(results, columns or SHORT), *_cells(results), EXPLAINED],
+        [
+            *_findings(results, drawn),
+            *_not_known(results, columns or SHORT),
+            *_no_error(results, columns or SHORT),
+            *_cells(results),
+            EXPLAINED,
+        ],
         pictures=_pictures(results, drawn),
         sheets=[Sheet("sweep", caption, whole, brief=replace(brief, rows=brief.rows[:MOST_ROWS]))],
         sources=sorted(effects),
@@ -194,6 +211,15 @@ def _not_known(results: Results, columns: Sequence[str]) -> list[str]:
         f"Not known in {_share(cases, len(reasons))}: {', '.join(names)} ({why})."
         for (cases, why), names in groups.items()
     ]
+
+
+def _no_error(results: Results, columns: Sequence[str]) -> list[str]:
+    """Return that the work that can heat the contact has no half-width, and between what it lies."""
+    ends = {row.case.name: heat_ends(row.outcome) for row in results if row.outcome}
+    first = next((name for name, told in ends.items() if told), "")
+    if HEATS.name not in columns or not first:
+        return []
+    return [f"`{HEATS.name}` has no half-width: in {first} {ends[first].partition(': ')[2]}."]
 
 
 def _share(cases: Sequence[str], count: int) -> str:
@@ -227,8 +253,24 @@ def _findings(results: Results, drawn: Sequence[str]) -> list[str]:
             ends = (int(np.nanargmin(values)), int(np.nanargmax(values)))
             low, high = (f"{results.rows[at].told(name)} ({_stated(results.rows[at])})" for at in ends)
             titled = f"{label[0].upper()}{label[1:]} (`{name}`)" if name in SHOWN else f"`{name}`"
-            sentences.append(f"{titled}: from {low} to {high}.")
+            sentences.append(f"{titled}: from {low} to {high}{_widest(results, name)}.")
     return sentences
+
+
+def _widest(results: Results, name: str) -> str:
+    """Tell cases whose half-width is larger than the range of the sweep: they tell little of what changes."""
+    values, halves = results.numbers(name), {}
+    for at, row in enumerate(results):
+        half = known_bands(row.outcome).get(name) if row.outcome else None
+        if half is not None and half > np.nanmax(values) - np.nanmin(values):
+            halves[at] = half
+    if not halves:
+        return ""
+    at = max(halves, key=lambda one: halves[one])
+    return (
+        f"; {len(halves)} of {len(results)} cases have a half-width larger than that range, the largest "
+        f"{plain(halves[at], 2)} ({_stated(results.rows[at])})"
+    )
 
 
 def _stated(row: SweepRow, without: str = "") -> str:

@@ -183,8 +183,8 @@ def require_shallow(bodies: Bodies) -> None:
         raise SceneError(
             f"would press the tip {depth * 1e3:.2g} mm deep, more than the rod's radius "
             f"({radius * 1e3:.3g} mm): the whole end would flow and break, which the model does not hold.",
-            key="impact.v_n",
-            value=f"{scene.impact.v_n:.3g} m/s",
+            key=f"impact.{(way := scene.impact.stated[0])}",
+            value=f"{getattr(scene.impact, way):.4g} {'m' if way == 'height' else 'm/s'}",
             remedy="Give a lower speed or stronger materials.",
         )
 
@@ -313,12 +313,15 @@ def _require_no_flank(bodies: Bodies, body: Turned, fidelity: str) -> None:
             key="projectile",
             remedy="Round the point, or cut it off flat.",
         )
-    length, _ = body.flank(angle)
-    found = [at for side in (-1, 1) if (at := _pointed(bodies, body, side)) is not None]
-    told = f"Give an angle of {' or '.join(f'{at} deg' for at in found)}."
+    length, height = body.flank(angle)
+    lean = round(math.degrees(math.asin(height / length)))
+    laid = f"flank of {length * 1e3:.3g} mm"
+    laid = f"presses in a {laid}, {lean} deg from level" if lean else f"lays a {laid} along the barrier"
+    found = [f"{at} deg" for side in (-1, 1) if (at := _pointed(bodies, body, side)) is not None]
+    told = f"Give an angle of {' or '.join(found)}."
     slower = f"Give a lower speed or stronger materials: the tip is pressed in by {deep * 1e3:.2g} mm."
     raise SceneError(
-        f"lays a flank of {length * 1e3:.3g} mm along the barrier: a line would touch, not a point.",
+        f"{laid}: a line would touch, not a point.",
         key="impact.angle",
         value=_angle(bodies),
         remedy=f"{told if found and FLAT * deep < length else slower} {_any_part(fidelity)}",

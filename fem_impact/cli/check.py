@@ -28,6 +28,7 @@ from fem_impact.tables.table import Table
 from fem_impact.tables.text import plain, wrapped
 
 DRAWINGS = (".png", ".svg")
+BENDS = "plate-bending"
 INSIDE = "inside the measured range of speed, angle, rod, steels and surfaces"
 LONG = "--long prints every value with its source, flow stresses, and each effect with its share of run time."
 
@@ -185,6 +186,12 @@ def _contact_lines(case: Case) -> Iterator[str]:
         yield (
             "its thickness changes nothing: a plate on a base is computed as a half-space. "
             'One that is free underneath and bends: barrier.support = "infinite"'
+        )
+    bending = next(one for one in case.choices if one.name == BENDS)
+    if scene.barrier.bends and not (bending.on or bending.forced):
+        yield (
+            f"too thick to bend in this impact ({_decided(bending)}): leave out thickness and support. The "
+            "contact and its cost are those of a massive barrier, and the waves that leave that count, too"
         )
     seen, body = case.scene.relative, case.bodies.body
     speed2 = seen.v_n**2 + seen.v_t**2

@@ -8,12 +8,17 @@ import os
 import signal
 import sys
 import threading
+from _thread import interrupt_main
 from collections.abc import Callable, Sequence
+from types import FrameType
 
 from fem_impact.cli.parser import PAPER, Options, build_parser, read_line
 from fem_impact.cli.terminal import print_json, printable_streams
 from fem_impact.errors import EXIT_CODES, FemImpactError, OutputPathError, RunError, UsageError, in_options
 from fem_impact.version import __version__
+
+LATER = 0.02
+"""Time, s, after which a stop that would have been lost is tried again."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -40,8 +45,20 @@ def _called(argv: Sequence[str] | None) -> int:
         build_parser(()).print_help(sys.stderr)
         return 2
     if threading.current_thread() is threading.main_thread():  # signals are set there only
-        signal.signal(signal.SIGTERM, signal.default_int_handler)  # cleans up like Ctrl-C
+        signal.signal(signal.SIGTERM, _stop)  # cleans up like Ctrl-C
+        if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # not of one told to ignore it
+            signal.signal(signal.SIGINT, _stop)
     return _guarded(options.handler, options)
+
+
+def _stop(number: int, frame: FrameType | None) -> None:
+    """Raise KeyboardInterrupt; within the compiler's library, called from C and losing it, a little later."""
+    while frame is not None:
+        if frame.f_globals.get("__name__", "").startswith("llvmlite"):
+            threading.Timer(LATER, interrupt_main, (number,)).start()
+            return
+        frame = frame.f_back
+    raise KeyboardInterrupt
 
 
 def _guarded(handler: Callable[[Options], int], options: Options) -> int:

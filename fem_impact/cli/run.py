@@ -22,7 +22,7 @@ from fem_impact.outcome.ground import moves, on_the_ground
 from fem_impact.outcome.groups import WRONG_NUMBERS
 from fem_impact.outcome.keys import Key, Num, Unknown, or_none, why_unknown
 from fem_impact.outcome.record import KEY_TABLE, Outcome
-from fem_impact.outcome.shares import ABOVE, ADDED, IF_ON, EnergyShare, above_modes, shares
+from fem_impact.outcome.shares import ABOVE, ADDED, HEATS, IF_ON, EnergyShare, above_modes, heat_ends, shares
 from fem_impact.outcome.strikes import SHOWN, spread_table, strikes_table, told
 from fem_impact.progress import clock_text
 from fem_impact.scene.impact import FIRST
@@ -79,9 +79,11 @@ def run(options: Options) -> int:
     else:
         own_tests = (scene.measured or "").endswith(OWN)
         spread = friction_spread(scene, case.fidelity, outcome) if outcome.validity.finished else None
-        print_outcome(outcome, out, own_tests, spread, scene.accuracy.target_of, scene.projectile.named)
-        if scene.impact.until != FIRST:
+        sys.stdout.write(f"{headed(outcome.provenance.scene_id, outcome.provenance.scene_title)}\n\n")
+        if scene.impact.until != FIRST:  # what was asked for
             print_strikes(outcome, options)
+            sys.stdout.write("\nThe first strike alone\n\n")
+        print_outcome(outcome, out, own_tests, spread, scene.accuracy.target_of, scene.projectile.named)
         _say_comparison(scene, outcome, options)
         _say_screening(case, options)
     if outcome.validity.finished:
@@ -152,7 +154,7 @@ _BARRIER = (
 )
 HEATING = "friction + top 0.1 mm of both"
 """Label of the work that can heat the contact."""
-SKIN, PEAK, FLASH = (KEY_TABLE[name] for name in ("W_skin_over_E_0", "peak_force_N", "flash_temperature_K"))
+PEAK, FLASH = (KEY_TABLE[name] for name in ("peak_force_N", "flash_temperature_K"))
 RESIDUAL = KEY_TABLE["residual_over_E_0"]
 
 
@@ -170,8 +172,7 @@ def print_outcome(
     ``spread``: what the interval of friction changes, told beside each number. ``named`` calls the body of a
     label what it is.
     """
-    lines = [headed(outcome.provenance.scene_id, outcome.provenance.scene_title), ""]
-    lines += [*wrapped(spread.said), ""] if spread and spread.said else []
+    lines = [*wrapped(spread.said), ""] if spread and spread.said else []
     rows = _motion_rows(outcome, own_tests)
     lines += [_motion_line(outcome, *row, spread) for row in rows]
     wrong = [one for one in outcome.validity.limitations if one.kind in WRONG_NUMBERS]
@@ -197,7 +198,7 @@ def print_outcome(
         lines += [_line(ABOVE, plain(100 * above), "%")]
     lines += [_line("not accounted for", _share(outcome, RESIDUAL), "%")]
     lines += ["", *wrapped(named(on_the_ground(outcome)))] if moves(outcome) else []
-    lines += ["", _line(HEATING, outcome.told(SKIN, 100.0), "%", _changed(spread, SKIN, 100.0))]
+    lines += ["", _line(HEATING, outcome.told(HEATS, 100.0), "%", _changed(spread, HEATS, 100.0))]
     # peak force and flash temperature, where they are known or withheld as e is
     contact = {
         label: key
@@ -211,10 +212,11 @@ def print_outcome(
         floor = _value(outcome.energy.vibration_floor)
         lines += [f"  vibration is below its numerical floor (fraction {floor})"]
     lines += _accuracy_lines(outcome, target_of)
-    told = {**{label: KEY_TABLE[name] for label, name, _ in rows}, **listed, HEATING: SKIN, **contact}
+    told = {**{label: KEY_TABLE[name] for label, name, _ in rows}, **listed, HEATING: HEATS, **contact}
     if not isinstance(outcome.heat.power, Unknown):  # the heat was followed
         told["flash temperature"] = FLASH
     notes = why_unknown({label: key.of(outcome) for label, key in told.items()})
+    notes += [f"{HEATING}: {ends}"] if (ends := heat_ends(outcome)) else []
     lines += ["", *(line for one in notes for line in wrapped(one, "  "))] if notes else []
     others = [one for one in outcome.validity.limitations if one not in wrong]
     lines += ["", *limitation_lines(others)]

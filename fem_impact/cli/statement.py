@@ -3,13 +3,12 @@
 from dataclasses import asdict
 from typing import Any
 
-from fem_impact.answers.simulate import compiled
+from fem_impact.answers.simulate import refused_by
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.case import Case
 from fem_impact.case.metals import RATES, flow_stresses, laws
 from fem_impact.case.size import RunSize
 from fem_impact.cli.paths import shown_path
-from fem_impact.errors import SceneError
 from fem_impact.outcome.groups import EffectChoice
 from fem_impact.outcome.keys import keys_of
 from fem_impact.scene.fields import DEFAULTS
@@ -25,13 +24,7 @@ def statement_of(case: Case) -> dict[str, Any]:
     scene = case.scene
     # why a fidelity refuses the scene, None where it answers it; finite elements do
     refusals: dict[str, str | None] = {"solid": None}
-    for fidelity in ("modal", "rigid"):
-        try:
-            compiled(scene, fidelity)
-        except SceneError as error:
-            refusals[fidelity] = str(error)
-        else:
-            refusals[fidelity] = None
+    refusals |= {fidelity: refused_by(scene, fidelity) or None for fidelity in ("modal", "rigid")}
     return {
         "scene": to_dict(scene),
         "digest": digest(scene),

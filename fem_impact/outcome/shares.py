@@ -4,8 +4,9 @@ from dataclasses import dataclass
 from typing import Literal
 
 from fem_impact.outcome.groups import Energy
-from fem_impact.outcome.keys import Key, Num, or_none
-from fem_impact.outcome.record import KEY_TABLE
+from fem_impact.outcome.keys import Key, Num, Unknown, or_none
+from fem_impact.outcome.record import KEY_TABLE, Outcome
+from fem_impact.tables.text import plain
 
 Place = Literal["terminal", "figure", "comparison", "report", "study"]
 """Where shares are listed: the terminal, the figures of runs, the comparison of model and measurement, the
@@ -86,6 +87,29 @@ def above_modes(energy: Energy) -> float:
     modes, whole = or_none(energy.vibration), or_none(energy.vibration_check)
     above = 0.0 if modes is None or whole is None else whole - modes
     return above if above > _SEEN else 0.0
+
+
+HEATS = KEY_TABLE["W_skin_over_E_0"]
+"""Work that can heat the contact: friction, and the plastic work near both surfaces."""
+
+WORKS = "W_friction", "E_plastic_rod", "E_plastic_barrier"
+
+
+def heat_ends(outcome: Outcome) -> str:
+    """Say between what `HEATS` lies where it has no half-width: friction, and that with all plastic work.
+
+    Nothing where it is not known or has one, or where friction has none either.
+    """
+    skin, half = outcome.estimate(HEATS)
+    (rubbed, half_rubbed), *flowed = (outcome.estimate(f"{name}_over_E_0") for name in WORKS)
+    if half is not None or half_rubbed is None or isinstance(skin, Unknown) or isinstance(rubbed, Unknown):
+        return ""
+    high = rubbed + half_rubbed + sum((or_none(work) or 0.0) + (error or 0.0) for work, error in flowed)
+    least, greatest = (plain(100 * end, 2) for end in (max(rubbed - half_rubbed, 0.0), min(high, 1.0)))
+    return (
+        f"no error of it is known: it lies between {least} % (friction) and {greatest} % (friction and all "
+        "plastic work), errors included"
+    )
 
 
 @dataclass(frozen=True, slots=True)

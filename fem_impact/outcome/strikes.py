@@ -175,14 +175,15 @@ SPREAD = ("strike", "tip", "tail", "other", "none", "time, ms", "approach, m/s")
 
 
 def told(strikes: Strikes) -> list[str]:
-    """Return sentences: the end, the other end's and the hardest strikes, the totals, what is certain."""
+    """Return sentences: the end, the totals, the other end's and the hardest strikes, what is certain."""
     if isinstance(strikes.each, Unknown):
         return [f"Later strikes are not known: {strikes.each.reason}."]
     count = len(strikes.each)
     return [
-        f"{count} strike{'s' * (count > 1)}. {strikes.because} {_other_end(strikes)}",
-        *_hardest(strikes),
+        f"{count} strike{'s' * (count > 1)}. {strikes.because}",
         _totals(strikes),
+        _other_end(strikes),
+        *_hardest(strikes),
         *_certain(strikes),
     ]
 
@@ -301,20 +302,23 @@ def _time_error(strikes: Strikes) -> str:
 
 
 def _totals(strikes: Strikes) -> str:
+    """Return when the last strike comes, and what the energy has become by then."""
     parts: tuple[tuple[str, Num], ...] = (
         ("friction", strikes.friction),
         ("plastic", strikes.plastic),
         ("damping", strikes.damping),
         ("other", strikes.other),
         ("settled", strikes.settled),
-        ("left", strikes.left),
     )
     sums = ", ".join(f"{name} {v:.3g} J" for name, v in parts if not isinstance(v, Unknown) and v)
-    least = ROUND_OFF * known(strikes.each)[0].before
+    before = known(strikes.each)[0].before
+    least = ROUND_OFF * before
     half, heat = or_none(strikes.friction_half) or 0.0, or_none(strikes.friction) or 0.0
     rubbed = f" Friction with its error: {with_band(heat, half, 0.0)} J." if half > least else ""
     time = "" if isinstance(strikes.time, Unknown) else f" after {strikes.time:.4g} s{_time_error(strikes)}"
     gave = or_none(strikes.gravity) or 0.0
-    gravity = f" Gravity gave {gave:.3g} J." if abs(gave) > least else ""
+    came = f"{before:.3g} J before the first strike"
+    came += f" and {gave:.3g} J from gravity" if abs(gave) > least else ""
+    kept = "" if isinstance(strikes.left, Unknown) else f" the body keeps {strikes.left:.3g} J;"
     ends = "The last of them" if strikes.end in ("bounces on", "loses nothing") else "The end"
-    return f"{ends} comes{time}: {sums}.{gravity}{rubbed}"
+    return f"{ends} comes{time}. Of {came}{kept} the rest: {sums or 'nothing'}.{rubbed}"

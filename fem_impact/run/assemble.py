@@ -137,7 +137,8 @@ class Reduction:
             effects=tuple(name for name in case.active if case.fidelity in EFFECTS[name].fidelities),
             effect_choices=choices,
         )
-        shown = () if withheld or cut else unusual(origin, self.motion, self.restitution, energy)
+        numbers = origin, self.motion, self.restitution, energy
+        shown = () if withheld or cut else unusual(*numbers, case.contact)
         again = strikes_again(case, end.leaving, end.Omega) if end.finished and not failed else ""
         alone = case.scene.impact.until == FIRST
         named_again = named(again) if alone and not end.other_end else ""

@@ -24,6 +24,10 @@ SOFT_ROD = Unknown(
 UNDAMPED = Unknown("the reduced model has no material damping")
 UNSENT = Unknown("a local contact law sends no waves into the barrier")
 KEPT = Unknown("the modes of a body are computed once and kept")
+HEAT = (
+    "finite elements alone follow it (--fidelity solid); `fem-impact assess --for heat` estimates the "
+    "temperature by the reduced model, with its error"
+)
 
 
 def closed(
@@ -69,7 +73,7 @@ def reduce(case: Case, result: ModalResult) -> Outcome:
     outcome = Reduction.of(case, end).outcome(
         _energy(case, result),
         unknown(Markers, "the camera's markers are followed on the finite elements only"),
-        unknown(Heat, "heat is followed on the finite elements only"),
+        unknown(Heat, HEAT),
         _cost(result),
         peak_force=result.force,
         choices=CHOICES,

@@ -5,6 +5,7 @@ from fem_impact.case.plates import DEEP
 from fem_impact.case.record import ContactRecord
 from fem_impact.outcome.groups import Energy, Provenance, Restitution, RodMotion
 from fem_impact.outcome.keys import or_none
+from fem_impact.physics.contact import ContactPair
 from fem_impact.run.common import RESIDUAL_LIMIT
 
 PLOUGHING = 1.1  # largest mu over f that the slope of a crater explains
@@ -14,11 +15,11 @@ CONFIRM = " Confirm it with half the accuracy.tip_size."
 
 
 def unusual(
-    provenance: Provenance, motion: RodMotion, restitution: Restitution, energy: Energy
+    provenance: Provenance, motion: RodMotion, restitution: Restitution, energy: Energy, contact: ContactPair
 ) -> tuple[str, ...]:
     """Return a sentence on each of e, mu and E_r, empty where it is in the range of a plain impact."""
-    of_e, of_mu = (of(provenance, motion, restitution) for of in (_on_restitution, _on_ratio))
-    return of_e, of_mu, _on_rigid(energy)
+    of_e = _on_restitution(provenance, motion, restitution, contact)
+    return of_e, _on_ratio(provenance, motion, restitution), _on_rigid(energy)
 
 
 def pierced(case: Case, record: ContactRecord, dent: float) -> str:
@@ -37,7 +38,9 @@ def pierced(case: Case, record: ContactRecord, dent: float) -> str:
     )
 
 
-def _on_restitution(provenance: Provenance, motion: RodMotion, restitution: Restitution) -> str:
+def _on_restitution(
+    provenance: Provenance, motion: RodMotion, restitution: Restitution, contact: ContactPair
+) -> str:
     """Say where the kinematic restitution gets its speed from, if it is not within 0 to 1."""
     e, meshed = or_none(restitution.edge.e), provenance.fidelity == "solid"
     if e is None or -ROUND_OFF <= e <= 1 + RESIDUAL_LIMIT:
@@ -51,7 +54,12 @@ def _on_restitution(provenance: Provenance, motion: RodMotion, restitution: Rest
     if not causes:
         return f"e = {e:.5g} is above 1, and nothing in the model explains that: do not use this run."
     mesh = f", or the mesh did.{CONFIRM}" if meshed else "."
-    return f"e = {e:.5g} is above 1: {causes} gave the contact point speed along the normal{mesh}"
+    came, slid = contact.approach, abs(contact.sliding)
+    return (
+        f"e = {e:.5g} is above 1: {causes} gave the contact point speed along the normal beside its approach "
+        f"at {came:.2g} m/s (it slides at {slid:.2g} m/s), so that e does not measure what the contact "
+        f"loses{mesh}"
+    )
 
 
 def _on_ratio(provenance: Provenance, motion: RodMotion, restitution: Restitution) -> str:

@@ -17,8 +17,9 @@ OTHER_NAMES = {
     "young": "E",
     "poisson": "nu",
     "yield_strength": "yield_stress",
+    "source": "source",
 }
-"""Keys by other words for the same."""
+"""Keys by other words for the same, or by a word of a longer one."""
 _RUBBER = (
     "Of a rubber by Mooney and Rivlin give E = 6 (C10 + C01), its stiffness at small strains, and nu = 0.49."
 )

@@ -20,6 +20,7 @@ from fem_impact.files.run_directory import earlier_runs
 from fem_impact.jobs import run as jobs_run
 from fem_impact.scene.shipped import load, replace, replace_all
 from fem_impact.tables.table import read_csv
+from fem_impact.tables.text import plain
 
 pytestmark = pytest.mark.usefixtures("unrendered")
 
@@ -306,6 +307,18 @@ def test_what_is_not_known_in_some_cases_is_told_with_its_reason(tmp_path):
     findings = publish_sweep(results, "t", "fem-impact sweep", tmp_path).document["findings"]
     told = [line for line in findings if line.startswith("Not known")]
     assert told == ["Not known in 1 of 2 cases, the first of them case-2: `e_edge`, `mu` (too coarse)."]
+
+
+def test_a_sweep_by_the_reduced_model_tells_rows_that_are_too_wide_and_what_has_no_half_width(tmp_path):
+    found = sweep(load("quick"), {"impact.angle": ["30 deg", "45 deg"]}, "modal", out=tmp_path)
+    half = [row.outcome.estimate("e_edge")[1] for row in found]
+    text = (tmp_path / "summary.md").read_text(encoding="utf-8")
+    e, mu = (line for line in text.splitlines() if "`e_edge`)" in line or "`mu`)" in line)
+    assert (
+        f"; 2 of 2 cases have a half-width larger than that range, the largest {plain(max(half), 2)} (" in e
+    )
+    assert "larger than" not in mu
+    assert "`W_skin_over_E_0` has no half-width: in case-00001 it lies between " in text
 
 
 def test_a_wanted_error_that_is_not_reached_is_the_reason_of_its_row():

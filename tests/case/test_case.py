@@ -6,6 +6,7 @@ import pytest
 
 from fem_impact.case import case as module
 from fem_impact.case.case import Case
+from fem_impact.errors import SceneError
 from fem_impact.physics.contact import ContactPair
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace_all
@@ -53,3 +54,19 @@ def test_a_case_of_the_same_effects_has_one_set_of_bodies():
     case = Case(stated)
     assert case.bodies is case._whole
     assert Case(load("t5b")).bodies is not Case(load("t5b"))._whole
+
+
+@pytest.mark.parametrize(
+    ("scene", "told"),
+    [
+        (replace_all(load("t5b"), {"impact.height": "9000 m"}), 'impact.height = "9000 m"'),
+        (
+            replace_all(load("t5b"), {"impact.v_n": "-300 m/s", "impact.v_t": "0 m/s"}),
+            'impact.v_n = "-300 m/s"',
+        ),
+    ],
+)
+def test_a_speed_that_is_too_high_is_refused_by_the_key_that_states_it(scene, told):
+    with pytest.raises(SceneError, match="would press the tip") as refused:
+        Case.of(scene, "solid")
+    assert str(refused.value).startswith(told)

@@ -179,6 +179,17 @@ def test_a_thickness_without_support_is_said_to_change_nothing(cli):
     assert words not in " ".join(cli("check", "t5b")[1].split())
 
 
+def test_a_plate_too_thick_to_bend_is_said_to_be_massive(cli):
+    words, plate = "too thick to bend in this impact", ("check", "t5b", "--set", "barrier.support=infinite")
+    assert words in " ".join(cli(*plate, "--set", "barrier.thickness=1.5 m")[1].split())
+    for thin in (
+        ["barrier.thickness=20 mm"],
+        ["barrier.thickness=1.5 m", 'effects=["auto", "plate-bending"]'],
+    ):
+        changes = (word for change in thin for word in ("--set", change))
+        assert words not in " ".join(cli(*plate, *changes)[1].split())
+
+
 def test_a_fall_is_told_as_speed_and_energy_and_a_coin_as_a_plate(cli):
     """Half a metre of fall gives sqrt(2 g h) and m g h; a coin has no part that could be rigid."""
     said = " ".join(cli("check", "t5b", "--set", "impact.height='0.5 m'")[1].split())

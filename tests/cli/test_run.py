@@ -270,3 +270,21 @@ def test_vibration_above_the_modes_is_listed_so_that_the_shares_add_up(cli):
     assert "vibration above its modes" in said
     assert sum(shares) == pytest.approx(100, abs=0.2)  # each is told to three digits
     assert "above its modes" not in cli("run", "quick", "--set", "accuracy.levels=1", "--out", "inclined")[1]
+
+
+def test_a_followed_body_is_answered_by_its_sequence_first(cli, tmp_path):
+    line = (
+        "run",
+        "quick",
+        "--until",
+        "2 strikes",
+        "--fidelity",
+        "rigid",
+        "--quiet",
+        "--out",
+        str(tmp_path / "r"),
+    )
+    out = cli(*line)[1]
+    heading, count, totals = out.splitlines()[0], out.index("2 strikes. "), out.index("the body keeps ")
+    assert heading.startswith("quick: ") and count < totals < out.index("Hardest by energy")
+    assert out.index("Hardest by energy") < out.index("The first strike alone") < out.index("restitution e")

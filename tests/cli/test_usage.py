@@ -1,8 +1,12 @@
 """A wrong command line is exit code 2; what is understood and refused is 3."""
 
+import ctypes
 import json
 import re
 import shlex
+import signal
+import time
+from functools import partial
 from importlib import import_module
 
 import pytest
@@ -179,3 +183,20 @@ def test_a_refusal_says_what_there_is(cli, line, told):
 def test_a_far_option_is_not_proposed(cli):
     err = cli("report", "here", "--out", "there")[2]
     assert "there is no option --out." in err and "Did you mean" not in err
+
+
+@pytest.mark.parametrize("stop", [signal.SIGTERM, signal.SIGINT])
+def test_a_stop_in_a_callback_of_the_compiler_is_not_lost(cli, stop):
+    """What is raised there goes no further: the run went on, or ended by an error of the compiler."""
+    scope = {"__name__": "llvmlite.binding.executionengine", "stop": partial(signal.raise_signal, stop)}
+    exec("def notify(): stop(); reached.append(1)", scope | {"reached": (reached := [])}, scope)
+    kept = {one: signal.getsignal(one) for one in (signal.SIGTERM, signal.SIGINT)}
+    try:
+        cli("schema")
+        with pytest.raises(KeyboardInterrupt):
+            ctypes.CFUNCTYPE(None)(scope["notify"])()
+            time.sleep(5.0)
+    finally:
+        for one, handler in kept.items():
+            signal.signal(one, handler)
+    assert reached == [1]

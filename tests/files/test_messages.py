@@ -82,7 +82,7 @@ def test_a_forged_record_prints_no_control_character(capsys):
     with printable_streams():
         print_outcome(outcome_maker.outcome(**notes), Path(HOSTILE))
     out = capsys.readouterr().out
-    assert out.count(r"\u001b[31m") == 4
+    assert out.count(r"\u001b[31m") == 3
     assert out.replace("\n", "").isprintable()
 
 

@@ -51,6 +51,7 @@ MISTAKES = [
     ("surface.state", "wet", ["surface.state", '"machined"']),
     ("surface.friction", -0.1, ["surface.friction", "at least 0"]),
     ("surface.friction_low", 0.9, ["outside its own interval"]),
+    ("surface.friction_source", "a handbook", ["Did you mean source?"]),
     ("accuracy.across", 8.5, ["accuracy.across = 8.5", "whole number"]),
     ("accuracy.across", 4, ["accuracy.across = 4", "at least 6"]),
     ("accuracy.across", 7, ["accuracy.across = 7", "an even number"]),

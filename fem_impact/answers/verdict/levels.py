@@ -52,6 +52,7 @@ def by_levels(
     tell: Tell,
     steps: list[str],
     before_s: float = 0.0,
+    needed: int = LEAST_LEVELS,
 ) -> tuple[Number | None, list[str], Means]:
     """Return what finite elements say, None where they tell nothing; notes; the means for another level.
 
@@ -66,6 +67,7 @@ def by_levels(
     tell : called with a sentence as a level begins, and after each
     steps : a sentence on each level is added, once that has run
     before_s : of the whole budget, s, what went by before
+    needed : levels without which ``estimate`` tells nothing
 
     Raises
     ------
@@ -110,18 +112,20 @@ def by_levels(
         return told[-1], [], {}
     estimated = told[-1]
     over = None if estimated is None else estimated.over(limit)
-    return estimated, *_open(levels, over, before_s)
+    return estimated, *_open(levels, over, before_s, needed)
 
 
 STOPPED = "It was stopped by hand after {} levels of finite elements; those count."
 
 
-def _open(levels: LevelChain, over: float | None, before_s: float) -> tuple[list[str], Means]:
+def _open(levels: LevelChain, over: float | None, before_s: float, needed: int) -> tuple[list[str], Means]:
     """Return why levels leave an answer open, and the means for another.
 
-    ``over`` is their error over the one with which there would be an answer, None where they tell no number.
+    ``over`` is their error over the one with which there would be an answer, None where they tell no number,
+    of which fewer than ``needed`` never do.
     """
-    note, enough = levels.advice(before_s, 1 if over is None else halvings(over))
+    lacking = needed - len(levels.done)
+    note, enough = levels.advice(before_s, max(lacking, 1) if over is None else halvings(over))
     if over is not None:
         return [note], with_budget(enough)
     ends = [one.validity for one in levels.done[-1].outcomes if not one.validity.finished]
@@ -130,6 +134,8 @@ def _open(levels: LevelChain, over: float | None, before_s: float) -> tuple[list
     nothing = "The last level of finite elements does not resolve the contact."
     if len(levels.done) < LEAST_LEVELS:
         nothing = "One level of finite elements alone does not tell its error."
+    if needed > max(LEAST_LEVELS, len(levels.done)):
+        nothing = f"Finite elements tell this number from {needed} levels on."
     return [note, nothing], with_budget(enough)
 
 

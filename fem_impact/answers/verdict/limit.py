@@ -251,7 +251,8 @@ def _by_solids(
         left = max(budget_s - before, 1.0), workers
         try:
             pair = criterion.meshed(scene)
-            bound, said, more = by_levels(pair, criterion.solid, as_text, limit, left, tell, steps, before)
+            told = tell, steps, before, criterion.least_levels
+            bound, said, more = by_levels(pair, criterion.solid, as_text, limit, left, *told)
         except (SceneError, RunError) as refused:
             bound, said = None, [f"Finite elements have no answer here: {refused}"]
             more = with_budget(budget_of(refused))

@@ -4,15 +4,16 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from math import degrees, isclose
 from typing import Any
 
+from fem_impact.answers.simulate import refused_by
 from fem_impact.answers.verdict.assess import Verdict
 from fem_impact.answers.verdict.levels import next_step
 from fem_impact.answers.verdict.screening import Screening
-from fem_impact.answers.verdict.vibration import CALLED, Answer, VibrationEffect
+from fem_impact.answers.verdict.vibration import CALLED, Answer, VibrationEffect, untargeted
 from fem_impact.case.case import Case
 from fem_impact.outcome.groups import texts
 from fem_impact.outcome.keys import Unknown, known, or_none
 from fem_impact.outcome.record import Outcome, installed_versions
-from fem_impact.outcome.shares import SHARES
+from fem_impact.outcome.shares import SHARES, heat_ends
 from fem_impact.run.common import RESIDUAL_LIMIT
 from fem_impact.run.unusual import ROUND_OFF
 from fem_impact.scene.barrier import Barrier
@@ -59,7 +60,16 @@ def _may(v: Verdict) -> str:
     if here:
         told = f"vibration changes {number} by {here.told}{doubt(here)}, by {here.model}"
     at = f"at this inclination, {degrees(v.scene.impact.angle):.4g} degrees"
-    return f"{v.answer.upper()}: {at}, {told} (allowed: {v.tolerance:g}).{_beyond(v)} {_anywhere(v)}"
+    said = f"{at}, {told} (allowed: {v.tolerance:g}).{_beyond(v)} {_anywhere(v)}"
+    refused = _refused(v) if v.answer == "yes" else ""
+    if refused:
+        return f"YES as to vibration: {said} But --fidelity rigid has no answer here: {refused}"
+    return f"{v.answer.upper()}: {said}"
+
+
+def _refused(v: Verdict) -> str:
+    """Return why rigid theory has no law for the contact, as ``check`` tells it; nothing where it has one."""
+    return refused_by(untargeted(v.scene), "rigid")
 
 
 def _beyond(v: Verdict) -> str:
@@ -138,7 +148,9 @@ def _heating(effect: VibrationEffect) -> str:
         alone = isinstance(energy.skin_rod, Unknown) or isinstance(energy.skin_barrier, Unknown)
         of = "the softer body" if alone else "both bodies"
         share = _percent(effect, "skin", skin)
-        return f"{share} can heat the contact (friction, and plastic work of {of} down to 0.1 mm)"
+        ends = "" if "skin" in effect.errors else heat_ends(effect.free)
+        told = f"{share} can heat the contact (friction, and plastic work of {of} down to 0.1 mm)"
+        return f"{told}; {ends}" if ends else told
     plastic = or_none(energy.plastic) or 0.0
     return (
         f"{100 * friction:.0f} % (friction alone) to {100 * (friction + plastic):.0f} % (with all plastic "
@@ -166,8 +178,7 @@ def _heat(run: Outcome) -> str:
     """Return how hot the contact becomes, or why that is not known."""
     heat = run.heat
     if isinstance(heat.power, Unknown):
-        elsewhere = " (fidelity solid)" if run.provenance.fidelity == "modal" else ""
-        return f"not known: {heat.power.reason}{elsewhere}."
+        return f"not known: {heat.power.reason}."
     if isinstance(heat.temperature, Unknown):
         return f"the mean temperature of the patch is {heat.temperature.reason}."
     spot = (
@@ -289,6 +300,7 @@ def document(v: Verdict, command: str = "fem-impact assess") -> dict[str, Any]:
         "fidelity": v.fidelity,
         "answer": v.answer,
         "answer_any_angle": v.worst_answer,
+        "refused_by_rigid": _refused(v) or None,
         "here": v.here and _change_entry(v.here),
         "worst": v.worst and _change_entry(v.worst),
         "not_known_rad": list(v.not_known[0]),

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import fem_impact
+from fem_impact.answers.verdict import levels
 from fem_impact.answers.verdict import limit as module
 from fem_impact.answers.verdict.criteria import LIMITED, Bound, ForceCriterion
 from fem_impact.answers.verdict.limit import judge, limit_document
@@ -69,7 +70,7 @@ def solids(monkeypatch, values):
     """Let finite elements tell a bound by the angle in degrees; return the angles at which they ran."""
     ran = []
 
-    def of(pair, estimate, told, limit, means, tell, steps, before_s):
+    def of(pair, estimate, told, limit, means, tell, steps, before_s, needed):
         ran.append(round(np.degrees(pair[0].impact.angle)))
         value = values[ran[-1]]
         return value and Bound(value, value - 1.0, value + 1.0), [], {"budget_s": 90}
@@ -295,3 +296,16 @@ def test_a_limit_has_a_page_too(cli):
     page = Path("page/verdict.html").read_text(encoding="utf-8")
     assert "Does the peak force stay below 9 kN" in page and "Signatures" in page
     assert json.loads(Path("page/verdict.json").read_text(encoding="utf-8"))["answer"] == "yes"
+
+
+def test_heat_asks_for_the_budget_of_all_levels_that_it_needs():
+    """It named that of level 2, with which there was no answer either."""
+    asked, ended = [], SimpleNamespace(validity=SimpleNamespace(finished=True))
+    chain = SimpleNamespace(
+        done=[SimpleNamespace(outcomes=[ended])],
+        advice=lambda before_s, halvings: (asked.append(halvings) or "", 90),
+    )
+    notes, more = levels._open(chain, None, 0.0, LIMITED["heat"].least_levels)
+    assert (asked, more) == ([2], {"budget_s": 90}) and "number from 3 levels on" in notes[1]
+    levels._open(chain, None, 0.0, LIMITED["force"].least_levels)
+    assert asked == [2, 1]

@@ -38,6 +38,7 @@ from fem_impact.answers.verdict.vibration import (
 from fem_impact.case.case import Case
 from fem_impact.case.plates import half_space_error
 from fem_impact.case.record import ContactRecord
+from fem_impact.cli.statement import statement_of
 from fem_impact.errors import SceneError
 from fem_impact.outcome.keys import Unknown, known
 from fem_impact.outcome.record import KEY_TABLE
@@ -98,7 +99,7 @@ def heated(short, **values):
 
 def test_the_verdict_tells_how_hot_the_contact_becomes(short):
     told = dict(basis(short))["heat of the contact"]
-    assert told == "not known: heat is followed on the finite elements only (fidelity solid)."
+    assert told.startswith("not known: finite elements alone follow it") and "assess --for heat" in told
     told = heated(short)
     assert "431 K in the mean" in told and "No spot exceeds 1200 K" in told and "Tian & Kennedy" in told
     assert "What single spots reach is not resolved: why." in heated(
@@ -134,6 +135,17 @@ def test_this_inclination_and_the_worst_one_are_two_sentences(short, at, value, 
     assert may.partition("(allowed: 0.05). ")[2].startswith(words) or may.endswith(words)
 
 
+def test_a_yes_agrees_with_check_where_rigid_theory_has_no_contact_law(short):
+    """It said YES where ``check`` said that the rigid fidelity refuses the scene."""
+    flat = replace_all(short.scene, {"impact.angle": "0 deg"})
+    laid = replace(short, scene=flat, tolerance=0.5)
+    refused = statement_of(Case(flat))["fidelities"]["rigid"]
+    assert "the contact law of a round tip" in refused and document(laid)["refused_by_rigid"] == refused
+    assert box(laid)[0][1].startswith("YES as to vibration: ") and box(laid)[0][1].endswith(refused)
+    stated = replace(laid, scene=replace_all(flat, {"restitution": 0.5}))
+    assert box(stated)[0][1].startswith("YES: ") and document(stated)["refused_by_rigid"] is None
+
+
 def test_the_share_that_can_heat_the_contact_names_the_bodies_that_it_counts(short):
     told = "can heat the contact (friction, and plastic work of {} down to 0.1 mm)"
     assert told.format("the softer body") in box(short)[2][1]
@@ -141,9 +153,19 @@ def test_the_share_that_can_heat_the_contact_names_the_bodies_that_it_counts(sho
     assert told.format("both bodies") in box(replace(short, here=replace(short.here, free=free)))[2][1]
 
 
+def test_a_share_that_can_heat_without_a_half_width_lies_between_ends(short):
+    energy, halves = short.here.free.energy, short.here.free.half_widths
+    low = energy.friction - halves["W_friction_over_E_0"]
+    high = energy.friction + halves["W_friction_over_E_0"] + energy.plastic
+    ends = re.search(r"lies between (\S+) % \(friction\) and (\S+) % \(friction and all", box(short)[2][1])
+    assert float(ends[1]) == pytest.approx(100 * max(low, 0.0), abs=1.0)
+    assert 100 * min(high, 1.0) - 1.0 <= float(ends[2]) <= 100.0
+    assert low <= energy.skin <= high
+
+
 def test_a_share_that_two_meshes_know_has_its_band(short):
     told = replace(short, here=replace(short.here, errors={**short.here.errors, "skin": 0.05}))
-    assert " ± 5.0 % can heat the contact" in box(told)[2][1]
+    assert " ± 5.0 % can heat the contact" in box(told)[2][1] and "lies between" not in box(told)[2][1]
 
 
 def test_energy_of_vibration_is_not_said_to_fall_below_none(short):
