@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from math import pi, sqrt
+from math import cos, log, pi, sin, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -14,6 +14,8 @@ from fem_impact.fem.body import MeshedBodies
 from fem_impact.modal.motion import Sites
 from fem_impact.modal.sites import nearest_skin, rotated, settle, sites_of, skin
 from fem_impact.physics.contact import section_frequency
+from fem_impact.physics.contact_law import begins_to_yield
+from fem_impact.physics.wedge import wedge_compliance
 from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.fields import ACCURACY
 from fem_impact.scene.impact import Impact
@@ -23,6 +25,7 @@ from fem_impact.scene.types import Accuracy, Scene
 from rigid import Faceted
 
 COARSEST = next(f.high for f in ACCURACY if f.key == "tip_size")  # m
+AT_REST = 100.0  # rad in the time of a contact, of a mode that follows the force as if at rest
 AROUND = 0.4  # diameters around the contact point over which a mode is taken as affine
 
 
@@ -109,7 +112,45 @@ def modal_rod(bodies: Bodies, vibrating: bool = True) -> ModalRod:
         heights = [skin(sites, s, 0.0)[1] for s in range(len(places))]
         first = int(np.argmin(heights))
         settle(sites, first, 0.0, radius, (-d_c, radius - d_d))
-    return ModalRod(body.mass, body.k2, omega, sites, first)
+    return ModalRod(body.mass, body.k2, *_with_edges(bodies, omega, sites), first)
+
+
+def _with_edges(bodies: Bodies, omega: Array, sites: Sites) -> tuple[Array, Sites]:
+    """Return frequencies and sites with two stiff modes more at each sharp edge: how it gives way by itself.
+
+    Beyond the half width a of the contact and the radius R of the edge, up to about the half length b of the
+    contact, the body is a wedge and gives way by more than the half-space of the contact law: by the excess
+    of `wedge_compliance` times ln(4 b / max(a, R)) / (pi b E') along the bisector and across it, with
+    E' = E / (1 - nu^2), as a half-space does by that logarithm (Johnson 1985, Contact Mechanics, 4.2). So
+    a push across the barrier moves an edge along it, too. The modes are so high that they follow the force.
+    A contact that yields presses on metal that flows, and a part that lands flat has a law of its own.
+    """
+    pair = bodies.contact
+    if pair.lands_flat or begins_to_yield(pair):
+        return omega, sites
+    metal, size, count = pair.rod, pair.estimate, len(sites.begin) - 1
+    highest = min(section_frequency(metal, bodies.rod.diameter), AT_REST / size.duration)
+    modes: list[tuple[int, float, float]] = []  # site, and its displacement along t and n
+    for s in range(count):
+        arcs = slice(int(sites.begin[s]), int(sites.begin[s + 1]))
+        low, high = float(sites.low[arcs][0]), float(sites.high[arcs][-1])
+        blunt = max(size.a_t, float(sites.radius[arcs].max()))
+        if high - low >= pi or blunt >= size.a_b:
+            continue
+        length = log(4.0 * size.a_b / blunt) / (pi * size.a_b * metal.E / (1.0 - metal.nu**2))
+        upright = 0.5 * (low + high)  # turn at which the bisector stands on the barrier
+        along, across = (
+            highest * sqrt((times - 1.0) * length) for times in wedge_compliance(0.5 * (pi - high + low))
+        )
+        modes += [(s, -along * sin(upright), along * cos(upright))]
+        modes += [(s, across * cos(upright), across * sin(upright))]
+    if not modes:
+        return omega, sites
+    t, n = np.zeros((2, count, len(modes)))
+    for k, (s, moved_t, moved_n) in enumerate(modes):
+        t[s, k], n[s, k] = moved_t, moved_n
+    t, n = np.hstack([sites.along_t, t]), np.hstack([sites.along_n, n])
+    return np.append(omega, np.full(len(modes), highest)), sites._replace(along_t=t, along_n=n)
 
 
 def _moved(bodies: Bodies, places: Array, side: float) -> tuple[Array, Array]:

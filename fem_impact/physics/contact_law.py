@@ -158,6 +158,11 @@ def longer(ratio: float) -> float:
     return float(pi / 2 / sqrt(ratio) / ellipk(1.0 - ratio**2))
 
 
+def begins_to_yield(pair: ContactPair) -> bool:
+    """Return whether the first contact reaches the pressure at which a round one begins to yield."""
+    return pair.softer is not None and pair.estimate.pressure >= BEGINS * pair.softer.yield_stress
+
+
 def flow_law(pair: ContactPair, rod: HardeningLaw | None, barrier: HardeningLaw | None) -> FlowLaw:
     """Return the law of two bodies and their flow curves, None of one that does not yield.
 
@@ -165,8 +170,7 @@ def flow_law(pair: ContactPair, rod: HardeningLaw | None, barrier: HardeningLaw 
     which a round one begins to yield. A table of its flow stress is stood for by the nearest power law.
     """
     size, soft, E_star = pair.estimate, pair.softer, pair.modulus
-    R1, R2 = size.R1, size.R2
-    flows = soft is not None and size.pressure >= BEGINS * soft.yield_stress
+    R1, R2, flows = size.R1, size.R2, begins_to_yield(pair)
     both = [(law.power, metal == soft) for law, metal in ((barrier, pair.barrier), (rod, pair.rod)) if law]
     both.sort(key=lambda one: not one[1])
     curve, other, *_ = (*(power for power, _ in both), *2 * [Hardening(inf, 0.0, 0.0)])

@@ -166,7 +166,7 @@ class ModalCourse:
         early = MARGIN * float((along @ swing).max(initial=0.0)) / self.followed.comes(touch)[0]
         if early == 0.0 or not self.followed.hard(touch):
             return touch
-        step = max(LOOK / float(rod.omega[-1]), 2.0 * early / LOOKS)
+        step = max(LOOK / float(rod.omega.max()), 2.0 * early / LOOKS)
         looks = np.arange(max(0.0, rigid[0] - early), rigid[0] + early, step).tolist()
         gaps = [self._gap(dt) for dt in looks]
         for low, high, open_, closed_ in zip(looks, looks[1:], gaps, gaps[1:], strict=False):

@@ -228,7 +228,7 @@ def test_a_contact_a_few_nodes_wide_has_three_times_the_last_changes_by_halved_c
     line = replace(site, low=(0.0, 0.0), high=(h, 20 * h))
     narrow = replace(last, record=replace(last.record, sites=(line,)))
     assert narrow.record.rows == 2
-    limits, bands = map(known, limits_of(pilot, before, narrow))
+    limits, bands = map(known, own_limits([level.runs for level in (pilot, before, narrow)]))
     values = [known(level.outcome.restitution.mu) for level in (pilot, before, last)]
     assert limits["mu"] == values[-1]
     by_halving = abs(np.diff(values)) / abs(np.diff(np.log2([pilot.size, before.size, last.size])))
