@@ -40,8 +40,7 @@ from fem_impact.tables.text import plain
 GRID_OFFSETS = (0.0, 0.5)
 MOST_REPEATS = 2  # of a level, each with twice the room
 BUDGET = 600.0  # s of wall time for all levels, unless stated
-# of the budget, beyond which a level is given up: all ends within 1.3 times, as matrices are assembled and
-# results written without a look at the clock
+# of the budget, beyond which a level is given up: all ends within 1.3, as set-up does not look at the clock
 LATE = 1.2
 LEAST_BUDGET = 5.0  # s: a smaller budget still gives a quick scene its first level
 MOST_FINER = 3  # splits beyond a resolved contact, where a band decides, or levels more until it is resolved

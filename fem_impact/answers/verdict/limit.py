@@ -153,9 +153,7 @@ def judge(
     known = {place: one for place, one in bounds.items() if isinstance(one, Bound)}
     why = next((one.reason for one in bounds.values() if isinstance(one, Unknown)), "")
     why = LACKING.format(lacking) if lacking and bounds else why
-    worst = max(
-        known, key=lambda place: (known[place].value, known[place].low), default=(0.5,) * len(intervals)
-    )
+    worst = max(known, key=lambda at: (known[at].value, known[at].low), default=(0.5,) * len(intervals))
     mildest = min(known, key=lambda place: known[place].value, default=worst)
     bound, by = known.get(worst), "the reduced model"
     answer = _together([one.answer(limit) for one in known.values()], bool(why) or not known)
