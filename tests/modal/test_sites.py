@@ -85,7 +85,7 @@ def test_the_tail_strikes_after_the_nose_has_left(monkeypatch):
     assert [site.impulse_n for site in alone.contact.sites] == [first.impulse_n]
     assert alone.validity.finished and alone.restitution.edge.e > 0.5
     assert alone.contact.strikes_again
-    assert "comes down at 0.329 m/s, so that the rod strikes again" in alone.validity.stopped_because
+    assert "still comes down, so that the rod strikes again" in alone.validity.stopped_because
 
 
 @pytest.mark.parametrize(("angle", "v_n", "v_t"), [("89.5", "-10", "-1"), ("89.7", "-5", "1")])
