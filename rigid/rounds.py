@@ -78,10 +78,11 @@ def rounds_of(line: Floats, corner: float = 0.0) -> list[Round]:
     On a curve a vertex is the arc that touches both sides, the shorter one in its middle, so that a body
     rolls on without a jump; neighbours on one circle are one arc.
     """
-    first = int(np.argmin(np.roll(_directions(line), 1)))
+    low = np.roll(_directions(line), 1)  # inclination at which the side before it lies on the barrier
+    first = int(np.argmin(low))
     line = np.roll(line, -first, axis=0)
     turn, shorter, joined = steps_of(line, corner)
-    high = _directions(line)[-1] + np.cumsum(turn)  # from the inclination at which a side lies on the barrier
+    high = low[first] + np.cumsum(turn)
     bend = np.where(joined | np.roll(joined, 1), 0.5 * shorter / np.tan(0.5 * turn), 0.0)
     middle, inside = high - 0.5 * turn, bend / np.cos(0.5 * turn)
     x, z = line[:, 0] - inside * np.sin(middle), line[:, 1] + inside * np.cos(middle)

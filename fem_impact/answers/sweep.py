@@ -219,7 +219,7 @@ def _no_error(results: Results, columns: Sequence[str]) -> list[str]:
     first = next((name for name, told in ends.items() if told), "")
     if HEATS.name not in columns or not first:
         return []
-    return [f"`{HEATS.name}` has no half-width: in {first} {ends[first].partition(': ')[2]}."]
+    return [f"`{HEATS.name}` has no half-width: in {first} {ends[first]}."]
 
 
 def _share(cases: Sequence[str], count: int) -> str:

@@ -216,7 +216,7 @@ def print_outcome(
     if not isinstance(outcome.heat.power, Unknown):  # the heat was followed
         told["flash temperature"] = FLASH
     notes = why_unknown({label: key.of(outcome) for label, key in told.items()})
-    notes += [f"{HEATING}: {ends}"] if (ends := heat_ends(outcome)) else []
+    notes += [f"{HEATING}: no error of it is known: {ends}"] if (ends := heat_ends(outcome)) else []
     lines += ["", *(line for one in notes for line in wrapped(one, "  "))] if notes else []
     others = [one for one in outcome.validity.limitations if one not in wrong]
     lines += ["", *limitation_lines(others)]

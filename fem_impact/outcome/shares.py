@@ -107,8 +107,8 @@ def heat_ends(outcome: Outcome) -> str:
     high = rubbed + half_rubbed + sum((or_none(work) or 0.0) + (error or 0.0) for work, error in flowed)
     least, greatest = (plain(100 * end, 2) for end in (max(rubbed - half_rubbed, 0.0), min(high, 1.0)))
     return (
-        f"no error of it is known: it lies between {least} % (friction) and {greatest} % (friction and all "
-        "plastic work), errors included"
+        f"it lies between {least} % (friction) and {greatest} % (friction and all plastic work), "
+        "errors included"
     )
 
 

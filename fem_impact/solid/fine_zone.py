@@ -15,6 +15,7 @@ import numpy as np
 from fem_impact.arrays import Array, Ints
 from fem_impact.case.record import ContactRecord
 from fem_impact.fem.hexmodes import CORNERS, SIGNS
+from fem_impact.solid.contact.patch import bilinear
 from fem_impact.solid.contact.surface import SurfaceContact
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
@@ -85,7 +86,6 @@ def _work_above(zone: YieldingZone, nodes: Array) -> float:
 
 DEEP = 0.25  # depth over the tip size at which skin outside the contact stops the run
 LEVEL = 1e-9  # m, within which a node lies on the barrier's face
-SQUARE = np.array([[False, False], [True, False], [True, True], [False, True]])  # corners of a face in order
 PROOF_STRAIN = 0.002  # conventional proof strain: below it an element has hardly yielded
 
 
@@ -151,9 +151,8 @@ class SkinWatch:
         quads = mesh.faces_with(SKIN)
         quads = quads[(heights[quads] < 0).any(axis=1) & np.isfinite(heights[quads]).all(axis=1)]
         widest = np.ptp(mesh.points[quads], axis=1).max(initial=0.0)
-        s = np.linspace(0.0, 1.0, 2 + int(widest / record.rod.edge))
-        at = np.stack(np.meshgrid(s, s), axis=-1).reshape(-1, 2)
-        shape = np.prod(np.where(SQUARE, at[:, None], 1 - at[:, None]), axis=2)  # (places, corners)
+        s = np.linspace(-1.0, 1.0, 2 + int(widest / record.rod.edge))
+        shape = np.stack(bilinear(*np.meshgrid(s, s)), axis=-1).reshape(-1, 4)  # (places, corners)
         low = shape @ heights[quads].T < 0
         rod, now = (
             np.einsum("pc,qcd->pqd", shape, of[quads])[low] for of in (mesh.points, x[model.layout.rod])

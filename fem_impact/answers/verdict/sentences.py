@@ -150,7 +150,7 @@ def _heating(effect: VibrationEffect) -> str:
         share = _percent(effect, "skin", skin)
         ends = "" if "skin" in effect.errors else heat_ends(effect.free)
         told = f"{share} can heat the contact (friction, and plastic work of {of} down to 0.1 mm)"
-        return f"{told}; {ends}" if ends else told
+        return f"{told}; no error of it is known: {ends}" if ends else told
     plastic = or_none(energy.plastic) or 0.0
     return (
         f"{100 * friction:.0f} % (friction alone) to {100 * (friction + plastic):.0f} % (with all plastic "
