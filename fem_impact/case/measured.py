@@ -8,6 +8,8 @@ from importlib.resources import files
 from itertools import pairwise
 from typing import Any
 
+CONFIDENCE = 0.9
+"""Probability with which a limit from stored scenes holds the share of all scenes that it is to hold."""
 UNDER = {"barrier-elastoplastic": "barrier-elastic"}  # a block that yields is an elastic one first
 
 
@@ -69,6 +71,27 @@ def needed_half_widths() -> dict[str, dict[str, float]]:
     """
     rows = csv.DictReader(_data("level-bands.csv").splitlines())
     return {row.pop("key"): {name: float(text) for name, text in row.items()} for row in rows}
+
+
+def tolerance_rank(count: int, share: float, confidence: float = CONFIDENCE) -> int:
+    """Return which of ``count`` values, counted from 1 in ascending order, a ``share`` of all lie below.
+
+    It is the least of which that is so with this ``confidence``, whatever the distribution (Wilks 1941,
+    doi:10.1214/aoms/1177731788); the last where it is so of none.
+
+    Examples
+    --------
+    >>> tolerance_rank(45, 0.95), tolerance_rank(222, 0.95), tolerance_rank(800, 0.9)
+    (45, 216, 732)
+    """
+    beyond, exactly = 0, share**count  # chance that exactly so many of the values lie beyond the share
+    chance = exactly
+    while True:
+        exactly *= (count - beyond) / (beyond + 1) * (1.0 - share) / share
+        chance += exactly
+        if beyond == count or chance > 1.0 - confidence:
+            return count - beyond
+        beyond += 1
 
 
 def _rows(name: str) -> tuple[dict[str, float], ...]:

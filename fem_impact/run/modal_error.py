@@ -4,21 +4,22 @@ Scenes drawn at random ran by both models (`fem_impact.case.measured.reduced_pai
 among them is told by the numbers of `Place`. The error expected there is the mean of the stored ones, of
 which each counts the more the nearer its scene stands. A half-width is a multiple of it, conformal
 as jackknife+ (Barber et al. 2021, doi:10.1214/20-AOS1965): the multiple is each stored scene's own error over
-what the others let expect of it, and the `HELD` quantile over the scenes is told. No distribution is assumed,
-only that the scene is of the kind of those that were drawn.
+what the others let expect of it, and of the scenes' the one is told that holds `HELD` of them with confidence
+(`fem_impact.case.measured.tolerance_rank`). No distribution is assumed, only that the scene is of the kind of
+those that were drawn.
 """
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
-from math import ceil, exp, hypot, inf, log10, sqrt
+from math import exp, hypot, inf, log10, sqrt
 from typing import NamedTuple, Self
 
 import numpy as np
 
 from fem_impact.arrays import Array
 from fem_impact.case.case import Case
-from fem_impact.case.measured import reduced_pairs
+from fem_impact.case.measured import CONFIDENCE, reduced_pairs, tolerance_rank
 from fem_impact.outcome.keys import known, or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.physics.contact import ContactPair
@@ -115,16 +116,20 @@ class Stored:
     places : (n, 6) numbers of `Place`
     errors : (n, k) distances of both models in each of `TOLD`, over `scale_of`, and of `FACTORS`; nan where
         it is not known
+    confidence : with which half-widths hold `HELD` of all scenes
     """
 
     places: Array
     errors: Array
+    confidence: float = CONFIDENCE
 
     @classmethod
-    def of(cls, rows: Sequence[Mapping[str, float]], names: Sequence[str]) -> Self:
+    def of(
+        cls, rows: Sequence[Mapping[str, float]], names: Sequence[str], confidence: float = CONFIDENCE
+    ) -> Self:
         """Return the scenes of a table: `Place` and the distances of some numbers, by name."""
         places, errors = ([[row[name] for name in of] for row in rows] for of in (Place._fields, names))
-        return cls(np.array(places), np.abs(errors))
+        return cls(np.array(places), np.abs(errors), confidence)
 
     @cached_property
     def spread(self) -> Array:
@@ -160,7 +165,7 @@ class Stored:
         """
         known, errors, ratios, widest = self._judged[of]
         halves = np.sort(ratios * _without_each(self._near(place)[known] + COMMON / len(errors), errors))
-        typical = float(halves[min(ceil(HELD * (len(errors) + 1)), len(errors)) - 1])
+        typical = float(halves[tolerance_rank(len(errors), HELD, self.confidence) - 1])
         return typical + far * max(widest - typical, 0.0)
 
     def far(self, place: Array) -> float:

@@ -6,7 +6,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from fem_impact.answers.refine.extrapolate import LINE, level_limit
+from fem_impact.answers.refine.extrapolate import level_limit
+from fem_impact.answers.refine.needed import ROWS
 from fem_impact.answers.refine.strikes import open_by_levels
 from fem_impact.case.case import Case
 from fem_impact.errors import SceneError, UsageError
@@ -326,7 +327,7 @@ def test_what_meshes_leave_open_of_strikes_widens_what_is_told_of_them(steep):
         SimpleNamespace(
             size=size,
             outcome=SimpleNamespace(strikes=of),
-            runs=SimpleNamespace(size=size, wide=True, resolved=True, rows=LINE),
+            runs=SimpleNamespace(size=size, wide=True, resolved=True, rows=ROWS),
         )
         for size, of in ((1e-3, coarser), (5e-4, strikes))
     ]

@@ -16,7 +16,7 @@ Levels that agree by chance cannot know the energy of vibration better than its 
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise, takewhile
+from itertools import pairwise
 from math import hypot, log2, sqrt
 from statistics import fmean, stdev
 
@@ -77,7 +77,6 @@ HALVED = 0.5
 # of the larger of the last two changes, each by one halving of the cells, where the last level does not
 # resolve a contact's narrow side: Roache's of two grids. It holds what an order of 0.42 or more leaves
 NARROW = 3.0
-LINE = 2  # nodes across a contact, of which a level with fewer tells nothing of how wide that is
 # of the widest band of `SHARED`, that each of them has at least: what one body or the contact takes less on a
 # finer mesh, the others take. Of 44 numbers of 7 scenes beside one level more one more was held, of 140
 # numbers of levels inside chains five more
@@ -111,7 +110,7 @@ class MeshRuns:
     runs: list[Outcome]
     resolved: bool = True
     wide: bool = True
-    rows: int = LINE
+    rows: int = ROWS
     repeats: int = 0
     earlier: Sequence[float] = ()
 
@@ -209,7 +208,7 @@ def own_limits(levels: Sequence[MeshRuns]) -> tuple[MeshNumbers, MeshNumbers]:
         return UNRESOLVED, UNRESOLVED
     if len(levels) < 2:
         return ALONE, ALONE
-    sizes, wide, rows = zip(*((level.size, level.wide, level.rows) for level in levels), strict=True)
+    sizes, wide = zip(*((level.size, level.wide) for level in levels), strict=True)
     limits, bands = dict[str, float](), dict[str, float]()
     for key in KEYS:
         means = [level.mean([key]) for level in levels] if key.banded else [None, None]
@@ -217,7 +216,7 @@ def own_limits(levels: Sequence[MeshRuns]) -> tuple[MeshNumbers, MeshNumbers]:
             continue
         # a number that a coarser level does not know changes by itself
         values = [level.values([key]) or [0.0] for level in levels]
-        limits[key.name], bands[key.name] = level_limit(sizes, values, wide, rows)
+        limits[key.name], bands[key.name] = level_limit(sizes, values, wide)
         if key is VIBRATION:
             bands[key.name] = max(bands[key.name], fmean(map(vibration_floor, levels[-1].runs)))
     taken = [key.name for key in SHARED if limits.get(key.name)]  # of 0 no share is taken: none can be lost
@@ -231,10 +230,7 @@ def own_limits(levels: Sequence[MeshRuns]) -> tuple[MeshNumbers, MeshNumbers]:
 
 
 def level_limit(
-    sizes: Sequence[float],
-    values: Sequence[Sequence[float]],
-    resolved: Sequence[bool],
-    rows: Sequence[int] = (),
+    sizes: Sequence[float], values: Sequence[Sequence[float]], resolved: Sequence[bool]
 ) -> tuple[float, float]:
     """Return limit and half-width of one number from its values on two or more levels from coarse to fine.
 
@@ -242,16 +238,14 @@ def level_limit(
     change from one level to the next where both ``resolved`` the contact and ran once each, and than `HALVED`
     of any other of the last three. Where the last but one did not, nothing is extrapolated: the finest value
     stands, with `LONE` times the change to it; where the last did not, with `NARROW` times the larger of the
-    last two changes by a halving. ``rows`` are the nodes across the contact: first levels with fewer than
-    `LINE` count only where no two others ran.
+    last two changes by a halving.
     """
     means = [fmean(on_level) for on_level in values]
     changes = [abs(fine - coarse) for coarse, fine in pairwise(means)]
     if not resolved[-1]:
-        lines = sum(1 for _ in takewhile(lambda across: across < LINE, rows))
         halvings = [max(log2(coarse / fine), 1.0) for coarse, fine in pairwise(sizes)]
         by_halving = [change / times for change, times in zip(changes, halvings, strict=True)]
-        return means[-1], NARROW * max(by_halving[lines if lines < len(changes) else 0 :][-2:])
+        return means[-1], NARROW * max(by_halving[-2:])
     if resolved[-2]:
         value, band = pair_limit(sizes[-2:], values[-2:])
     else:

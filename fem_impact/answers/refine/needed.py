@@ -4,9 +4,9 @@ Levels may agree by chance in one number, but not in all that an impact leaves. 
 few numbers says how far a scene is from its limit. Scenes drawn at random ran with one level more
 (`fem_impact.evidence.studies.coverage`). A half-width is at least ``times`` what the levels tell by
 themselves and ``share`` of the widest. Both were chosen for each number so that half-widths are narrow in the
-geometric mean, and so large that they hold the differences by split conformal prediction (Lei et al. 2018,
-doi:10.1080/01621459.2017.1307116). No distribution is assumed, only that a scene is of the kind of those that
-were drawn.
+geometric mean, and so large that they hold the differences with confidence: by a tolerance limit of the
+stored ones (`fem_impact.case.measured.tolerance_rank`). No distribution is assumed, only that a scene is of
+the kind of those that were drawn.
 """
 
 from collections.abc import Mapping

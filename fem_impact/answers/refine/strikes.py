@@ -36,10 +36,10 @@ def _open_of(number: int, each: Sequence[Sequence[StrikeRecord]], levels: Sequen
 def _open(levels: Sequence[LevelRun], struck: Sequence[StrikeRecord]) -> Doubt:
     """Return the half-widths of a strike on levels from coarse to fine."""
     runs = [level.runs for level in levels]
-    sizes, wide, rows = zip(*((one.size, one.wide, one.rows) for one in runs), strict=True)
+    sizes, wide = zip(*((one.size, one.wide) for one in runs), strict=True)
 
     def half(values: Sequence[float]) -> float:
-        limit, band = level_limit(sizes, [[value] for value in values], wide, rows)
+        limit, band = level_limit(sizes, [[value] for value in values], wide)
         return band + abs(limit - values[-1])
 
     return Doubt(

@@ -173,8 +173,8 @@ class Limited(Criterion):
             value, band = limits[self.column], bands[self.column]
         else:
             values = [[value] for _, value in known][-3:]
-            sizes, wide, rows = zip(*((one.size, one.wide, one.rows) for one in used), strict=True)
-            value, band = level_limit(sizes, values, wide, rows)
+            sizes, wide = zip(*((one.size, one.wide) for one in used), strict=True)
+            value, band = level_limit(sizes, values, wide)
 
         def told(name: str) -> str:
             if name not in bands:

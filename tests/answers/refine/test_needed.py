@@ -60,7 +60,7 @@ def test_half_widths_that_the_study_finds_hold_as_many_of_other_scenes():
     times, share = needed(errors[known], halves[known], most[known])
     told = np.maximum(halves, times * halves + share * most)[fresh]
     held, own = np.mean(errors[fresh] <= told), np.mean(errors[fresh] <= halves[fresh])
-    assert own < 0.5 and HELD - 0.03 < held < HELD + 0.03
+    assert own < 0.5 and HELD - 0.01 < held < HELD + 0.04
     assert np.median(told) < 2.5 * np.quantile(errors, HELD)
     assert needed(errors[: LEAST - 1], halves[: LEAST - 1], most[: LEAST - 1]) is None
 
