@@ -30,7 +30,7 @@ import numpy as np
 
 from fem_impact.arrays import Array
 from fem_impact.fem.kernels import allocating_kernel, inlined
-from fem_impact.modal.tip import ROUND, Tip, half_length, outline, steeper
+from fem_impact.modal.tip import ROUND, Tip, half_length, lean, outline
 from fem_impact.physics.contact_law import FULLY_PLASTIC, REPRESENTATIVE, RUN_IN, STUCK, FlowLaw
 
 CELLS = 512  # of the ring that follows the tip
@@ -68,6 +68,20 @@ class WorkIndex(NamedTuple):
 
 
 AT, WORK = StateIndex(), WorkIndex()
+
+
+class Strength(NamedTuple):
+    """What a contact bears that is pushed to one side, Pa.
+
+    Its hardness H where metal flows to that side, and K; its hardness where it flows to the other one, which
+    the push hampers, and the tangential force over 2 b up to which it does. H is infinitely far from flow to
+    the other side where that bears more.
+    """
+
+    H: float
+    K: float
+    away: float
+    most: float
 
 
 class Groove(NamedTuple):
@@ -121,17 +135,21 @@ def borne(radius: float, stress: float, slope: float, exponent: float, law: Flow
 
 
 @inlined
-def hardness(radius: float, tip: Tip, law: FlowLaw) -> float:
-    """Return H, Pa: that of the body that flows, at most that of the other one.
+def hardness(radius: float, tip: Tip, law: FlowLaw) -> tuple[float, float]:
+    """Return H, Pa, of metal that flows to the rear of the tip and to its front: of the body that flows.
 
-    The tip bears less than a plane body: its flanks rise beside the contact, and slip lines turn by less. One
-    in its groove cannot flow to one side alone: it leans by the mean of both.
+    It is at most that of the other one. The tip bears less than a plane body: its flank rises beside the
+    contact, and slip lines turn by less. One in its groove cannot flow to one side alone: it leans by the
+    mean of both.
     """
     own = borne(radius, law.yield_stress, law.slope, law.exponent, law)
     other = borne(radius, law.other_yield_stress, law.other_slope, law.other_exponent, law)
     if law.ploughs:
-        return min(own, other * (1.0 - atan(radius / sqrt(law.R * law.R1)) / (1.0 + 0.5 * pi)))
-    return min(own * (1.0 - steeper(tip, 0.5 * radius**2 / law.R) / (1.0 + 0.5 * pi)), other)
+        H = min(own, other * (1.0 - atan(radius / sqrt(law.R * law.R1)) / (1.0 + 0.5 * pi)))
+        return H, H
+    depth = 0.5 * radius**2 / law.R
+    behind = own * (1.0 - lean(tip.radius, tip.behind, depth) / (1.0 + 0.5 * pi))
+    return min(behind, other), min(own * (1.0 - lean(tip.radius, tip.ahead, depth) / (1.0 + 0.5 * pi)), other)
 
 
 @inlined
@@ -188,18 +206,29 @@ def flowed(q: float, T: float, Q: float, S: float, law: FlowLaw) -> tuple[float,
 
 
 @inlined
-def strengths(groove: Groove, law: FlowLaw) -> tuple[float, float]:
-    """Return H and K, Pa, of the contact as it is."""
+def strengths(groove: Groove, law: FlowLaw) -> tuple[Strength, Strength]:
+    """Return what the contact bears as it is, if it is pushed on along its way and back."""
     radius = widest(groove.state, law)
-    H = hardness(radius, groove.tip, law)
+    behind, ahead = hardness(radius, groove.tip, law)
+    way = exp(-groove.state[AT.slid] / (RUN_IN * radius))
+    return strength(behind, ahead, way, law), strength(ahead, behind, way, law)
+
+
+@inlined
+def strength(H: float, away: float, way: float, law: FlowLaw) -> Strength:
+    """Return what a contact bears whose metal is pushed to the side of the hardness H, Pa."""
     slid = min(law.skin, STUCK * H)
-    way = groove.state[AT.slid] / (RUN_IN * radius)
-    return H, slid + (STUCK * H - slid) * exp(-way)
+    K = slid + (STUCK * H - slid) * way
+    turns = (2.0 + pi) * (1.0 - away / H) if away < H else 0.0
+    at = 0.5 * turns
+    for _ in range(8 if turns > 0.0 else 0):
+        at -= (at + 1.0 - cos(at) - turns) / (1.0 + sin(at))
+    return Strength(H, K, away, K * sin(min(at, 0.5 * pi)))
 
 
 @inlined
 def press_cell(
-    groove: Groove, i: int, D: float, moved: float, up: float, H: float, K: float, law: FlowLaw
+    groove: Groove, i: int, D: float, moved: float, up: float, bears: tuple[Strength, Strength], law: FlowLaw
 ) -> tuple[float, float]:
     """Press a cell to D, m, move the tip along it, m, and return its normal and tangential force, N/m.
 
@@ -208,8 +237,13 @@ def press_cell(
     g, normal, shift, _, works, _, size = groove
     before, sheared = g[i], law.shear * shift[i]
     trial, b = sheared + law.shear * moved, sqrt(law.R2 * max(D + g[i] + 2 * up, 0.0))
+    H, K, away, most = bears[0] if trial > 0.0 else bears[1]
     held = min(max(trial, -2 * b * K), 2 * b * K)  # a long step moves on: no more than that was ever held
-    q, stuck = flowed(law.normal * (D - g[i]), held, 2 * b * H, 2 * b * K, law)
+    q, stuck = law.normal * (D - g[i]), held
+    if q <= 2 * b * away or abs(held) > 2 * b * most:
+        q, stuck = flowed(q, held, 2 * b * H, 2 * b * K, law)
+    if q > 2 * b * away:  # metal flows to the other side
+        q, stuck = 2 * b * away, min(max(stuck, -2 * b * most), 2 * b * most)
     g[i] = max(g[i], D - q / law.normal)
     works[WORK.flow] += 0.5 * (normal[i] + q) * (g[i] - before) * size
     limit = min(law.friction * q, 2 * b * law.skin)
@@ -244,7 +278,7 @@ def slide(groove: Groove, depth: float, place: float, law: FlowLaw) -> tuple[flo
     rises = min(state[AT.sinks] - sunk_beside(state[AT.deepest], state[AT.dent]), state[AT.pays])
     state[AT.sinks] = sinks = state[AT.sinks] - rises
     flow, lift = groove.works[WORK.flow], 0.0
-    H, K = strengths(groove, law)
+    bears = strengths(groove, law)
     F_n, F_t, ridge, volume, front, touching = 0.0, 0.0, 0.0, 0.0, 0, 0
     way = 1 if moved > 0.0 else -1
     for step in range(last - first + 1):
@@ -257,7 +291,7 @@ def slide(groove: Groove, depth: float, place: float, law: FlowLaw) -> tuple[flo
             continue
         s, before, bore = s if law.ploughs else 0.0, g[i], groove.normal[i]
         ahead = s * moved > 0.0
-        q, T = press_cell(groove, i, D, moved - s * sunk, state[AT.ridge] if ahead else 0.0, H, K, law)
+        q, T = press_cell(groove, i, D, moved - s * sunk, state[AT.ridge] if ahead else 0.0, bears, law)
         touching += 1
         lift += 0.5 * (bore + q) * rate * size
         state[AT.dent] = max(state[AT.dent], g[i])

@@ -57,20 +57,17 @@ def half_length(radius: float, side: Flank, depth: float) -> float:
 
 
 @inlined
-def steeper(tip: Tip, depth: float) -> float:
-    """Return the angle to the surface, rad, of a tip's steeper side beside its contact at a depth, m.
+def lean(radius: float, side: Flank, depth: float) -> float:
+    """Return the angle to the surface, rad, of a side of a tip beside its contact at a depth, m.
 
     Slip lines reach half as far beyond a contact as it is long (Hill 1950, The Mathematical Theory of
     Plasticity): it is the mean over so much.
     """
-    radius, behind, ahead = tip
-    arc, most = acos(max(1.0 - depth / radius, -1.0)), 0.0
-    for slope, end, beyond in (behind, ahead):
-        flank = atan(slope)
-        lean = min(arc, flank)
-        reach, rest = sin(lean), flank - lean  # over the radius
-        lean = flank - 0.5 * rest**2 / reach if rest < reach else lean + 0.5 * reach
-        if depth > max(0.5 * radius * slope**2, slope * (end - 0.5 * radius * slope)):
-            lean = atan(beyond)
-        most = max(most, lean)
-    return min(most, 0.5 * pi)
+    slope, end, beyond = side
+    flank = atan(slope)
+    round_to = min(acos(max(1.0 - depth / radius, -1.0)), flank)
+    reach, rest = sin(round_to), flank - round_to  # over the radius
+    angle = flank - 0.5 * rest**2 / reach if rest < reach else round_to + 0.5 * reach
+    if depth > max(0.5 * radius * slope**2, slope * (end - 0.5 * radius * slope)):
+        angle = atan(beyond)
+    return min(max(angle, 0.0), 0.5 * pi)

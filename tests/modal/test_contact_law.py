@@ -222,16 +222,37 @@ BESIDE = pi / 2 - 0.5 * (pi / 6) ** 2 / sin(pi / 3)
 def test_a_tip_that_is_flattened_bears_less_the_steeper_its_steeper_flank(tip, radius, H):
     """By Hencky 2 k (1 + pi/2) of a plane surface, and 2 k alone of a column."""
     law = flow()._replace(ploughs=False, E_star=1e18)  # fully plastic from the first
-    assert hardness(radius, tip, law) == pytest.approx(3 * 300e6 * H / (1 + pi / 2), rel=1e-3)
-    assert hardness(radius, tip, law._replace(ploughs=True)) == pytest.approx(3 * 300e6, rel=1e-12)
+    assert min(hardness(radius, tip, law)) == pytest.approx(3 * 300e6 * H / (1 + pi / 2), rel=1e-3)
+    assert hardness(radius, tip, law._replace(ploughs=True)) == pytest.approx((3 * 300e6,) * 2, rel=1e-12)
+
+
+def test_friction_against_the_way_the_metal_flows_takes_nothing_from_what_an_edge_bears():
+    """It flows to its steep flank; a push to that side helps it, one to the other side does not.
+
+    Finite elements of a steel edge at 18 degrees bear, for the same depth, 0.98 of what they bear without
+    friction if f = 0.3 pushes the metal to its flat side, and 0.49 if it pushes to the steep one.
+    """
+    edge = Tip(1e-9, Flank(0.3, 1e9, 1e9), Flank(3.0, 1e9, 1e9))
+    law = flow()._replace(ploughs=False, E_star=1e18, friction=0.3)
+
+    def borne(way):
+        groove = smooth(1e-3, 1e-5)._replace(tip=edge)
+        for step in range(1, 300):
+            force = slide(groove, 1e-6 * step, way * 3e-6 * step, law)
+        return force
+
+    still, flat, steep = borne(0), borne(1), borne(-1)
+    assert flat[0] == pytest.approx(still[0], rel=0.01) and flat[1] == pytest.approx(-0.3 * flat[0], rel=0.01)
+    assert 0.5 * still[0] < steep[0] < 0.85 * still[0]
 
 
 def test_no_body_bears_more_than_the_hardness_of_the_other_one():
     """A tip in its groove bears less than a plane body of its flow stress, by the mean of both flanks."""
     hard = flow(stress=900e6)
     tip, plane = (hard._replace(other_yield_stress=200e6, ploughs=of) for of in (True, False))
-    assert hardness(R, BALL, tip) == pytest.approx((1 - 0.25 * pi / (1 + 0.5 * pi)) * 3 * 200e6, rel=1e-12)
-    assert hardness(R, BALL, plane) == pytest.approx(3 * 200e6, rel=1e-12)
+    leans = (1 - 0.25 * pi / (1 + 0.5 * pi)) * 3 * 200e6
+    assert hardness(R, BALL, tip) == pytest.approx((leans, leans), rel=1e-12)
+    assert hardness(R, BALL, plane) == pytest.approx((3 * 200e6,) * 2, rel=1e-12)
     assert hardness(R, BALL, hard._replace(other_yield_stress=2.7e9)) == hardness(R, BALL, hard)
 
 
