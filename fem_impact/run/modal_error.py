@@ -2,9 +2,9 @@
 
 Scenes drawn at random ran by both models (`fem_impact.case.measured.reduced_pairs`). Where a scene stands
 among them is told by the numbers of `Place`. The error expected there is the mean of the stored ones, of
-which each counts the more the nearer its scene stands. A half-width is a multiple of it, conformal
-as jackknife+ (Barber et al. 2021, doi:10.1214/20-AOS1965): the multiple is each stored scene's own error over
-what the others let expect of it, and of the scenes' the one is told that holds `HELD` of them with confidence
+which each counts the more the nearer its scene stands. A half-width is a multiple of it as in jackknife+
+(Barber et al. 2021, doi:10.1214/20-AOS1965): the multiple is each stored scene's own error over what the
+others let expect of it, and that of the scene is taken which holds `HELD` of all with confidence
 (`fem_impact.case.measured.tolerance_rank`). No distribution is assumed, only that the scene is of the kind of
 those that were drawn.
 """
