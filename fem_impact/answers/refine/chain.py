@@ -189,9 +189,9 @@ class LevelChain:
         then = self.following
         if then is None:
             return None
-        smaller = self.done[-1].splits + 1  # where the budget does not hold the larger step
-        for splits in (then, smaller):
-            if self.spent_s + self.forecast_s(splits) <= self.budget_s:
+        smaller = self.done[-1].splits + 1  # where the budget does not hold the larger step for sure
+        for splits, longer in ((then, 1.0 if then == smaller else forecast.LONGER), (smaller, 1.0)):
+            if self.spent_s + longer * self.forecast_s(splits) <= self.budget_s:
                 return splits
         if self.options.progress is not None:
             self.options.progress(Notice(f"The run ends with level {len(self.done)}. {self._not_begun}"))

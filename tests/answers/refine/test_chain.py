@@ -171,7 +171,7 @@ def test_no_band_is_narrower_than_the_changes_from_level_to_level():
         return [MeshRuns(2.0**-at, [run]) for at, run in enumerate(runs)]
 
     def band(meshes, *wide):
-        return known(level_limits(narrowed(meshes, wide))[1])["e_edge"]
+        return known(own_limits(narrowed(meshes, wide))[1])["e_edge"]
 
     def narrowed(meshes, wide):
         return [replace(mesh, wide=is_wide) for mesh, is_wide in zip(meshes, wide, strict=True)]
@@ -182,10 +182,10 @@ def test_no_band_is_narrower_than_the_changes_from_level_to_level():
     twice = [MeshRuns(mesh.size, mesh.runs * 2) for mesh in chance]
     assert band(twice, True, True, True) == pytest.approx(0.05)
     falling = levels(0.4, 0.3, 0.25)
-    limits, bands = level_limits(narrowed(falling, (False, False, True)))
+    limits, bands = own_limits(narrowed(falling, (False, False, True)))
     assert known(limits)["e_edge"] == 0.25  # nothing is extrapolated from a level that resolves nothing
     assert known(bands)["e_edge"] == pytest.approx(1.5 * 0.05)
-    assert band(falling, False, True, True) == known(level_limits(falling[-2:])[1])["e_edge"] > 0.05
+    assert band(falling, False, True, True) == known(own_limits(falling[-2:])[1])["e_edge"] > 0.05
 
 
 def test_two_narrow_levels_that_agree_have_the_change_before_them_in_their_band():

@@ -61,14 +61,18 @@ def test_more_levels_run_where_the_last_resolved_nothing(level):
     assert levels._next is None
 
 
-def test_a_smaller_step_follows_where_the_budget_does_not_hold_the_larger(level):
-    """Of four levels two are done and two left for three splits; of three one is, for two."""
+def test_a_smaller_step_follows_where_the_budget_does_not_hold_the_larger_for_sure(level):
+    """Of four levels two are done and two left for three splits; of three one is, for two.
+
+    A stepped rod had a minute: its second level, forecast to fit, was given up, and none was left.
+    """
     for levels in (3, 4):
         scene = replace(QUICK, accuracy=replace(QUICK.accuracy, levels=levels))
         chain = LevelChain(Case(scene), done=[lasting(level, 10.0)] * (levels - 2))
         one_s, two_s = (chain.forecast_s(level.splits + more) for more in (1, 2))
-        chain.budget_s = chain.spent_s + 0.5 * (one_s + two_s)
-        assert chain._next == level.splits + 1
+        for budget_s in (0.5 * (one_s + two_s), 1.2 * two_s):
+            chain.budget_s = chain.spent_s + budget_s
+            assert chain._next == level.splits + 1
         chain.budget_s = chain.spent_s + 2.0 * two_s
         assert chain._next == level.splits + (1 if levels == 3 else 2)
 
