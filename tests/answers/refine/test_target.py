@@ -69,11 +69,11 @@ def test_each_level_but_the_pilot_runs_at_two_places(ran):
 
 
 def test_an_error_of_one_number_alone_is_reached_by_that_number(ran):
-    """Three levels give mu to 3 %, e and E_vib to 7 %."""
+    """Three levels give mu to 4 %, e and E_vib less well."""
     simulate(ASKED, budget_s=1e9)
     both, _ = len(ran), ran.clear()
     outcome = simulate(replace(ASKED, "accuracy", "mu 5 %"), budget_s=1e9)
-    assert outcome.validity.achieved_error == pytest.approx(0.0254, rel=1e-2) and not told(outcome)
+    assert outcome.validity.achieved_error == pytest.approx(0.0376, rel=1e-2) and not told(outcome)
     assert len(ran) < both
 
 

@@ -17,8 +17,11 @@ from fem_impact.tables.table import Cell, Table
 
 LEAST = ceil(HELD / (1 - HELD))
 """Scenes from which on their largest difference is a limit that holds `HELD`."""
-RATIOS = 0.0, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0
-"""Shares of the widest half-width over multiples of the own one that are tried: few, as a choice flatters."""
+RATIOS = 0.03, 0.1, 0.3, 1.0, 3.0, 10.0
+"""Shares of the widest half-width over multiples of the own one that are tried.
+
+They are few, as a choice flatters, and none is 0, since levels may agree by chance in any number.
+"""
 ROUND = 1e-6
 """In the unit of a number, below which half-widths are alike in the mean of their logarithms."""
 
