@@ -30,7 +30,7 @@ def test_cost_prints_table_and_advice(cli, fake):
     assert "results: results/cost/t5b" in out
     assert "page: results/cost/t5b/report.html" in out
     page = Path("results/cost/t5b/report.html").read_text()
-    assert page.index("Cheapest within 20 %") < page.index('<figure class="live">') < page.index("<details>")
+    assert page.index("Cheapest within 25 %") < page.index('<figure class="live">') < page.index("<details>")
     code, out, _ = cli("cost", "t5b", "--json", "--target", "35 %", "--budget", "400 s")
     cheapest, _, of_e, default = json.loads(out)["advice"]
     assert cheapest.startswith("Cheapest within 35 % of e and E_vib: modal, error ")
