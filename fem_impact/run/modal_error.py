@@ -34,6 +34,8 @@ NEAR, COMMON = 1.5, 1.0
 VIBRATION = "E_vib_over_E_0"
 PLOUGHS = 0.1
 """Impulse ratio beyond friction, of the form of a dent, that no stored scene comes near; the most is .095."""
+# speed over that of approach, up to which errors of e do not grow with it in the stored scenes, and the most
+GRAZING = 3.1
 LEAST_VIBRATION = 0.005  # of E_0, below which errors of the vibration energy no longer fall with it
 TOLD = (
     *("e_edge", "mu", "V_n_m_per_s", "V_t_m_per_s", "Omega_rad_per_s"),
@@ -215,6 +217,8 @@ def half_widths(place: Place, outcome: Outcome, approach: float) -> dict[str, fl
         for of, key in enumerate(TOLD)
         if or_none(KEY_TABLE[key].of(outcome)) is not None
     }
+    if "e_edge" in halves:  # what is left of a slow approach is as open as the speeds that it is over
+        halves["e_edge"] *= max(unit_of("V_n_m_per_s", outcome) / (GRAZING * approach), 1.0)
     # the plastic work of the body that flows is what the other shares leave
     plastic = [key for key in PLASTIC if or_none(KEY_TABLE[key].of(outcome))]
     if not outcome.motion.friction:  # nothing rubs; along an elastic body nothing pushes at all

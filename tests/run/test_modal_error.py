@@ -1,7 +1,7 @@
 """The told error of the reduced model: conformal half-widths from stored scenes, and where a scene stands."""
 
 import dataclasses
-from math import log10
+from math import hypot, log10
 
 import numpy as np
 import pytest
@@ -14,6 +14,7 @@ from fem_impact.outcome.groups import texts
 from fem_impact.run import modal_error
 from fem_impact.run.modal_error import (
     CALLED,
+    GRAZING,
     HELD,
     PLASTIC,
     TOLD,
@@ -136,9 +137,12 @@ def test_an_outcome_tells_half_widths_in_its_units_and_what_it_is_unlike(monkeyp
     far = Place(*(np.array(stored().places.max(axis=0)) + 1.0))
     assert "None of them is like this one in" in modal_error.sentence(far, outcome)
     assert half_widths(far, outcome, 1.0)["mu"] > halves["mu"]
+    near = place_of(Case.of(load("t5b"), "modal"), outcome)
+    speed = hypot(outcome.motion.v_n, outcome.motion.v_t)
+    grazing = half_widths(near, outcome, speed / (10 * GRAZING))
+    assert grazing == {**halves, **dict.fromkeys(("e_edge", "e_paper"), pytest.approx(10 * halves["e_edge"]))}
     twice = dataclasses.replace(outcome.contact, sites=2 * outcome.contact.sites)
     later = dataclasses.replace(outcome, contact=twice)
-    near = place_of(Case.of(load("t5b"), "modal"), outcome)
     assert "number of places" in modal_error.sentence(near, later)
     assert half_widths(near, later, 1.0)["mu"] > halves["mu"]
     told = " ".join(texts(outcome.validity.limitations, "model"))
