@@ -142,6 +142,8 @@ def flash_bound(pair: ContactPair, friction: float, halves: Halves) -> float:
     softer = min(metal.ultimate_stress for metal in (pair.rod, pair.barrier))
     if not friction or isinf(softer):
         return inf if friction else 0.0
-    speed = abs(pair.sliding) + pair.approach
+    speed = max(
+        abs(pair.sliding) + pair.approach, pair.most_sliding
+    )  # what the impact turns of it counts, too
     q, t = friction * HARDNESS * softer * speed, 3 * pair.estimate.duration
     return max(float(short_rise([0.0, t], [q], body)[-1]) for body in halves)

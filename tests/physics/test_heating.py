@@ -189,9 +189,13 @@ def test_closed_form_of_the_rigid_fidelity():
 
 
 def test_the_bound_by_hand():
-    """Hardness of the plate, first speed along and across, all heat in the less effusive body."""
+    """Hardness of the plate, largest speed of sliding, all heat in the less effusive body.
+
+    A leaning rod slides faster as the impact turns it than it came down, along and across.
+    """
     stated = changed(load("t5b"), "heating.rod_conductivity", "20 W/(m K)")
-    f, v = stated.surface.friction, abs(stated.impact.v_t) + abs(stated.impact.v_n)
+    f, v = stated.surface.friction, Case.of(stated).bodies.contact.most_sliding
+    assert v > abs(stated.impact.v_t) + abs(stated.impact.v_n)
     seconds = 3 * Case.of(stated).bodies.estimate.duration
     alone = 2 * f * 3 * 446e6 * v * sqrt(seconds / (pi * 20.0 * 7850 * 440.0))
     assert bound_of(stated) == pytest.approx(alone)
@@ -221,7 +225,7 @@ def test_heat_stays_for_a_while_when_the_source_is_gone():
     assert made.rise[-1] == pytest.approx((sqrt(2.0) - 1) * made.peak, rel=1e-6)
 
 
-@pytest.mark.parametrize(("melting", "resolved"), [("5000 K", True), ("700 K", False)])
+@pytest.mark.parametrize(("melting", "resolved"), [("5200 K", True), ("700 K", False)])
 def test_a_temperature_above_the_melting_point_is_not_resolved(melting, resolved):
     """Of the two bodies the one that melts first counts; conduction without latent heat is no bound there."""
     limits = {"heating.rod_melting": melting, "heating.barrier_melting": "5500 K"}
