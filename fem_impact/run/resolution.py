@@ -10,6 +10,7 @@ from fem_impact.case.cells import LEAST, advice, contact_edge, contact_radius, k
 from fem_impact.outcome.groups import ARMS, Heat, Markers, Readings
 from fem_impact.outcome.keys import Unknown, unknown
 from fem_impact.outcome.record import Outcome
+from fem_impact.physics.contact_law import begins_to_yield
 
 if TYPE_CHECKING:
     from fem_impact.case.bodies import Bodies
@@ -28,11 +29,15 @@ LEDGER = ("E_0", "vibration_floor", "below_floor", "residual")  # valid without 
 
 
 def unresolved(result: SolidResult) -> str:
-    """Return why the contact was not resolved and what resolves it, an empty string where it was."""
-    if result.peak_nodes < least_nodes(result.case.bodies):
+    """Return why the contact was not resolved and what resolves it, an empty string where it was.
+
+    One row of nodes is pressed as hard as its cells are large: levels of it agree, and see no flow where
+    finer ones do.
+    """
+    bodies = result.case.bodies
+    h = contact_edge(bodies)
+    if result.peak_nodes < least_nodes(bodies):
         # how narrow the contact was when the force was largest, and what resolves it
-        bodies = result.case.bodies
-        h = contact_edge(bodies)
         radius = h * sqrt(2 * max(result.peak_nodes, 1) / pi)
         too_narrow = (
             f"at its peak {result.peak_nodes} nodes of the half model were pressed, fewer than "
@@ -40,6 +45,12 @@ def unresolved(result: SolidResult) -> str:
             f"{advice(bodies, min(radius, contact_radius(bodies)))}"
         )
         return f'{NOT_RESOLVED} {too_narrow}, or accuracy.unresolved = "report"'
+    if result.record.rows == 1 and begins_to_yield(bodies.contact):
+        return (
+            f"{NOT_RESOLVED} it is one row of nodes wide on elements of {h * 1e3:.2g} mm, whose size sets "
+            f"its pressure, and the estimated contact yields. {advice(bodies, h / 2)}, or "
+            'accuracy.unresolved = "report"'
+        )
     lost = result.accounts["contact_dissipation"] / result.E_0
     if lost > LOST:
         half = 0.5e3 * result.model.geometry.tip_size
