@@ -17,7 +17,7 @@ from fem_impact.case.case import Case
 from fem_impact.errors import SceneError
 from fem_impact.outcome.keys import Num, Unknown, keys_of, known, or_none
 from fem_impact.outcome.strikes import PHASED, StrikeRecord, Strikes, StrikeSpread, other_end
-from fem_impact.run.modal_error import FACTORS, HELD, LEAST_VIBRATION, TOLD, VIBRATION, place_at, stored
+from fem_impact.run import modal_error
 from fem_impact.run.strikes import Followed
 from fem_impact.scene.types import Scene
 from rigid import critical_ratio
@@ -178,15 +178,18 @@ def _by_stored(case: Case, body: Followed, begin: FlightState, one: StrikeRecord
             omega=pair.omega,
         )
     )
-    place, table = np.array(place_at(pair, case.bodies.bending_period, stops)), stored()
-    e, mu, friction, vibration, force = (
-        table.half_width(place, (*TOLD, *FACTORS).index(name), table.far(place))
-        for name in ("e_edge", "mu", "W_friction_over_E_0", VIBRATION, "peak_force_N")
+    place, table = (
+        np.array(modal_error.place_at(pair, case.bodies.bending_period, stops)),
+        modal_error.stored(),
     )
-    vibrates = max(one.vibration, LEAST_VIBRATION * one.before)
+    e, mu, friction, vibration, force = (
+        table.half_width(place, (*modal_error.TOLD, *modal_error.FACTORS).index(name), table.far(place))
+        for name in ("e_edge", "mu", "W_friction_over_E_0", modal_error.VIBRATION, "peak_force_N")
+    )
+    vibrates = max(one.vibration, modal_error.LEAST_VIBRATION * one.before)
     louder = one.force_phase / one.force if one.force else 0.0
     return Doubt(
-        hypot(e, one.e_phase),
+        hypot(e * modal_error.widened_by(hypot(pair.v_n, pair.v_t), pair.approach), one.e_phase),
         hypot(mu, one.mu_phase),
         hypot(friction * one.before, one.friction_phase),
         hypot(vibration * vibrates, one.vibration_phase),
@@ -236,7 +239,7 @@ def _drawn(case: Case) -> Iterator[tuple[Scene, list[Doubt]]]:
 
 def _place(run: int) -> Doubt:
     """Return places within what is not known of a strike, of which nine in ten lie within -1 to 1."""
-    e, mu, vibration, force = ((2.0 * _halton(run, base) - 1.0) / HELD for base in (5, 7, 11, 13))
+    e, mu, vibration, force = ((2.0 * _halton(run, base) - 1.0) / modal_error.HELD for base in (5, 7, 11, 13))
     return Doubt(e, mu, mu, vibration, force)
 
 

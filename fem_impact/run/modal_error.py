@@ -217,8 +217,8 @@ def half_widths(place: Place, outcome: Outcome, approach: float) -> dict[str, fl
         for of, key in enumerate(TOLD)
         if or_none(KEY_TABLE[key].of(outcome)) is not None
     }
-    if "e_edge" in halves:  # what is left of a slow approach is as open as the speeds that it is over
-        halves["e_edge"] *= max(unit_of("V_n_m_per_s", outcome) / (GRAZING * approach), 1.0)
+    if "e_edge" in halves:
+        halves["e_edge"] *= widened_by(unit_of("V_n_m_per_s", outcome), approach)
     # the plastic work of the body that flows is what the other shares leave
     plastic = [key for key in PLASTIC if or_none(KEY_TABLE[key].of(outcome))]
     if not outcome.motion.friction:  # nothing rubs; along an elastic body nothing pushes at all
@@ -237,6 +237,14 @@ def half_widths(place: Place, outcome: Outcome, approach: float) -> dict[str, fl
     if or_none(outcome.restitution.paper.e) is not None:
         halves["e_paper"] = halves["e_edge"]  # arms a little apart take nearly the same approach
     return halves
+
+
+def widened_by(speed: float, approach: float) -> float:
+    """Return how many times wider that of e is, where the approach, m/s, is slow beside the speed, m/s.
+
+    What is left of such an approach is as open as the speeds that it is over.
+    """
+    return max(speed / (GRAZING * approach), 1.0)
 
 
 def _by_impulse(ratio: float, outcome: Outcome, approach: float) -> dict[str, float]:

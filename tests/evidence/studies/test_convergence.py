@@ -77,7 +77,7 @@ def test_what_the_default_levels_tell_is_held_to_the_limit_of_all(tmp_path):
     wide.meshes[0].runs[:] = wide.meshes[1].runs
     (row,) = (row for row in convergence_rows("t5b", wide) if row["quantity"] == "e")
     value, half = row["default_band"]
-    assert abs(value - row["fit"].value) > half
+    assert abs(value - 0.4) > 2 * half
 
 
 def test_a_failed_set_is_said_and_the_others_still_count(tmp_path):
