@@ -178,10 +178,8 @@ def _by_stored(case: Case, body: Followed, begin: FlightState, one: StrikeRecord
             omega=pair.omega,
         )
     )
-    place, table = (
-        np.array(modal_error.place_at(pair, case.bodies.bending_period, stops)),
-        modal_error.stored(),
-    )
+    place = np.array(modal_error.place_at(pair, case.bodies.bending_period, stops))
+    table = modal_error.stored()
     e, mu, friction, vibration, force = (
         table.half_width(place, (*modal_error.TOLD, *modal_error.FACTORS).index(name), table.far(place))
         for name in ("e_edge", "mu", "W_friction_over_E_0", modal_error.VIBRATION, "peak_force_N")
