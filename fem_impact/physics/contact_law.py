@@ -9,7 +9,8 @@ Constants of the yielding contact of a round tip are closed forms of the flow cu
 none of them from an impact:
 
 - hardness H = 3 times the flow stress at the strain .2 a/R (Tabor 1951, The Hardness of Metals), and below
-  that Johnson's expanding cavity (1985, Contact Mechanics, eq 6.32),
+  that of a ball by finite elements (Jackson and Green 2005, doi:10.1115/1.1866166), elastic up to 1.9 times
+  the depth of its first yield, or of Johnson's expanding cavity (1985, Contact Mechanics, eq 6.32) if more,
 - of a tip that is flattened, whose steeper flank meets the contact at an angle theta,
   (1 + pi/2 - theta) / (1 + pi/2) of that: by Hencky's relation pressure grows by 2 k times the angle by which
   slip lines turn on their way from a free surface to the contact, and metal flows to that side where they

@@ -87,6 +87,33 @@ def test_a_deep_contact_has_tabors_pressure_over_the_area_of_its_geometry():
     assert 0.9 * energy < work < energy
 
 
+@pytest.mark.parametrize(
+    ("speed", "e", "force"), [(2.0, 1.0, 24.0), (10.0, 0.871, 152.7), (40.0, 0.738, 727.4)]
+)
+def test_a_ball_that_begins_to_yield_has_the_force_of_finite_elements_of_one(speed, e, force):
+    """Jackson and Green (2005), by speed over that of the first yield; e by the recovery of Hertz' contact.
+
+    That of the even pressure of a contact that flows is up to a twentieth less. The finite elements of this
+    program have e 0.713 and 730 N at 40 times, on 28 nodes across the contact.
+    """
+    contact = flow(stress=400e6)._replace(
+        E_star=1.15385e11, normal=1.15385e11, nu=0.3, R=0.01, R1=0.01, R2=0.01
+    )
+    energy, (depth, groove) = 0.5 * 0.0413853 * (speed * 0.0125069) ** 2, (0.0, smooth(2e-3, 0.01))
+    work, borne, step = 0.0, 0.0, speed * 4e-10
+    while work < energy:
+        depth, before = depth + step, borne
+        borne = slide(groove, depth, 0.0, contact)[0]
+        work += 0.5 * (before + borne) * step
+    assert borne == pytest.approx(force, rel=0.04)
+    recovered = 0.0
+    while borne > 0.0:
+        depth, before = depth - step, borne
+        borne = slide(groove, depth, 0.0, contact)[0]
+        recovered += 0.5 * (before + borne) * step
+    assert 0.95 * e < sqrt(recovered / work) < 1.02 * e
+
+
 @pytest.mark.parametrize(("way", "slope"), [(1, 0.6), (-1, 0.3)])
 def test_a_wedge_that_ploughs_without_friction_is_pushed_back_by_the_slope_of_its_front(way, slope):
     groove, law = smooth(1e-3, 1e-5), flow()._replace(normal=1e15)  # springs back by nothing
@@ -272,7 +299,7 @@ def test_a_round_contact_goes_over_from_hertz_to_full_flow():
         for times in (1.0, 2.0, 5.0, 20.0, 1000.0)
     ]
     assert found[0] == pytest.approx(1.0, abs=1e-3)
-    assert 0.95 < found[1] < 0.99
+    assert 0.95 < found[1] < 1.0 + 1e-6  # contained flow gives nothing away yet
     assert all(more > less for more, less in pairwise(found))
     a = (2 * R * MASS * (1000 * begins) ** 2 / (pi * 3 * stress)) ** 0.25
     assert found[-1] == pytest.approx(sqrt(6 / 5 * pi * 3 * stress * R / (a * E_STAR)), rel=0.1)
