@@ -599,7 +599,7 @@ def test_the_three_lines_and_the_document(short):
         "Vibration takes",
         "The rest goes to",
     ]
-    assert lines[0][1].startswith("YES: at this inclination, 45 degrees, vibration changes e by +0.012")
+    assert lines[0][1].startswith("YES: at this inclination, 45 degrees, vibration changes e by +0.014")
     assert "by the reduced model" in lines[0][1]
     found = document(short)
     assert found["answer"] == "yes"
