@@ -130,26 +130,26 @@ def widest(state: Array, law: FlowLaw) -> float:
 
 
 @inlined
-def borne(radius: float, stress: float, slope: float, exponent: float, law: FlowLaw) -> float:
+def borne(radius: float, stress: float, slope: float, exponent: float, ball: float, law: FlowLaw) -> float:
     """Return a plane body's hardness, Pa: from the first yield to Tabor's contact, at the strain .2 a/R.
 
-    It is the larger of Johnson's cavity and what a ball has by Jackson and Green, up to some hundred times
-    the depth of its first yield. Theirs is a mean pressure by that ratio w: Hertz' up to w = `ELASTIC`,
-    beyond F / pi a^2 with a^2 = R d (w / 1.9)^B. Of H cells bear `MEAN`, as those at the rim do not flow.
+    It is that of Johnson's cavity or, of the part ``ball`` of the contact that is round, what a ball has by
+    Jackson and Green if more, up to some hundred times the depth of its first yield. Theirs is a mean
+    pressure by that ratio w: Hertz' up to w = `ELASTIC`, beyond F / pi a^2 with a^2 = R d (w / 1.9)^B. Of H
+    cells bear `MEAN`, as those at the rim do not flow.
     """
     stress *= (1.0 + slope * REPRESENTATIVE * radius / law.R) ** exponent
     strained = law.E_star * radius / (law.R * stress)
+    cavity = 2 / 3 * (2 + log((strained + 4 * (1 - 2 * law.nu)) / (6 * (1 - law.nu))))
     first = 0.5 * pi * 1.295 * exp(0.736 * law.nu)  # the same at the first yield
     least = 0.5 * first * sqrt(ELASTIC)  # of the chord through the middle of Hertz' contact
-    if strained <= 2.0 * least:
-        return stress * least
     B = 0.14 * exp(23 * stress / law.E_star)
-    w = ((strained / first) ** 2 * ELASTIC**B) ** (1.0 / (1.0 + B))
+    w = max((strained / first) ** 2 * ELASTIC**B, ELASTIC ** (1.0 + B)) ** (1.0 / (1.0 + B))
     flows = 2.0 * pi * FULL / first * (1.0 - exp(-(w ** (5 / 9)) / 25))
     force = exp(-0.25 * w ** (5 / 12)) * w**1.5 + flows * w
-    mean = 4 / (3 * pi) * first**3 * force / strained**2
-    cavity = 2 / 3 * (2 + log((strained + 4 * (1 - 2 * law.nu)) / (6 * (1 - law.nu))))
-    return float(stress * min(FULLY_PLASTIC, max(least, mean / MEAN, cavity)))
+    mean = 4 / (3 * pi) * first**3 * force / max(strained, 2.0 * least) ** 2
+    more = max(max(least, mean / MEAN) - cavity, 0.0)
+    return float(stress * min(FULLY_PLASTIC, cavity + ball * more))
 
 
 @inlined
@@ -160,8 +160,9 @@ def hardness(radius: float, tip: Tip, law: FlowLaw) -> tuple[float, float]:
     contact, and slip lines turn by less. One in its groove cannot flow to one side alone: it leans by the
     mean of both.
     """
-    own = borne(radius, law.yield_stress, law.slope, law.exponent, law)
-    other = borne(radius, law.other_yield_stress, law.other_slope, law.other_exponent, law)
+    ball = min(tip.radius * min(tip.behind.slope, tip.ahead.slope) / (radius * sqrt(law.R1 / law.R)), 1.0)
+    own = borne(radius, law.yield_stress, law.slope, law.exponent, ball, law)
+    other = borne(radius, law.other_yield_stress, law.other_slope, law.other_exponent, ball, law)
     if law.ploughs:
         H = min(own, other * (1.0 - atan(radius / sqrt(law.R * law.R1)) / (1.0 + 0.5 * pi)))
         return H, H

@@ -256,7 +256,7 @@ def test_a_ball_on_its_dent_rebounds_nearly_elastically_by_modes_as_by_finite_el
     data["projectile"] = {"shape": "ball", "diameter": "20 mm", "material": material}
     outcome = simulate(read_dict(data), "modal")
     first, second = outcome.strikes.each
-    assert first.e < 0.68
+    assert first.e < 0.71
     assert 0.98 < second.e < 1.0002  # gravity acts over the depth of its dent
     assert second.force == pytest.approx(first.force, rel=0.02)
     assert second.plastic < 0.02 * first.plastic  # slower, steel yields at a lower stress
