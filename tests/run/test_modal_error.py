@@ -150,10 +150,10 @@ def test_an_outcome_tells_half_widths_in_its_units_and_what_it_is_unlike(monkeyp
 
 
 def test_a_doubt_about_the_impulse_along_the_barrier_is_one_about_what_it_gives_the_motion():
-    """A disc that falls on its rim without friction has mu .22 from its edge alone: all of it is in doubt.
+    """A disc that falls on its rim without friction has mu .21 from its edge alone: all of it is in doubt.
 
     Finite elements have mu .11 and e .50 on cells of 0.03 mm, since the edge yields as well; the half-width
-    of .67 about 1.07 holds that.
+    of .75 about 1.06 holds that.
     """
     disc = {"profile": [["0 mm", "12 mm"], ["2 mm", "12 mm"]], "material": "magnesium-az31b"}
     surface = {"state": "custom", "friction": 0.0, "source": "frictionless"}
