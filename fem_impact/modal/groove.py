@@ -23,7 +23,7 @@ at most f q and 2 b k. What the tip ploughs up raises the surface ahead of
 the contact, over as much as the contact is long: so far the slip lines of a punch reach (Prandtl 1920).
 """
 
-from math import asin, atan, cos, exp, log, pi, sin, sqrt
+from math import asin, atan, cos, exp, inf, log, pi, sin, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -79,8 +79,7 @@ class Strength(NamedTuple):
     """What a contact bears that is pushed to one side, Pa.
 
     Its hardness H where metal flows to that side, and K; its hardness where it flows to the other one, which
-    the push hampers, and the tangential force over 2 b up to which it does. H is infinitely far from flow to
-    the other side where that bears more.
+    the push hampers, and the tangential force over 2 b up to which it does, 0 if the other side bears more.
     """
 
     H: float
@@ -138,6 +137,8 @@ def borne(radius: float, stress: float, slope: float, exponent: float, ball: flo
     pressure by that ratio w: Hertz' up to w = `ELASTIC`, beyond F / pi a^2 with a^2 = R d (w / 1.9)^B. Of H
     cells bear `MEAN`, as those at the rim do not flow.
     """
+    if stress == inf:  # it does not yield
+        return inf
     stress *= (1.0 + slope * REPRESENTATIVE * radius / law.R) ** exponent
     strained = law.E_star * radius / (law.R * stress)
     cavity = 2 / 3 * (2 + log((strained + 4 * (1 - 2 * law.nu)) / (6 * (1 - law.nu))))
