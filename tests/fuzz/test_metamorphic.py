@@ -19,7 +19,7 @@ from fem_impact.scene.material import Material, Surface
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.types import Accuracy, Save, Scene
 
-BOUND = {"solid": 2e-3, "modal": 1e-5}  # of e, mu and each share of E_0
+BOUND = {"solid": 2e-3, "modal": 2e-5}  # of e, mu and each share of E_0
 TITANIUM, COPPER = METALS[1], METALS[2]
 
 

@@ -192,7 +192,8 @@ def static_restitution(rod: DroppedRod) -> float:
     Its modes act as springs without inertia: they take up energy as the contact force rises and return it as
     it falls, so that less is left for plastic flow. Impact energy = plastic and elastic work of the contact +
     F^2/2 times the flexibility of the modes. The groove is pressed in along the normal: that holds for
-    upright rods, whose tip slides little meanwhile.
+    upright rods, whose tip slides little meanwhile. All of the contact counts as round: where it reaches the
+    straight parts beside the edge, as at 5 degrees, that gives up to .03 more of e.
     """
     case = Case.of(rod.scene(), "modal")
     modes = modal_rod(case.bodies)
