@@ -161,7 +161,8 @@ def hardness(radius: float, tip: Tip, law: FlowLaw) -> tuple[float, float]:
     contact, and slip lines turn by less. One in its groove cannot flow to one side alone: it leans by the
     mean of both.
     """
-    ball = min(tip.radius * min(tip.behind.slope, tip.ahead.slope) / (radius * sqrt(law.R1 / law.R)), 1.0)
+    flatter = max(min(tip.behind.slope, tip.ahead.slope), 0.0)  # 0 of a part that has turned beyond flat
+    ball = min(tip.radius * flatter / (radius * sqrt(law.R1 / law.R)), 1.0)
     own = borne(radius, law.yield_stress, law.slope, law.exponent, ball, law)
     other = borne(radius, law.other_yield_stress, law.other_slope, law.other_exponent, ball, law)
     if law.ploughs:
