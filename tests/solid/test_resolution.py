@@ -3,6 +3,7 @@
 import re
 from dataclasses import replace
 from math import cos, radians, sin
+from types import SimpleNamespace
 
 import pytest
 import solid_scenes as scenes
@@ -13,6 +14,7 @@ from fem_impact.errors import SceneError
 from fem_impact.outcome.groups import texts
 from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.record import Outcome
+from fem_impact.run.resolution import unresolved
 from fem_impact.run.solid import reduce
 from fem_impact.scene import shipped
 from fem_impact.scene.barrier import Barrier
@@ -154,3 +156,21 @@ def test_a_thick_rod_on_the_advised_cells_is_resolved(thick):
     outcome = reduce(solve(Case.of(shipped.replace(thick, "accuracy.tip_size", "0.25 mm"))))
     assert outcome.restitution.edge.e == pytest.approx(0.78, abs=0.03)
     assert outcome.restitution.mu == pytest.approx(0.07, abs=0.006)
+
+
+def test_one_row_of_nodes_is_not_resolved_where_the_contact_yields():
+    """An own mesh had e 0.96, 0.98, 0.99 and 0.98 on such levels, and 0.79 and 0.56 on two more."""
+    case = Case(load("t5b"))
+
+    def found(rows, case):
+        result = SimpleNamespace(
+            case=case,
+            peak_nodes=1000,
+            record=SimpleNamespace(rows=rows),
+            accounts={"contact_dissipation": 0.0},
+            E_0=1.0,
+        )
+        return unresolved(result)
+
+    assert "one row of nodes wide" in found(1, case) and "accuracy.tip_size" in found(1, case)
+    assert found(2, case) == found(1, Case(load("elastic-frictionless"))) == ""
