@@ -93,6 +93,8 @@ def build_geometry(
     touching, flows = zones.touching(rod.mesh, points), zones.rod_flow(rod.mesh, points)
     for cells in (touching, flows):
         cells[rod.body_cells] = False  # slices have mass points in place of nodes, and one elastic operator
+    if not vibrating:  # nodes of the rigid rest do not give way: a contact there would lose energy
+        touching &= ~np.isin(rod.mesh.cells, rod.body_nodes).any(axis=1)
     may_yield = {"rod": flows & _first_segment(bodies, rod.mesh)}
     barrier = None
     if meshed_barrier:

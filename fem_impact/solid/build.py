@@ -178,6 +178,8 @@ class Builder:
         block = self.block_parts
         inverse, share = self.meshed.inverse_mass, self.scene.accuracy.step
         step = stable_step(block.stiffness, inverse[self.meshed.layout.barrier_slice], share)
+        if self.scene.barrier.mass is not None:
+            step = self.foundation_step(step)
         radiating = self.spec.radiating
         pots = [dashpots(self.meshed.barrier, self.meshed.layout, inverse, block)] if radiating else []
         if self.spec.bending:
@@ -190,16 +192,25 @@ class Builder:
         self, pots: list[Dashpots], step: float
     ) -> tuple[list[Force], list[Impulse], dict[str, float]]:
         """Return the items of a block on a foundation that turns, from those of one that stands still."""
-        from fem_impact.solid.turning import TurningBlock, TurningDashpots, foundation_step
+        from fem_impact.solid.turning import TurningBlock, TurningDashpots
 
         block, ground, layout = self.block_parts, self.ground, self.meshed.layout
-        inverse, place, x = self.meshed.inverse_mass, layout.barrier_slice, self.meshed.x
-        moves = inverse[[*layout.foundation[[0, 2]], *layout.turn]]
-        springs = block.springs.diagonal()
-        step = foundation_step(step, self.scene.accuracy.step, springs, ground, moves, x[place])
+        inverse, place = self.meshed.inverse_mass, layout.barrier_slice
         linear = TurningBlock.of(block.linear.stiffness, place, ground, block.linear.effect)
         turning = [TurningDashpots.of(p.places, p.damping, inverse, ground, place.start) for p in pots]
         return [linear], [*turning], {"barrier": step}
+
+    def foundation_step(self, block: float) -> float:
+        """Return the stable step of a block with its foundation, s, from that of a ``block`` without one."""
+        from fem_impact.solid.turning import foundation_step
+
+        layout, share = self.meshed.layout, self.scene.accuracy.step
+        inverse, place = self.meshed.inverse_mass, layout.barrier_slice
+        moves = np.append(
+            inverse[layout.foundation[[0, 2]]], inverse[layout.turn] if len(layout.turn) else 0.0
+        )
+        springs = self.block_parts.springs.diagonal()
+        return foundation_step(block, share, springs, self.ground, moves, self.meshed.x[place])
 
     @cached_property
     def foundation(self) -> list[FoundationSprings]:

@@ -20,8 +20,9 @@ def sunk(patch: Patch, around: Ints, x: Array) -> Array:
     """
     t, heights = x[patch.places[:, 0]], x[patch.places[:, 2]]
     # the skin is a mirror image of itself: its border has no slope across the plane of motion
-    slope, level = np.polyfit(t[around], heights[around], 1)
-    return np.asarray(slope * t + level - heights)
+    middle, level = t[around].mean(), heights[around].mean()
+    slope = (t[around] - middle) @ (heights[around] - level) / ((t[around] - middle) ** 2).sum()
+    return np.asarray(slope * (t - middle) + level - heights)
 
 
 def dent(patch: Patch, x: Array) -> tuple[float, float]:

@@ -80,7 +80,8 @@ class Dashpots:
 
     ``places`` (k,) are the damped unknowns, ``damping`` (k,), N s/m, ``inverse_mass`` (k,), 1/kg. On a free
     barrier ``ends`` (k,) are the unknowns of its foundation that hold the other ends, ``foundation_inverse``
-    (k,), 1/kg, its inverse masses; both are empty else. ``effect`` and ``accounts`` are those of the waves.
+    (k,), 1/kg, its inverse masses; both are empty else. Block and foundation are solved for together: a block
+    may hold nearly all of its barrier's mass. ``effect`` and ``accounts`` are those of the waves.
     """
 
     every: ClassVar[int] = 1
@@ -112,8 +113,12 @@ class Dashpots:
         seen = state.v[self.places] - state.v[self.ends]
         pushed = state.kick * self.inverse_mass * state.force[self.places]
         dragged = state.kick * self.foundation_inverse * state.force[self.ends]
-        old, share = seen - pushed + dragged, 0.5 * state.kick * self.inverse_mass * self.damping
-        impulse = ((seen - share * old) / (1 + share) - seen) / self.inverse_mass
+        old, half = seen - pushed + dragged, 0.5 * state.kick * self.damping
+        given = half / (1 + half * self.inverse_mass)  # N s per m/s of the foundation's motion
+        alone, at = -given * (old + seen), self.ends - self.ends.min()
+        inverse = np.bincount(at, self.foundation_inverse) / np.maximum(np.bincount(at), 1)
+        taken = np.bincount(at, alone) / (1 + inverse * np.bincount(at, given))  # by each of its unknowns
+        impulse = alone - given * (inverse * taken)[at]
         state.v[self.places] += self.inverse_mass * impulse
         np.add.at(state.v, self.ends, -self.foundation_inverse * impulse)
         new = state.v[self.places] - state.v[self.ends]

@@ -109,7 +109,7 @@ def foundation_step(
 
 @dataclass(slots=True)
 class TurningDashpots:
-    """Viscous boundary between a block and a foundation that turns; implicit for the block.
+    """Viscous boundary between a block and a foundation that turns; implicit for both.
 
     Each dashpot's impulses on block and foundation act at the same place, so they keep angular momentum.
 
@@ -159,9 +159,13 @@ class TurningDashpots:
             return np.asarray(of[self.places] - of[self.ends] - lever * of[turn])
 
         of_block, seen = inverse[self.places], relative(v)
-        old = seen - state.kick * relative(inverse * state.force)
-        share = 0.5 * state.kick * of_block * self.damping
-        impulse = ((seen - share * old) / (1 + share) - seen) / of_block
+        old, half = seen - state.kick * relative(inverse * state.force), 0.5 * state.kick * self.damping
+        given = half / (1 + half * of_block)  # N s per m/s of the foundation's motion
+        alone, own = -given * (old + seen), np.array([*self.ground.foundation, turn])
+        motions = np.vstack([self.ends == one for one in own[:-1]] + [lever])
+        together = np.eye(len(own)) + (motions * given) @ motions.T * inverse[own]
+        taken = np.linalg.solve(together, motions @ alone)  # by each unknown of the foundation
+        impulse = alone - given * (inverse[own] * taken @ motions)
         v[self.places] += of_block * impulse
         np.add.at(v, self.ends, -inverse[self.ends] * impulse)
         v[turn] -= inverse[turn] * float(lever @ impulse)

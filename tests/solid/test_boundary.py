@@ -172,6 +172,25 @@ def test_dashpots_never_add_energy_however_long_the_step():
         assert (state.v**2).sum() <= before
 
 
+@pytest.mark.parametrize("mass", [1e-4, 1.0, 1e4])
+def test_dashpots_on_a_foundation_of_any_mass_add_no_energy_and_keep_the_momentum(mass):
+    """They were implicit for the block alone: a foundation lighter than what drags it was shaken apart."""
+    state = shapes.at_rest(np.zeros(31))
+    state.v[:] = np.random.default_rng(2).normal(size=31)
+    state.kick = state.dt_next = 1.0
+    m = np.append(np.ones(30), mass)
+    start, momentum = 0.5 * m @ state.v**2, m @ state.v
+    ends = np.full(30, 30)
+    pots = Dashpots(np.arange(30), np.ones(30), np.ones(30), ends, np.full(30, 1 / mass))
+    for _ in range(200):
+        before = 0.5 * m @ state.v**2
+        pots.resolve(state)
+        assert 0.5 * m @ state.v**2 <= before * (1 + 1e-12)
+    assert start - 0.5 * m @ state.v**2 == pytest.approx(pots.radiated, rel=1e-9)
+    assert m @ state.v == pytest.approx(momentum, rel=1e-9)
+    assert np.ptp(state.v[:30]) < 1e-9
+
+
 def test_weight_and_its_potential():
     weight = Weight(np.array([-3.0, 0.0, -4.0]), np.zeros(3))
     state = shapes.at_rest(np.array([0.1, 0.2, 0.3, 9.0]))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fem_impact.solid.contact.patch import make_patch
-from fem_impact.solid.dent import dent
+from fem_impact.solid.dent import border, dent, sunk
 
 N, SIZE = 40, 2e-3
 
@@ -21,5 +21,7 @@ def test_depth_and_volume_of_a_paraboloid_with_a_lip_in_a_plane_that_moved_and_t
     quads = np.stack([numbers[:-1, :-1], numbers[1:, :-1], numbers[1:, 1:], numbers[:-1, 1:]], axis=-1)
     patch = make_patch(quads.reshape(-1, 4), np.arange(points.size).reshape(-1, 3), points)
     depth, volume = dent(patch, points.ravel())
+    # that the motion is not finite is said by the guard of the step, which looks less often
+    assert np.isnan(sunk(patch, border(patch), np.full(points.size, np.nan))).all()
     assert depth == pytest.approx(d, rel=1e-9)
     assert volume == pytest.approx(0.5 * np.pi * a**2 * d, rel=0.01)

@@ -13,6 +13,7 @@ from fem_impact.solid.build import build
 from fem_impact.solid.ground import Ground
 from fem_impact.solid.march import advance, evaluate
 from fem_impact.solid.rodview import FieldSampler, RodState
+from fem_impact.solid.turning import TurningDashpots
 
 MESH = {"accuracy.unresolved": "report", "accuracy.max_time": "0.5 ms", "save.frames": 0}
 ROD = MESH | {"accuracy.tip_size": "1 mm", "accuracy.across": 6, "projectile.length": "60 mm"}
@@ -121,6 +122,24 @@ def test_block_springs_and_dashpots_keep_angular_momentum(effects):
         advance(model, state)
     assert abs(model.ground.spin(state.v)) > 1e-4
     assert spin_and_momentum(model, state) == pytest.approx(before, abs=1e-12 * np.abs(before).max())
+
+
+def test_dashpots_add_no_energy_on_a_foundation_of_nearly_no_mass():
+    """They were implicit for the block alone, as on a foundation that does not turn."""
+    _, model, state = turning_model(BLOCK)
+    pots = next(item for item in model.impulses if isinstance(item, TurningDashpots))
+    block, own = model.layout.barrier_slice, [*model.layout.foundation[[0, 2]], *model.layout.turn]
+    pots.inverse_mass = model.inverse_mass.copy()
+    pots.inverse_mass[own] *= 1e5
+    moving = np.flatnonzero(pots.inverse_mass)
+    state.v[:], state.force[:], state.kick = 0.0, 0.0, model.step
+    random = np.random.default_rng(3).normal(size=block.stop - block.start)
+    state.v[block] = random * (model.inverse_mass[block] > 0)
+    energies = []
+    for _ in range(50):
+        energies.append(float(0.5 * (state.v[moving] ** 2 / pots.inverse_mass[moving]).sum()))
+        pots.resolve(state)
+    assert (np.diff(energies) <= 1e-12 * energies[0]).all() and energies[-1] < energies[0]
 
 
 def test_a_block_that_turns_with_its_foundation_is_not_strained():
