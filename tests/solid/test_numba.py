@@ -2,6 +2,7 @@
 
 import tomllib
 from pathlib import Path
+from typing import Any
 
 import numba
 import numpy as np
@@ -35,10 +36,11 @@ def _counts():
 def _inlining():
     from fem_impact.fem.kernels import inlined
 
-    def absorbed(x):
-        for _ in range(50):  # long enough that it is no one's choice to inline it
-            x = np.sin(x) + np.sqrt(np.abs(x)) + np.exp(-x * x)
-        return x
+    # so long that no compiler chooses to inline it, on whatever processor
+    steps = "".join(f"    x = x / (x * x + {n}.5)\n" for n in range(300))
+    made = dict[str, Any]()
+    exec(f"def absorbed(x):\n{steps}    return x\n", made)
+    absorbed = made["absorbed"]
 
     def called(helper):
         code = _code(lambda x: helper(x) * helper(x + 1.0) * helper(x + 2.0), 1.0)
