@@ -228,7 +228,8 @@ def half_widths(place: Place, outcome: Outcome, approach: float) -> dict[str, fl
         if key in halves:
             share = known(KEY_TABLE[key].of(outcome))
             halves[key] = min(halves[key], max(share, 1.0 - share))
-    if (beyond := _beyond_friction(outcome)) > PLOUGHS:
+    beyond = _beyond_friction(outcome)
+    if digs_in(outcome):
         halves["mu"] = max(halves["mu"], beyond)
         for key, change in _by_impulse(beyond, outcome, approach).items():
             halves[key] = hypot(halves[key], change)  # beside what is open at a known impulse
@@ -283,7 +284,12 @@ def unheard(outcome: Outcome) -> tuple[str, ...]:
     """Return how a scene touches as no stored one does: of those hardly one lands flat, and sends waves."""
     several = ("the number of places that touch",) * (len(or_none(outcome.contact.sites) or ()) > 1)
     flat = ("what lands flat",) * (or_none(outcome.energy.radiated) is not None)
-    return (*several, *flat, *("how an edge digs in",) * (_beyond_friction(outcome) > PLOUGHS))
+    return (*several, *flat, *("how an edge digs in",) * digs_in(outcome))
+
+
+def digs_in(outcome: Outcome) -> bool:
+    """Say whether the form of a dent gives more impulse along the barrier than any stored scene shows."""
+    return _beyond_friction(outcome) > PLOUGHS
 
 
 def _beyond_friction(outcome: Outcome) -> float:

@@ -195,7 +195,7 @@ def assess(
                 raise
             solid, sentences = None, [f"Finite elements have no answer here: {refused}"]
             more = with_budget(budget_of(refused))
-        effect, used = (solid, "solid") if solid else (quick, "modal")
+        effect, used = (solid, "solid") if solid or fidelity == "solid" else (quick, "modal")
         notes += sentences
         if quick and solid and fidelity == "auto" and quick.holds_against(solid, tolerance):
             effect, used, notes = quick, "modal", [*notes, WIDER.format(_told(solid))]

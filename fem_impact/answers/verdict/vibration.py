@@ -19,12 +19,14 @@ from fem_impact.case.case import Case
 from fem_impact.case.effects.registry import NAMES, with_prerequisites
 from fem_impact.case.measured import vibration_pairs
 from fem_impact.case.plates import half_space_error, is_thin
+from fem_impact.errors import SceneError
 from fem_impact.outcome.keys import Key, Unknown, known, or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.outcome.shares import SHARES
-from fem_impact.run.modal_error import Stored, farness, place_of, unlike
+from fem_impact.run.modal_error import Stored, digs_in, farness, place_of, unlike
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.types import Scene
+from fem_impact.scene.units import format_quantity
 
 CHANGED: Mapping[str, Key] = {
     "e": KEY_TABLE["e_edge"],
@@ -44,6 +46,8 @@ def scale_of_change(change: float) -> float:
 def known_error(case: Case, whole: Outcome, of: str, change: float) -> tuple[float, tuple[str, ...]]:
     """Return the half-width of the reduced model's change of a number, and in what the scene is unlike all.
 
+    Where an edge digs in as in no stored scene the motion itself is open, and no change of it is known.
+
     Parameters
     ----------
     case : of the scene
@@ -52,7 +56,9 @@ def known_error(case: Case, whole: Outcome, of: str, change: float) -> tuple[flo
     change : of that number by vibration
     """
     at, table = place_of(case, whole), stored()
-    half = table.half_width(np.array(at), [*CHANGED].index(of), farness(at, whole, table))
+    half = inf
+    if not digs_in(whole):
+        half = table.half_width(np.array(at), [*CHANGED].index(of), farness(at, whole, table))
     widest = 1 + abs(change)  # of numbers that lie between 0 and 1, and so their change between -1 and 1
     return min(half * scale_of_change(change), widest), unlike(at, whole, table)
 
@@ -115,6 +121,9 @@ def inclined(scene: Scene, angle: float) -> Scene:
     speed, way = hypot(impact.v_n, impact.v_t), angle + impact.beside
     slope = None if impact.slope is None else impact.slope + angle - impact.angle
     v_n, v_t = -speed * cos(way), -speed * sin(way)
+    if v_n >= 0.0:
+        problem = "turns the fall so that it leads away from the barrier."
+        raise SceneError(problem, key="impact.angle", value=format_quantity(angle, "angle"))
     turned = replace(impact, angle=angle, v_n=v_n, v_t=v_t, height=None, speed=None, slope=slope)
     return replace(scene, impact=turned, measured=None)
 

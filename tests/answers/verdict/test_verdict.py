@@ -47,7 +47,7 @@ from fem_impact.run.modal_error import Stored
 from fem_impact.run.resolution import without_end
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.impact import Impact
-from fem_impact.scene.read import read_toml
+from fem_impact.scene.read import read_dict, read_toml
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.tables.text import with_band
 
@@ -193,6 +193,9 @@ def test_an_inclined_scene_turns_rod_and_velocity_together():
     beside = [math.atan2(-s.impact.v_t, -s.impact.v_n) - s.impact.angle for s in (scene, turned)]
     assert beside[0] == pytest.approx(beside[1], abs=1e-12)
     assert inclined(scene, scene.impact.angle).impact.v_n == pytest.approx(scene.impact.v_n)
+    grazing = replace_all(scene, {"impact.v_n": "-0.6 m/s", "impact.v_t": "-4 m/s", "impact.angle": "35 deg"})
+    with pytest.raises(SceneError, match=r'impact\.angle = "60 deg": turns the fall so that it leads away'):
+        inclined(grazing, math.radians(60))
 
 
 @pytest.mark.parametrize(
@@ -248,6 +251,29 @@ def test_the_known_error_grows_with_the_change_and_tells_in_what_a_scene_is_unli
     half, far = known_error(Case(LONG), modal_pair(LONG)[0], "e", 0.001)
     assert far == ("bending period over time of contact",)
     assert far[0] in off_sentence("e", half, far)
+
+
+def test_no_change_is_known_where_an_edge_digs_in_as_in_no_stored_scene():
+    """A pin that slides told +0.005 +- 0.042 and YES, beside an e of 0.9 +- 2.9."""
+    pin = read_dict(
+        {
+            "id": "pin",
+            "projectile": {"length": "40 mm", "diameter": "5 mm", "tip": "plain", "material": "rod-steel"},
+            "barrier": {"material": "aluminium-6061-t6"},
+            "surface": {"state": "custom", "friction": 0.3, "source": "assumed"},
+            "impact": {"angle": "35 deg", "v_n": "-0.6 m/s", "v_t": "-4 m/s"},
+        }
+    )
+    found = assess(pin, "modal")
+    assert found.answer == "undecided" and not found.here.is_known
+    assert "how an edge digs in" in found.here.source
+
+
+def test_finite_elements_alone_are_not_answered_for_by_the_reduced_model(monkeypatch):
+    meshed(monkeypatch, [None] * 20)
+    found = assess(load("t5b"), "solid", tolerance=0.2, budget_s=1e5)
+    assert (found.fidelity, found.answer, found.here) == ("none", "undecided", None)
+    assert assess(load("t5b"), "auto", tolerance=0.2, budget_s=1e5).answer == "yes"
 
 
 def test_aluminium_is_not_answered_as_steel():
