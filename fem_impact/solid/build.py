@@ -175,15 +175,14 @@ class Builder:
         from fem_impact.solid.block import dashpots, plate_dashpots
 
         self.stage(self.meshed.geometry)
-        block = self.block_parts
+        block, layout = self.block_parts, self.meshed.layout
         inverse, share = self.meshed.inverse_mass, self.scene.accuracy.step
-        step = stable_step(block.stiffness, inverse[self.meshed.layout.barrier_slice], share)
+        step = stable_step(block.stiffness, inverse[layout.barrier_slice], share)
         if self.scene.barrier.mass is not None:
             step = self.foundation_step(step)
-        radiating = self.spec.radiating
-        pots = [dashpots(self.meshed.barrier, self.meshed.layout, inverse, block)] if radiating else []
+        pots = [dashpots(self.meshed.barrier, layout, inverse, block)] if self.spec.radiating else []
         if self.spec.bending:
-            pots = [plate_dashpots(self.meshed.layout, inverse, block)]
+            pots = [plate_dashpots(layout, inverse, block)]
         if self.ground.turns:
             return self.turning_block(pots, step)
         return [block.linear], [*pots], {"barrier": step}
@@ -204,13 +203,11 @@ class Builder:
         """Return the stable step of a block with its foundation, s, from that of a ``block`` without one."""
         from fem_impact.solid.turning import foundation_step
 
-        layout, share = self.meshed.layout, self.scene.accuracy.step
-        inverse, place = self.meshed.inverse_mass, layout.barrier_slice
-        moves = np.append(
-            inverse[layout.foundation[[0, 2]]], inverse[layout.turn] if len(layout.turn) else 0.0
-        )
-        springs = self.block_parts.springs.diagonal()
-        return foundation_step(block, share, springs, self.ground, moves, self.meshed.x[place])
+        layout, inverse = self.meshed.layout, self.meshed.inverse_mass
+        moves = np.zeros(3)  # no angle where it does not turn
+        moves[: 2 + len(layout.turn)] = inverse[[*layout.foundation[[0, 2]], *layout.turn]]
+        springs, x = self.block_parts.springs.diagonal(), self.meshed.x[layout.barrier_slice]
+        return foundation_step(block, self.scene.accuracy.step, springs, self.ground, moves, x)
 
     @cached_property
     def foundation(self) -> list[FoundationSprings]:

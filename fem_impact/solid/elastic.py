@@ -116,9 +116,9 @@ class Dashpots:
         old, half = seen - pushed + dragged, 0.5 * state.kick * self.damping
         given = half / (1 + half * self.inverse_mass)  # N s per m/s of the foundation's motion
         alone, at = -given * (old + seen), self.ends - self.ends.min()
-        inverse = np.bincount(at, self.foundation_inverse) / np.maximum(np.bincount(at), 1)
-        taken = np.bincount(at, alone) / (1 + inverse * np.bincount(at, given))  # by each of its unknowns
-        impulse = alone - given * (inverse * taken)[at]
+        passed = given * self.foundation_inverse
+        taken = np.bincount(at, alone) / (1 + np.bincount(at, passed))  # by each of its unknowns
+        impulse = alone - passed * taken[at]
         state.v[self.places] += self.inverse_mass * impulse
         np.add.at(state.v, self.ends, -self.foundation_inverse * impulse)
         new = state.v[self.places] - state.v[self.ends]
