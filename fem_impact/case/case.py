@@ -14,7 +14,7 @@ from fem_impact.case.effects.registry import AUTO, NAMES, check_effects
 from fem_impact.case.effects.skin import NOT_RIGID, require_skins
 from fem_impact.case.effects.slots import ModelSpec
 from fem_impact.case.elastic_only import require_crushing_named
-from fem_impact.case.layers import as_one, block_of, require_layers, thin_layer
+from fem_impact.case.layers import as_one, block_of, require_heavier, require_layers, thin_layer
 from fem_impact.case.mesh import require_gauge, require_mesh
 from fem_impact.case.metals import unknowns
 from fem_impact.case.plates import is_thin, require_plate, require_plate_mesh, too_thin
@@ -117,6 +117,8 @@ class Case:
         require_gauge(self.scene)
         if self.meshed_through:
             require_plate_mesh(self.bodies, self.zones.base, block_of(self.bodies, self.zones))
+        if slots.meshed_barrier:
+            require_heavier(self.bodies, self._estimated)
         if not slots.vibrating:
             require_rest(self.bodies, self._estimated)
         self.require_memory()

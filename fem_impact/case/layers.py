@@ -59,6 +59,28 @@ def block_of(bodies: Bodies, zones: AnyZones) -> Corners:
     return low, high
 
 
+def require_heavier(bodies: Bodies, zones: AnyZones) -> None:
+    """Refuse a free barrier that is lighter than its block even where that is smallest (SceneError)."""
+    whole = bodies.barrier.mass
+    if whole is None:
+        return
+    low, high = block_of(bodies, zones)
+    block = 2 * min(material.rho for _, material in bodies.barrier.strata) * float(np.prod(high - low))
+    if whole <= block:
+        raise lighter_than_block(whole, block)
+
+
+def lighter_than_block(whole: float, block: float) -> SceneError:
+    """Return the refusal of a free barrier of a mass, kg, whose meshed block has more, kg."""
+    return SceneError(
+        f"is less than the {block:.3g} kg of metal that deforms around the contact: so small a body does "
+        "not bear it as a half-space does.",
+        key="barrier.mass",
+        value=f"{whole:.3g} kg",
+        remedy=f"Give more than {block:.3g} kg, or the effect barrier-rigid: it stays a rigid body of its mass.",
+    )
+
+
 def moved_rows(bodies: Bodies, zones: AnyZones) -> tuple[Array, Array]:
     """Return depths (k,), m, of rows of whole cells before and after they are moved to the interfaces.
 

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fem_impact.arrays import Array
+from fem_impact.case.layers import lighter_than_block
 from fem_impact.errors import SceneError
 from fem_impact.scene.barrier import Barrier
 
@@ -32,13 +33,7 @@ def rest_of(barrier: Barrier, mass: Array, x: Array) -> RestOfBarrier:
     """
     block, whole = 2 * float(mass.sum()) / 3, barrier.mass or 0.0
     if whole <= block:
-        raise SceneError(
-            f"is less than the {block:.3g} kg of metal that deforms around the contact: so small a body does "
-            "not bear it as a half-space does.",
-            key="barrier.mass",
-            value=f"{whole:.3g} kg",
-            remedy="Give the effect barrier-rigid: it stays a rigid body of that mass.",
-        )
+        raise lighter_than_block(whole, block)
     rest = 0.5 * (whole - block)
     if barrier.inertia is None:
         return RestOfBarrier(rest, np.zeros(2), 0.0)

@@ -190,8 +190,9 @@ class LevelChain:
         if then is None:
             return None
         smaller = self.done[-1].splits + 1  # where the budget does not hold the larger step for sure
-        for splits, longer in ((then, 1.0 if then == smaller else forecast.LONGER), (smaller, 1.0)):
-            if self.spent_s + longer * self.forecast_s(splits) <= self.budget_s:
+        for splits, share in ((then, forecast.LONGER), (smaller, forecast.SHORTER)):
+            share = forecast.SHORTER if splits == smaller else share
+            if self.spent_s + share * self.forecast_s(splits) <= self.budget_s:
                 return splits
         if self.options.progress is not None:
             self.options.progress(Notice(f"The run ends with level {len(self.done)}. {self._not_begun}"))
