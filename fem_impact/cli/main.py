@@ -14,7 +14,15 @@ from types import FrameType
 
 from fem_impact.cli.parser import PAPER, Options, build_parser, read_line
 from fem_impact.cli.terminal import print_json, printable_streams
-from fem_impact.errors import EXIT_CODES, FemImpactError, OutputPathError, RunError, UsageError, in_options
+from fem_impact.errors import (
+    EXIT_CODES,
+    FemImpactError,
+    OutputPathError,
+    RunError,
+    SceneError,
+    UsageError,
+    in_options,
+)
 from fem_impact.version import __version__
 
 LATER = 0.02
@@ -71,6 +79,10 @@ def _guarded(handler: Callable[[Options], int], options: Options) -> int:
         code = handler(options)
         sys.stdout.flush()
         return code
+    except SceneError as error:
+        from fem_impact.cli.scene_options import placed
+
+        return _complain(str(placed(error, options)), error.exit_code, options)
     except FemImpactError as error:
         return _complain(str(error), error.exit_code, options)
     except KeyboardInterrupt as stop:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import shlex
 import sys
 import tomllib
@@ -54,6 +55,15 @@ def changed_scene(id_or_path: str, changes: Sequence[str]) -> Scene:
     if not shown or changed.title != scene.title:
         return changed
     return replace(changed, "title", titled(scene.title, shown))
+
+
+def placed(error: SceneError, options: Options) -> SceneError:
+    """Return a complaint about a key of the scene with the place that states it: the file or ``--set``."""
+    if error.source or not re.fullmatch(r"[a-z_]+(\.[a-z_0-9]+)*", error.key):
+        return error
+    changed = error.key in read_changes(options.changes)
+    file = options.scene if Path(options.scene).is_file() else ""
+    return error.under("", "--set" if changed else file)
 
 
 def read_changes(changes: Sequence[str]) -> dict[str, Any]:

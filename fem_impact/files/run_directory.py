@@ -21,7 +21,8 @@ PUBLISHED = ("study.json", "summary.md", "*.csv", "sweep.parquet")
 
 def is_resumable(out: Path) -> bool:
     """Return whether a run that was stopped left something in a directory from which it can go on."""
-    return (out / CHECKPOINT).exists() or any(out.glob("level-*"))
+    levels = (out.glob(f"level-*/{name}") for name in (CHECKPOINT, "outcome.json"))
+    return (out / CHECKPOINT).exists() or any(map(any, levels))
 
 
 def set_aside(out: Path) -> Path | None:

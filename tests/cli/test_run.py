@@ -145,8 +145,13 @@ def test_what_a_study_would_not_look_at_is_refused(cli, stand, words):
 def test_an_interrupted_run_says_whether_it_can_go_on(cli, stand):
     stand.error = KeyboardInterrupt()
     assert "no checkpoint was due yet" in cli("run", "t5b", "--out", "here")[2]
-    for name in ("scene.toml", "run.checkpoint"):
+    first = Path("here", "level-1")
+    first.mkdir()
+    for name in ("scene.toml", ".lock"):
         Path("here", name).write_text("of this run")
+    (first / "level.stamp").write_text("of a level that has stored no checkpoint yet")
+    assert "no checkpoint was due yet" in cli("run", "t5b", "--out", "here")[2]
+    (first / "run.checkpoint").write_text("of this level")
     assert "--resume goes on from the last checkpoint" in cli("run", "t5b", "--out", "here")[2]
 
 
@@ -288,3 +293,17 @@ def test_a_followed_body_is_answered_by_its_sequence_first(cli, tmp_path):
     heading, count, totals = out.splitlines()[0], out.index("2 strikes. "), out.index("the body keeps ")
     assert heading.startswith("quick: ") and count < totals < out.index("Hardest by energy")
     assert out.index("Hardest by energy") < out.index("The first strike alone") < out.index("restitution e")
+
+
+def test_what_a_model_refuses_of_a_scene_is_told_with_its_place(cli):
+    text = (
+        'id = "mine"\n[projectile]\nlength = "60 mm"\ndiameter = "10 mm"\nmaterial = "rod-steel"\n'
+        'tip = "plain"\n'
+        '[barrier]\nmaterial = "plate-steel"\nmass = "1 kg"\n[surface]\nstate = "machined"\n'
+        '[impact]\nangle = "20 deg"\nheight = "0.2 m"\n'
+    )
+    Path("mine.toml").write_text(text)
+    told = cli("run", "mine.toml", "--fidelity", "rigid", "--until", "rest")[2]
+    assert 'error: --set: impact.until = "rest"' in told
+    Path("mine.toml").write_text(f'{text}until = "rest"\n')
+    assert 'error: mine.toml: impact.until = "rest"' in cli("run", "mine.toml", "--fidelity", "rigid")[2]

@@ -313,7 +313,7 @@ class LevelChain:
         left = self.scene.accuracy.levels - number
         plans = dict.fromkeys(tuple(steps_between(splits, end, left)) for end in ends)  # one or two
         whole = " to ".join(dict.fromkeys(f"{number + len(of)}" for of in plans))
-        name = f"{self.scene.id}, level {number}" + f" of {whole}" * bool(self.done)
+        name = f"{self.scene.id}, level {number}{f' of {whole}' * bool(self.done)}{', again' * bool(repeats)}"
         progress = forecast.LevelProgress(show, name, used_s=self.spent_s, limit_s=self.limit_s, begun=begun)
         if self.done:
             progress.after(self.done[-1].outcome.cost, self._turns)

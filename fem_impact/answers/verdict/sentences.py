@@ -136,7 +136,7 @@ def _percent(effect: VibrationEffect, name: str, part: float) -> str:
     """Return a share in per cent with its half-width, if known."""
     half = effect.errors.get(name)
     if half is None:
-        return f"{100 * part:.0f} %"
+        return f"{plain(100 * part, 2)} %"
     return f"{with_band(100 * part, max(100 * half, LEAST_HALF), 0.0, 100.0)} %".replace("+-", "±")
 
 
@@ -152,10 +152,8 @@ def _heating(effect: VibrationEffect) -> str:
         told = f"{share} can heat the contact (friction, and plastic work of {of} down to 0.1 mm)"
         return f"{told}; no error of it is known: {ends}" if ends else told
     plastic = or_none(energy.plastic) or 0.0
-    return (
-        f"{100 * friction:.0f} % (friction alone) to {100 * (friction + plastic):.0f} % (with all plastic "
-        "work) can heat the contact"
-    )
+    least, most = (plain(100 * part, 2) for part in (friction, friction + plastic))
+    return f"{least} % (friction alone) to {most} % (with all plastic work) can heat the contact"
 
 
 def basis(v: Verdict) -> tuple[Line, ...]:

@@ -114,16 +114,17 @@ def test_where_levels_end_unresolved_the_remedy_is_one_that_adds_a_finer_one(lev
 
 
 def test_each_repeat_has_twice_the_room_of_the_one_before(level, monkeypatch):
-    rooms = []
+    rooms, called = [], []
 
     def left(scene, fidelity, options, case):
         rooms.append((case.record.rod.reach, case.record.barrier.spread))
+        called.append(options.progress.name.endswith(", again"))
         return lasting(level, float(len(rooms))).outcome, replace(level.record, left=True)
 
     monkeypatch.setattr(level_module, "simulate_recorded", left)
     levels = LevelChain(Case(QUICK), done=[level])
     levels._run_level(2, Turns())
-    assert levels.done[-1].repeats == 2
+    assert levels.done[-1].repeats == 2 and called == [False, True, True]
     assert levels.done[-1].wall_s == levels.done[-1].runs.cpu_s == 1.0 + 2.0 + 3.0
     assert rooms == [(k * level.record.rod.reach, k * level.record.barrier.spread) for k in (1.0, 2.0, 4.0)]
 

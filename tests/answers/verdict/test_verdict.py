@@ -163,6 +163,20 @@ def test_a_share_that_can_heat_without_a_half_width_lies_between_ends(short):
     assert low <= energy.skin <= high
 
 
+def test_a_small_share_that_can_heat_is_not_told_as_none(short):
+    energy, errors = replace(short.here.free.energy, skin=0.00206, friction=0.0), dict(short.here.errors)
+    errors.pop("skin", None)
+    for skin, told in (
+        (0.00206, "0.21 % can heat"),
+        (Unknown("not told"), "0 % (friction alone) to 0.31 % ("),
+    ):
+        free = replace(
+            short.here.free, energy=replace(energy, skin=skin, plastic_rod=0.0031, plastic_barrier=0.0)
+        )
+        told_box = box(replace(short, here=replace(short.here, free=free, errors=errors)))
+        assert told in told_box[2][1]
+
+
 def test_a_share_that_two_meshes_know_has_its_band(short):
     told = replace(short, here=replace(short.here, errors={**short.here.errors, "skin": 0.05}))
     assert " ± 5.0 % can heat the contact" in box(told)[2][1] and "lies between" not in box(told)[2][1]
