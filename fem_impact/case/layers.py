@@ -77,7 +77,7 @@ def lighter_than_block(whole: float, block: float) -> SceneError:
         "not bear it as a half-space does.",
         key="barrier.mass",
         value=f"{whole:.3g} kg",
-        remedy=f"Give more than {block:.3g} kg, or the effect barrier-rigid: it stays a rigid body of its mass.",
+        remedy=f"Give more than {block:.3g} kg, or the effect barrier-rigid: it stays a rigid body.",
     )
 
 

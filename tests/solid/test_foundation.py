@@ -104,10 +104,14 @@ def test_only_the_relative_motion_matters():
 
 def test_a_block_heavier_than_its_barrier_is_refused_before_it_is_meshed():
     scene = replace_all(load("t5b"), {**COARSE, "effects": BLOCK, "barrier.mass": "1 g"})
-    with pytest.raises(SceneError, match=r"barrier\.mass = .*deforms around the contact.*Give more than") as it:
+    with pytest.raises(
+        SceneError, match=r"barrier\.mass = .*deforms around the contact.*Give more than"
+    ) as it:
         Case.of(scene, "solid")
     enough = re.search(r"Give more than ([\d.e-]+ kg)", str(it.value))[1]
-    light, heavy = (replace_all(scene, {"barrier.mass": f"{share * float(enough[:-3])} kg"}) for share in (0.6, 1.2))
+    light, heavy = (
+        replace_all(scene, {"barrier.mass": f"{share * float(enough[:-3])} kg"}) for share in (0.6, 1.2)
+    )
     with pytest.raises(SceneError, match="Give more than"):
         Case.of(light, "solid")
     assert build(Case.of(heavy, "solid")).layout.foundation.size

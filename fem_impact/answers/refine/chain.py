@@ -190,8 +190,7 @@ class LevelChain:
         if then is None:
             return None
         smaller = self.done[-1].splits + 1  # where the budget does not hold the larger step for sure
-        for splits, share in ((then, forecast.LONGER), (smaller, forecast.SHORTER)):
-            share = forecast.SHORTER if splits == smaller else share
+        for splits, share in {then: forecast.LONGER, smaller: forecast.SHORTER}.items():
             if self.spent_s + share * self.forecast_s(splits) <= self.budget_s:
                 return splits
         if self.options.progress is not None:

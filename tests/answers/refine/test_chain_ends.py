@@ -7,7 +7,7 @@ import pytest
 
 from fem_impact.answers.refine import level as level_module
 from fem_impact.answers.refine.chain import LevelChain
-from fem_impact.answers.refine.forecast import OverBudgetError, Turns
+from fem_impact.answers.refine.forecast import SHORTER, OverBudgetError, Turns
 from fem_impact.answers.simulate import simulate
 from fem_impact.case.case import Case
 from fem_impact.errors import ResultError, RunError, SceneError
@@ -81,14 +81,23 @@ def test_a_pilot_alone_keeps_its_numbers_and_tells_the_budget_of_a_second_level(
     told = []
     scene = replace(FREE, accuracy=replace(FREE.accuracy, unresolved="report"))
     resolved = replace(lasting(level, 10.0), record=replace(level.record, resolved=True))
-    levels = LevelChain(Case(scene), RunOptions(progress=told.append), budget_s=20.0, done=[resolved])
+    levels = LevelChain(Case(scene), RunOptions(progress=told.append), budget_s=12.0, done=[resolved])
     outcome = levels.run()
     assert known(outcome.restitution.edge.e) == known(level.outcome.restitution.edge.e)
     reason = "one level alone tells no error; a larger budget adds a finer level"
     assert outcome.validity.mesh_band == Unknown(reason)
     (said,) = [one.text for one in outcome.validity.limitations if "give a budget of" in one.text]
-    assert "10 s of the budget of 20 s are used up. Level 2, finer, takes about" in said
+    assert "10 s of the budget of 12 s are used up. Level 2, finer, takes about" in said
     assert said in told[-1].text
+
+
+def test_a_level_begins_where_the_budget_may_hold_it(level):
+    """Its own mesh tells within seconds whether it does: the forecast may be far too long."""
+    ten = lasting(level, 10.0)
+    forecast_s = LevelChain(Case(FREE), done=[ten]).forecast_s(ten.splits + 1)
+    for share, begins in ((SHORTER - 0.05, False), (SHORTER + 0.05, True)):
+        levels = LevelChain(Case(FREE), budget_s=10.0 + share * forecast_s, done=[ten])
+        assert (levels._next == ten.splits + 1) is begins
 
 
 def test_smaller_cells_do_not_follow_crushed_ones(level):
