@@ -287,5 +287,5 @@ def _effect_lines(effect: EffectChoice) -> list[str]:
 
 def _decided(effect: EffectChoice) -> str:
     if effect.number is None:
-        return f"{effect.measure}: without bound, on in any case"
+        return f"{effect.measure}: has no upper limit, so the effect is on"
     return f"{effect.measure}: {effect.number:.2g}, threshold {effect.threshold:g}"

@@ -16,6 +16,7 @@ from fem_impact.outcome.strikes import Strikes
 from fem_impact.physics.contact import between
 from fem_impact.run.common import (
     CUT_OFF,
+    OPEN_LEDGER,
     RESIDUAL_LIMIT,
     angular_momentum_error,
     barrier_motion,
@@ -199,8 +200,8 @@ def _open_ledger(share: float) -> str:
     """Return why a run whose ledger misses a share of E_0 failed, nothing where it closes."""
     if abs(share) <= RESIDUAL_LIMIT:
         return ""
-    limit = f"more than {RESIDUAL_LIMIT:g}: do not use this run."
-    return f"The energy ledger misses {abs(share):.1e} of E_0, {limit}"
+    limit = f"more than {RESIDUAL_LIMIT:g}: do not use this run, or one with half the accuracy.step."
+    return f"{OPEN_LEDGER} {abs(share):.1e} of E_0, {limit}"
 
 
 def _gravity(case: Case, contacts: Array | None) -> tuple[str, str]:

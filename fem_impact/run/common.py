@@ -29,6 +29,7 @@ NO_PUSH = Unknown("gravity has drawn the projectile to the barrier more than tha
 MELTS = "melt; melting is left out"
 """End of the reason of a temperature beyond a melting point."""
 RESIDUAL_LIMIT = 1e-4  # of E_0: above it a run failed
+OPEN_LEDGER = "The energy ledger misses"  # how the reason begins, which a level looks for
 ROUND_OFF = 1e-6  # a moment impulse over that of the normal impulse at arm d_d: below it there is none
 
 

@@ -304,8 +304,10 @@ def sentence(place: Place, outcome: Outcome) -> str:
         "both models computed; they say nothing of the change of a number by vibration."
     )
     in_what, far = unlike(place, outcome), 100 * farness(place, outcome)
-    wider = "the widest count" if far == 100 else f"wider by {far:.2g} % of the way to the widest"
-    return f"{text} None of them is like this one in {', '.join(in_what)}: {wider}." if in_what else text
+    if not in_what:
+        return text
+    half = "the largest of all" if far == 100 else f"{far:.2g} % of the way to the largest of all"
+    return f"{text} None of them is like this one in {', '.join(in_what)}: its half-widths are {half}."
 
 
 @cache

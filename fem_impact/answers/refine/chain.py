@@ -16,7 +16,7 @@ from functools import cached_property, partial
 from pathlib import Path
 
 from fem_impact.answers.refine import extrapolate, forecast, needed
-from fem_impact.answers.refine.level import STAMP, LevelRun, simulate_level
+from fem_impact.answers.refine.level import STAMP, LevelRun, simulate_level, with_half_step
 from fem_impact.answers.refine.level_meshes import LevelMeshes, steps_between
 from fem_impact.answers.refine.quantities import TARGETED
 from fem_impact.case.case import Case
@@ -164,12 +164,10 @@ class LevelChain:
 
     @property
     def _decided(self) -> bool:
-        """Whether the levels so far are enough for an answer.
-
-        A wanted error would choose two levels that agree by chance: t2 told e to 0.06 %, 1.8 % off.
-        """
+        """Whether the levels so far are enough for an answer."""
         if self.decides:
             return self.decides(self.done) and len(self.done) > 1
+        # two levels may agree by chance: t2 told e to 0.06 %, 1.8 % off
         return len(self.done) > 2 and self._reached(self._errors)
 
     @property
@@ -185,12 +183,11 @@ class LevelChain:
 
     @property
     def _next(self) -> int | None:
-        """Splits of the next level; None after the last, or where the budget does not hold another."""
+        """Splits of the next level, fewer where the budget holds those alone, or None."""
         then = self.following
         if then is None:
             return None
-        smaller = self.done[-1].splits + 1  # where the budget does not hold the larger step for sure
-        for splits, share in {then: forecast.LONGER, smaller: forecast.SHORTER}.items():
+        for splits, share in {then: forecast.LONGER, self.done[-1].splits + 1: forecast.SHORTER}.items():
             if self.spent_s + share * self.forecast_s(splits) <= self.budget_s:
                 return splits
         if self.options.progress is not None:
@@ -286,6 +283,9 @@ class LevelChain:
             if record.crushed and zones.skin_rows + zones.rod_rows and repeats < MOST_REPEATS:
                 before = replace(before, crushed=True)  # again, without thin rows and columns
                 continue
+            if level.loses and cases[0].scene.accuracy.step == accuracy.step and repeats < MOST_REPEATS:
+                scenes = [*map(with_half_step, scenes)]  # what the ledger misses falls with its square
+                continue
             if not record.left or record.crushed or (ended and not last) or repeats == MOST_REPEATS:
                 break
             # of a run that stopped what touched so far, and skin that came down outside its zones
@@ -334,6 +334,7 @@ class LevelChain:
         cut = beyond[0].stopped if beyond else str(self.refused or "")
         ended = f"The numbers are those of level {len(upto)}: level {len(upto) + 1} was cut off. {cut}"
         outcome = counted.outcome if self.scene.accuracy.unresolved == "report" else counted.withheld
+        notes = counted.shorter_steps(self.scene), levels_told([one.outcome.strikes for one in upto])
         said, missed = outcome.validity, self._not_begun
         if self.scene.accuracy.target:
             errors = self._errors
@@ -355,8 +356,7 @@ class LevelChain:
                 *outcome.validity.limitations,
                 *limitations("run", ended if cut else "", missed),
                 *limitations("resolution", counted.left, narrow if len(upto) > 1 else "", short),
-                *limitations("resolution", counted.without_thin),
-                *limitations("resolution", levels_told([level.outcome.strikes for level in upto])),
+                *limitations("resolution", counted.without_thin, *notes),
             ),
         )
         strikes = outcome.strikes

@@ -291,7 +291,7 @@ class LevelProgress:
         if progress.step == 0 and left_s is not None:  # the mesh stands, and no step has shown the pace
             left_s *= busy
             self.own_s = setup_s + (left_s - setup_s) * lasting(self.duration_s, progress.end_time_s)
-            least_s = (SURELY if self.duration_s else PILOT) * self.own_s
+            least_s = self.own_s if self.duration_s else PILOT * self.own_s
             self._require_time(self.own_s, max(least_s, SURELY * setup_s))
         elif progress.step == 0:
             self._require_time(self.own_s or setup_s, SURELY * setup_s)

@@ -11,9 +11,11 @@ from fem_impact.files.run_directory import RECORD
 from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.record import Outcome
+from fem_impact.run.common import OPEN_LEDGER
 from fem_impact.run.program import stamp
 from fem_impact.run.resolution import NOT_RESOLVED, without
 from fem_impact.run.simulate import simulate_recorded
+from fem_impact.scene.types import Scene
 from fem_impact.solid.stepguard import THIN_CRUSHED
 
 STAMP = "level.stamp"
@@ -31,7 +33,7 @@ class LevelRun:
     cases, outcomes : of its last runs: at the places of the barrier's grid, or of a scene and its twin
     record : what they found together
     wall_s : wall time, s, of all its runs
-    repeats : how often it ran again, with more room or without thin cells
+    repeats : how often it ran again, with more room, without thin cells or with shorter steps
     earlier : processor time, s, of each run before the last of these
     late : why another repeat has no outcome, where the budget did not hold it
     """
@@ -84,6 +86,17 @@ class LevelRun:
         )
 
     @property
+    def loses(self) -> bool:
+        """Whether the energy ledger of one of its runs does not close."""
+        return any(one.validity.stopped_because.startswith(OPEN_LEDGER) for one in self.outcomes)
+
+    def shorter_steps(self, scene: Scene) -> str:
+        """Say that its steps are shorter than those of the scene as stated, and why; empty if not."""
+        step, stated = self.cases[0].scene.accuracy.step, scene.accuracy.step
+        told = f"Its accuracy.step is {step:g}: with {stated:g}, as stated, the energy ledger did not close."
+        return told if step < stated else ""
+
+    @property
     def found(self) -> ContactRecord:
         """What the next level's mesh follows; without thin cells after one without: small ones fold soon."""
         return replace(self.record, crushed=bool(self.without_thin))
@@ -117,6 +130,11 @@ class LevelRun:
         return MeshRuns(
             self.size, list(self.outcomes), resolved, wide, self.record.rows, self.repeats, self.earlier
         )
+
+
+def with_half_step(scene: Scene) -> Scene:
+    """Return the scene with time steps half as long."""
+    return replace(scene, accuracy=replace(scene.accuracy, step=0.5 * scene.accuracy.step))
 
 
 def simulate_level(case: Case, options: RunOptions) -> tuple[Outcome, ContactRecord]:

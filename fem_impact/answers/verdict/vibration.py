@@ -136,7 +136,7 @@ COUNTS = (
     "vibration (by modes and without them) or the energy balance of the finer mesh are off."
 )
 
-RANGE = "the range of the limits of all orders of convergence from 3/4 up"
+RANGE = "the range of the values extrapolated with every order of convergence from 3/4 up"
 ONCE = f"; the band is {extrapolate.ONE_RUN:g} times {RANGE}, as each mesh runs once,"
 TWICE = f", both at two places of the barrier's grid; the band is {RANGE} and the scatter by these,"
 

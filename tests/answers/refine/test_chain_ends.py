@@ -100,6 +100,27 @@ def test_a_level_begins_where_the_budget_may_hold_it(level):
         assert (levels._next == ten.splits + 1) is begins
 
 
+@pytest.mark.parametrize("mends", [True, False])
+def test_a_level_whose_ledger_does_not_close_is_repeated_once_with_half_the_step(level, monkeypatch, mends):
+    steps, bad = [], "The energy ledger misses 1.4e-04 of E_0, more than 0.0001."
+
+    def run(scene, fidelity, options, case):
+        steps.append(scene.accuracy.step)
+        said = level.outcome.validity
+        lost = replace(said, finished=False, stopped_because=bad)
+        validity = said if mends and scene.accuracy.step < QUICK.accuracy.step else lost
+        return replace(level.outcome, validity=validity), level.record
+
+    monkeypatch.setattr(level_module, "simulate_recorded", run)
+    levels = LevelChain(Case(QUICK), done=[level])
+    levels._run_level(2, Turns())
+    assert steps == [QUICK.accuracy.step, 0.5 * QUICK.accuracy.step]
+    assert levels.done[-1].loses is not mends and levels.done[-1].repeats == 1
+    told = [one.text for one in levels._stated().validity.limitations]
+    assert any("accuracy.step is 0.45: with 0.9" in one for one in told)
+    assert not levels.done[0].shorter_steps(QUICK)
+
+
 def test_smaller_cells_do_not_follow_crushed_ones(level):
     levels = LevelChain(Case(FREE), done=[level])
     assert levels._next is not None

@@ -89,6 +89,15 @@ def test_a_level_is_given_up_at_its_limit(monkeypatch):
         level(at(200, 3.0))
 
 
+def test_a_level_whose_mesh_forecasts_that_it_takes_too_long_is_given_up_at_once():
+    """A pilot's contact may be a third of the estimate; a later level is forecast by what was found."""
+    for duration_s, kept, dear in ((1e-4, 9.0, 11.0), (0.0, 28.0, 33.0)):
+        level = LevelProgress(None, "level", (0.0, 0.0), duration_s=duration_s, limit_s=10.0)
+        level(at(0, kept))
+        with pytest.raises(OverBudgetError, match=f"it takes about {dear:.0f} s"):
+            level(at(0, dear))
+
+
 def test_a_long_level_is_forecast_by_what_its_mesh_holds():
     meshes = LevelMeshes.of(Case(load("quick")))
     splits, pilot = meshes.first + 3, meshes.pilot
