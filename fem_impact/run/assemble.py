@@ -126,7 +126,7 @@ class Reduction:
         case, named = self.case, self.case.scene.projectile.named
         end = replace(self.end, reason=named(self.end.reason))
         gravity, ruled = _gravity(case, end.contacts)
-        failed = _open_ledger(end.missing) or ruled
+        failed = _open_ledger(end.missing, case.fidelity) or ruled
         cut = failed or ("" if end.finished else end.reason)
         origin = groups.Provenance(
             fidelity=case.fidelity,
@@ -196,12 +196,13 @@ def _intervals(contacts: Array | None, why: str) -> tuple[groups.ContactInterval
     )
 
 
-def _open_ledger(share: float) -> str:
+def _open_ledger(share: float, fidelity: str) -> str:
     """Return why a run whose ledger misses a share of E_0 failed, nothing where it closes."""
     if abs(share) <= RESIDUAL_LIMIT:
         return ""
-    limit = f"more than {RESIDUAL_LIMIT:g}: do not use this run, or one with half the accuracy.step."
-    return f"{OPEN_LEDGER} {abs(share):.1e} of E_0, {limit}"
+    limit = f"more than {RESIDUAL_LIMIT:g}: do not use this run."
+    remedy = " Give half the accuracy.step." * (fidelity == "solid")  # no other fidelity takes it
+    return f"{OPEN_LEDGER} {abs(share):.1e} of E_0, {limit}{remedy}"
 
 
 def _gravity(case: Case, contacts: Array | None) -> tuple[str, str]:

@@ -93,8 +93,8 @@ class LevelRun:
     def shorter_steps(self, scene: Scene) -> str:
         """Say that its steps are shorter than those of the scene as stated, and why; empty if not."""
         step, stated = self.cases[0].scene.accuracy.step, scene.accuracy.step
-        told = f"Its accuracy.step is {step:g}: with {stated:g}, as stated, the energy ledger did not close."
-        return told if step < stated else ""
+        why = f"with {stated:g}, as stated, the energy ledger did not close."
+        return f"The run's accuracy.step is {step:g}: {why}" if step < stated else ""
 
     @property
     def found(self) -> ContactRecord:
