@@ -4,6 +4,8 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from fem_impact.case.case import Case
+from fem_impact.case.layers import require_heavier
+from fem_impact.errors import SceneError
 from fem_impact.modal.impact import Arrival, ModalResult, solve
 from fem_impact.outcome.groups import Energy, Heat, Markers, RunCost, limitations
 from fem_impact.outcome.keys import Num, Unknown, unknown
@@ -12,6 +14,7 @@ from fem_impact.progress import Progress
 from fem_impact.run import common
 from fem_impact.run.assemble import ImpactEnd, Reduction
 from fem_impact.run.modal_error import half_widths, place_of, sentence
+from fem_impact.run.resolution import without_coefficients
 
 HALVINGS = 2  # of the time step
 CHOICES = Unknown("effects are weighed for the finite elements; `fem-impact check` lists them")
@@ -20,6 +23,12 @@ NO_STRESS = Unknown("the reduced model does not compute residual stress")
 SOFT_ROD = Unknown(
     "the work in the surface of a projectile that is softer than the barrier is known by finite elements "
     "alone: this model was .14 and .17 of E_0 too high in two scenes"
+)
+COEFFICIENTS = "e_edge", "e_paper"
+"""Keys of numbers that lie between 0 and 1 and are open where their half-width is as large."""
+OPEN = (
+    "it lies between 0 and 1, and its half-width by the reduced model is {:.2g}; finite elements (--fidelity "
+    "solid) tell more"
 )
 UNDAMPED = Unknown("the reduced model has no material damping")
 UNSENT = Unknown("a local contact law sends no waves into the barrier")
@@ -52,7 +61,7 @@ def reduce(case: Case, result: ModalResult) -> Outcome:
     """Return the Outcome of a modal impact."""
     barrier, base = case.scene.barrier, (result.V_bn, result.V_bt)
     turns = barrier.inertia is not None
-    omitted = common.flow_omitted(case)
+    omitted, light = common.flow_omitted(case), _too_light(case)
     end = ImpactEnd(
         V_n=result.V_n,
         V_t=result.V_t,
@@ -85,22 +94,37 @@ def reduce(case: Case, result: ModalResult) -> Outcome:
             *_dent(case),
             LAYERED if case.scene.barrier.layers else "",
             omitted,
+            light,
             LAID if result.laid else "",
             LEVEL if turns else "",
             tilted if turned > TILT_TOLD else "",
         ),
     )
     said = outcome.validity
-    if omitted:
-        reason = Unknown(f"how wrong these numbers are is not known. {omitted}")
+    if omitted or light:
+        reason = Unknown(f"how wrong these numbers are is not known. {omitted or light}")
         return replace(outcome, validity=replace(said, model_band=reason))
     place = place_of(case, outcome)
+    halves = half_widths(place, outcome, case.contact.approach)
     said = replace(
         said,
-        model_band=half_widths(place, outcome, case.contact.approach),
+        model_band={key: half for key, half in halves.items() if half < 1.0 or key not in COEFFICIENTS},
         limitations=(*said.limitations, *limitations("model", sentence(place, outcome))),
     )
+    if (open_by := halves.get("e_edge", 0.0)) >= 1.0:
+        outcome = without_coefficients(outcome, Unknown(OPEN.format(open_by)))
     return replace(outcome, validity=said)
+
+
+def _too_light(case: Case) -> str:
+    """Say that a free barrier is lighter than the metal that deforms, empty where it is not."""
+    if case.scene.barrier.mass is None:
+        return ""
+    try:
+        require_heavier(case.bodies, case.zones)
+    except SceneError as light:
+        return f"The barrier's mass of {light.value} {light.problem}" if light.key == "barrier.mass" else ""
+    return ""
 
 
 def _energy(case: Case, result: ModalResult) -> Energy:

@@ -233,6 +233,12 @@ def half_widths(place: Place, outcome: Outcome, approach: float) -> dict[str, fl
         halves["mu"] = max(halves["mu"], beyond)
         for key, change in _by_impulse(beyond, outcome, approach).items():
             halves[key] = hypot(halves[key], change)  # beside what is open at a known impulse
+    mass, base = outcome.motion.mass, or_none(outcome.barrier.mass)
+    if base and or_none(outcome.barrier.Omega_b) is None:
+        # the stored scenes are of heavy barriers: what is open between both bodies they share by momentum
+        for way in ("n", "t"):
+            of_both = halves[f"V_{way}_m_per_s"] / (mass + base)
+            halves |= {f"V_{way}_m_per_s": of_both * base, f"V_b{way}_m_per_s": of_both * mass}
     if (force := or_none(outcome.contact.peak_force)) is not None:
         halves["peak_force_N"] = force * (factor_of(place, "peak_force_N", far) - 1.0)
     if or_none(outcome.restitution.paper.e) is not None:

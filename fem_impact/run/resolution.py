@@ -97,18 +97,24 @@ def without_end(outcome: Outcome, why: str) -> Outcome:
     )
 
 
+def without_coefficients(outcome: Outcome, reason: Unknown) -> Outcome:
+    """Return an outcome that knows neither coefficients of restitution nor the losses by them."""
+    of_arms = {name: getattr(outcome.restitution, name) for name in ARMS}
+    arms = {name: _blank(arm, reason, _others(arm, ARM_LENGTHS)) for name, arm in of_arms.items()}
+    return replace(outcome, restitution=replace(outcome.restitution, **arms))
+
+
 def _without_after(outcome: Outcome, reason: Unknown) -> Outcome:
     """Return an outcome that knows neither the motion after the impact nor what follows from it."""
+    outcome = without_coefficients(outcome, reason)
     coefficients, barrier = outcome.restitution, outcome.barrier
-    of_arms = {name: getattr(coefficients, name) for name in ARMS}
-    arms = {name: _blank(arm, reason, _others(arm, ARM_LENGTHS)) for name, arm in of_arms.items()}
     moved = () if isinstance(barrier.mass, Unknown) else AFTER_BARRIER
     markers, readings = unknown(Markers, reason.reason), unknown(Readings, reason.reason)
     return replace(
         outcome,
         motion=_blank(outcome.motion, reason, AFTER),
         barrier=_blank(barrier, reason, moved),
-        restitution=replace(coefficients, mu=reason, **arms),
+        restitution=replace(coefficients, mu=reason),
         contact=replace(outcome.contact, markers=markers, readings=readings),
     )
 

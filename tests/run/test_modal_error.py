@@ -11,6 +11,7 @@ from fem_impact import load, replace, simulate
 from fem_impact.case.case import Case
 from fem_impact.case.measured import CONFIDENCE
 from fem_impact.outcome.groups import texts
+from fem_impact.outcome.keys import Unknown
 from fem_impact.run import modal_error
 from fem_impact.run.modal_error import (
     CALLED,
@@ -147,6 +148,23 @@ def test_an_outcome_tells_half_widths_in_its_units_and_what_it_is_unlike(monkeyp
     assert half_widths(near, later, 1.0)["mu"] > halves["mu"]
     told = " ".join(texts(outcome.validity.limitations, "model"))
     assert f"{len(stored().places)} scenes" in told and "None of them" not in told
+
+
+def test_a_light_barrier_shares_the_doubt_by_momentum_and_one_too_light_has_no_error():
+    heavy, light, tiny = (
+        simulate(replace(replace(load("t5b"), "barrier.mass", mass), "impact.angle", "60 deg"), "modal")
+        for mass in ("1000 kg", "0.5 kg", "0.3 g")
+    )
+    for way in ("n", "t"):
+        whole, own, other = (
+            outcome.estimate(f"{name}{way}_m_per_s")[1]
+            for outcome, name in ((heavy, "V_"), (light, "V_"), (light, "V_b"))
+        )
+        mass = light.motion.mass
+        assert other == pytest.approx(own * mass / 0.5, rel=1e-12)
+        assert own + other == pytest.approx(whole, rel=0.2) and own < whole
+    assert isinstance(tiny.half_widths, Unknown)
+    assert "of metal that deforms" in tiny.half_widths.reason
 
 
 def test_a_doubt_about_the_impulse_along_the_barrier_is_one_about_what_it_gives_the_motion():

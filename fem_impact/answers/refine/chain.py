@@ -243,7 +243,7 @@ class LevelChain:
         return float(run_s * longer * self._turns)
 
     def _run_level(self, splits: int, turns: forecast.Turns) -> None:
-        """Run a level, again with more room where it needs that, and add it to what is done."""
+        """Run a level, again where it needs more room or shorter steps, and add it to what is done."""
         last = bool(self.done) and splits >= self.finest
         scene = self.meshes.at(splits)
         before = known = self.done[-1].found if self.done else self.meshes.expected(splits)
@@ -256,7 +256,7 @@ class LevelChain:
         scenes = [*places[:1], *(replace(one, save=still) for one in places[1:])]
         scenes += [replace(self.twin, accuracy=accuracy)] if self.twin else []
         begun, room, took_s, earlier = forecast.now(), 1.0, 0.0, [0.0] * len(scenes)
-        smaller: LevelRun | None = None
+        kept: LevelRun | None = None  # what ended in smaller zones or with longer steps: better than nothing
         for repeats in range(MOST_REPEATS + 1):
             planned = [] if self.done or repeats else [self.meshes.pilot]
             cases = planned + [Case.of(one, "solid", before) for one in scenes[len(planned) :]]
@@ -268,9 +268,9 @@ class LevelChain:
             try:
                 runs = turns(work, workers)
             except (SceneError, RunError) as late:
-                if smaller is None:  # what ended in smaller zones is better than none
+                if kept is None:
                     raise
-                level = replace(smaller, wall_s=forecast.now() - begun, late=str(late))
+                level = replace(kept, wall_s=forecast.now() - begun, late=str(late))
                 break
             outcomes, record = tuple(one for one, _ in runs), together([recorded for _, recorded in runs])
             ended = all(outcome.validity.finished for outcome in outcomes)
@@ -284,20 +284,20 @@ class LevelChain:
                 before = replace(before, crushed=True)  # again, without thin rows and columns
                 continue
             if level.loses and cases[0].scene.accuracy.step == accuracy.step and repeats < MOST_REPEATS:
-                scenes = [*map(with_half_step, scenes)]  # what the ledger misses falls with its square
+                scenes, kept = [*map(with_half_step, scenes)], level  # a miss falls with the step's square
                 continue
             if not record.left or record.crushed or (ended and not last) or repeats == MOST_REPEATS:
                 break
             # of a run that stopped what touched so far, and skin that came down outside its zones
-            known, smaller = (record, level) if ended else (together([known, record]), smaller)
+            known, kept = (record, level) if ended else (together([known, record]), kept)
             known, room = replace(known, crushed=before.crushed), 2.0 * room
             before = known.wider(room)  # a record has the room of a first run
         self.done.append(replace(level, wall_s=max(level.wall_s, forecast.now() - begun)))
 
     def _place(self, number: int, repeats: int, run: int = 0) -> Path:
-        """Return the directory of a run of a level, both counted, run again so often with more room."""
+        """Return the directory of a run of a level, both counted, which ran so often before."""
         assert self.options.out is not None, "files are wanted"
-        name = f"level-{number}" + f"-wider-{repeats}" * bool(repeats) + f"-run-{run + 1}" * bool(run)
+        name = f"level-{number}" + f"-again-{repeats}" * bool(repeats) + f"-run-{run + 1}" * bool(run)
         return self.options.out / name
 
     def _options(self, splits: int, repeats: int, run: int, begun: float) -> RunOptions:
@@ -354,7 +354,7 @@ class LevelChain:
             mesh_band=bands,
             limitations=(
                 *outcome.validity.limitations,
-                *limitations("run", ended if cut else "", missed),
+                *limitations("run", ended if cut else "", counted.lost, missed),
                 *limitations("resolution", counted.left, narrow if len(upto) > 1 else "", short),
                 *limitations("resolution", counted.without_thin, *notes),
             ),

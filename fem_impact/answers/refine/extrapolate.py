@@ -102,7 +102,7 @@ class MeshRuns:
     runs : outcomes, one for each place of the barrier's grid, or those of a scene and its twin
     resolved, wide : whether they resolve their contact, and also across its narrow side
     rows : nodes across that side
-    repeats : how often the level ran again, with more room or without thin cells
+    repeats : how often the level ran again, with more room, without thin cells or with shorter steps
     earlier : processor time, s, of each run before the last of these
     """
 

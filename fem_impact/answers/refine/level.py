@@ -58,10 +58,13 @@ class LevelRun:
         """Say that contact or flow left its zones, empty where they did not."""
         if not self.record.left:
             return ""
-        again = f" Another repeat has no outcome. {self.late}" if self.late else ""
-        return (
-            f"Contact or flow left the zones held ready, after {self.repeats} repeats with more room.{again}"
-        )
+        again = f"{self.repeats} repeat{'s' * (self.repeats != 1)} of the level"
+        return f"Contact or flow left the zones held ready, after {again}."
+
+    @property
+    def lost(self) -> str:
+        """Say why it did not run again, though it was to; empty where it did, or needed none."""
+        return f"Another repeat of the level has no outcome. {self.late}" if self.late else ""
 
     @property
     def narrow(self) -> str:

@@ -11,7 +11,7 @@ from fem_impact.answers.verdict.screening import Screening
 from fem_impact.answers.verdict.vibration import CALLED, Answer, VibrationEffect, untargeted
 from fem_impact.case.case import Case
 from fem_impact.outcome.groups import texts
-from fem_impact.outcome.keys import Unknown, known, or_none
+from fem_impact.outcome.keys import Unknown, or_none
 from fem_impact.outcome.record import Outcome, installed_versions
 from fem_impact.outcome.shares import SHARES, heat_ends
 from fem_impact.run.common import RESIDUAL_LIMIT
@@ -41,7 +41,6 @@ THERE: Mapping[Answer, str] = {
     "no": "rigid theory may not be used there",
     "undecided": "whether rigid theory may be used there is undecided",
 }
-NOT_KNOWN = "not known."
 Line = tuple[str, str]
 
 
@@ -49,8 +48,8 @@ def box(v: Verdict) -> tuple[Line, Line, Line]:
     """Return title and sentence of the three lines that come first."""
     return (
         ("May rigid theory be used here?", _may(v)),
-        ("Vibration takes", _vibration(v.here) if v.here else NOT_KNOWN),
-        ("The rest goes to", _rest(v.scene, v.here) if v.here else NOT_KNOWN),
+        ("Vibration takes", _vibration(v.here) if v.here else "a share that is not known."),
+        ("The rest goes to", _rest(v.scene, v.here) if v.here else "parts that are not known."),
     )
 
 
@@ -86,8 +85,8 @@ def _beyond(v: Verdict) -> str:
 
 def doubt(change: VibrationEffect) -> str:
     """Return e of both twins where one of them is out of the range of a plain impact, else nothing."""
-    free, stiff = (known(run.restitution.edge.e) for run in (change.free, change.stiff))
-    if all(-ROUND_OFF <= e <= 1 + RESIDUAL_LIMIT for e in (free, stiff)):
+    free, stiff = (or_none(run.restitution.edge.e) for run in (change.free, change.stiff))
+    if free is None or stiff is None or all(-ROUND_OFF <= e <= 1 + RESIDUAL_LIMIT for e in (free, stiff)):
         return ""
     return f" (doubtful: e is {free:.3f} with vibration and {stiff:.3f} without it, outside 0 to 1)"
 

@@ -238,8 +238,8 @@ def unfinished(pair: Pair, of: str = "e") -> str:
     if pair[0].provenance.fidelity == "modal" and isinstance(band, Unknown):
         return band.reason
     for run, which in zip(pair, ("with", "without"), strict=True):
-        if or_none(CHANGED[of].of(run)) is None:
-            return f"the run {which} vibration gives no {of}: {run.validity.stopped_because}"
+        if isinstance(value := CHANGED[of].of(run), Unknown):
+            return f"the run {which} vibration gives no {of}: {value.reason}"
     return ""
 
 
@@ -257,7 +257,7 @@ def modal_effect(scene: Scene, pair: Pair, of: str = "e") -> VibrationEffect:
     value, case = difference(pair, of), Case(untargeted(scene), "modal")
     half, far = known_error(case, pair[0], of, value)
     thin = (
-        half_space_error(case.bodies) * abs(known(pair[0].restitution.edge.e))
+        half_space_error(case.bodies) * abs(or_none(pair[0].restitution.edge.e) or 1.0)
         if is_thin(case.bodies)
         else 0.0
     )

@@ -267,6 +267,6 @@ def _level_sheet(costs: Mapping[str, CostStudy]) -> Sheet:
     head = ("set", "level", "cells, mm", "s", "repeats", *TARGETED)
     caption = (
         "Each level at two places of the grid (the first at one): cells at the contact, processor time, how "
-        "often it ran again with more room, and what it tells with those before it"
+        "often it ran again, and what it tells with those before it"
     )
     return Sheet("levels", caption, Table.of(head, rows, left=range(len(head))))

@@ -121,6 +121,24 @@ def test_a_level_whose_ledger_does_not_close_is_repeated_once_with_half_the_step
     assert not levels.done[0].shorter_steps(QUICK)
 
 
+def test_a_level_that_the_budget_does_not_let_run_with_half_the_step_stands_and_says_why(level, monkeypatch):
+    bad = "The energy ledger misses 1.4e-04 of E_0, more than 0.0001."
+
+    def run(scene, fidelity, options, case):
+        if scene.accuracy.step < QUICK.accuracy.step:
+            raise RunError("It was given up.")
+        return replace(
+            level.outcome, validity=replace(level.outcome.validity, finished=False, stopped_because=bad)
+        ), level.record
+
+    monkeypatch.setattr(level_module, "simulate_recorded", run)
+    levels = LevelChain(Case(QUICK), done=[level])
+    levels._run_level(2, Turns())
+    assert levels.done[-1].loses and levels.done[-1].repeats == 0 and not levels.done[-1].left
+    told = [one.text for one in levels._stated().validity.limitations if one.kind == "run"]
+    assert "Another repeat of the level has no outcome. It was given up." in told
+
+
 def test_smaller_cells_do_not_follow_crushed_ones(level):
     levels = LevelChain(Case(FREE), done=[level])
     assert levels._next is not None
@@ -178,9 +196,8 @@ def test_what_left_its_zones_counts_where_no_repeat_comes_to_its_end(level, ends
         return
     levels._run_level(2, Turns())
     assert levels.done[-1].repeats == 0 and levels.done[-1].outcome == level.outcome
-    assert levels.done[-1].left.endswith(
-        "after 0 repeats with more room. Another repeat has no outcome. It was given up."
-    )
+    assert levels.done[-1].left.endswith("after 0 repeats of the level.")
+    assert levels.done[-1].lost == "Another repeat of the level has no outcome. It was given up."
 
 
 def test_a_level_that_stopped_where_skin_came_down_runs_again_with_room_there(level, monkeypatch):

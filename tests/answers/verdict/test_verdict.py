@@ -278,9 +278,14 @@ def test_no_change_is_known_where_an_edge_digs_in_as_in_no_stored_scene():
             "impact": {"angle": "35 deg", "v_n": "-0.6 m/s", "v_t": "-4 m/s"},
         }
     )
+    pair = modal_pair(pin)
+    half, far = known_error(Case(pin), pair[0], "energy", 0.001)
+    assert half > 1.0 and far == ("how an edge digs in",)
+    e, halves = pair[0].restitution.edge.e, pair[0].half_widths
+    assert isinstance(e, Unknown) and "between 0 and 1" in e.reason and "e_edge" not in halves
+    assert isinstance(pair[0].restitution.edge.E_ln, Unknown) and "V_n_m_per_s" in halves
     found = assess(pin, "modal")
-    assert found.answer == "undecided" and not found.here.is_known
-    assert "how an edge digs in" in found.here.source
+    assert (found.answer, found.here) == ("undecided", None) and e.reason in found.notes[0]
 
 
 def test_finite_elements_alone_are_not_answered_for_by_the_reduced_model(monkeypatch):
@@ -802,7 +807,10 @@ def test_one_level_decides_nothing(monkeypatch):
     assert re.search(
         r"no reduced model .* Level 2, finer, takes about .* One level of finite elements", notes
     )
-    assert told["box"][1] == ["Vibration takes", "not known."] and "no model tells" in told["box"][0][1]
+    assert (
+        told["box"][1] == ["Vibration takes", "a share that is not known."]
+        and "no model tells" in told["box"][0][1]
+    )
     assert told["next_step"].startswith("fem-impact assess --budget") and "no band yet" in found.steps[-1]
     assert told["missing"].startswith("a model that tells how e changes") and told["here"] is None
 
