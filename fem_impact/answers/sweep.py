@@ -32,7 +32,7 @@ from fem_impact.jobs.executors import LocalProcesses
 from fem_impact.jobs.job import STORE, Failure, Job
 from fem_impact.jobs.run import run_jobs
 from fem_impact.options import FIDELITIES
-from fem_impact.outcome.record import KEY_TABLE, KEYS
+from fem_impact.outcome.record import KEY_TABLE, KEYS, ends_of
 from fem_impact.outcome.shares import HEATS, heat_ends
 from fem_impact.progress import Notice, ProgressMeter, watched
 from fem_impact.scene.shipped import named
@@ -305,6 +305,7 @@ def _panel(
         known = [at for at in places if np.isfinite(values[at])]
         if known:
             band = None if bands is None else bands[known]
-            series.append(Series(title, [along[at] for at in known], values[known], "joined", band=band))
+            x, lie = [along[at] for at in known], ends_of(KEY_TABLE[name])
+            series.append(Series(title, x, values[known], "joined", band=band, ends=lie))
     title = SHOWN.get(name, name)
     return Panel(title, label, title, tuple(series))

@@ -122,8 +122,8 @@ def _heat(bodies: Bodies) -> str:
             f"{' and '.join(f'heating.{body}_melting' for body in unmelted)}."
         )
     return (
-        f"The heat of the contact is not known: no material states {' and '.join(missing)}, "
-        "nor does [heating] of the scene."
+        f"The heat of the contact is not known: {' and '.join(missing)} stand neither in [heating] of the "
+        f"scene nor as {' and '.join(dict.fromkeys(key.split('_', 1)[1] for key in missing))} of a material."
     )
 
 

@@ -68,7 +68,7 @@ def _check_fields(result: Path) -> None:
     if (result / FIELDS).is_file():
         return
     runs = sorted(path.parent.name for path in result.glob(f"*/{FIELDS}"))
-    if runs:
+    if runs and not (result / "outcome.json").is_file():
         raise ResultError(f"{result}: is a study. Name one of its runs, such as {result / runs[0]}.")
     if not (result / "outcome.json").is_file():
         raise ResultError(f"{result}: is a study of which no run has kept its fields. Run one scene itself.")
@@ -81,6 +81,11 @@ def _check_fields(result: Path) -> None:
         if fidelity == "solid"
         else (f"fidelity {fidelity} has no mesh", "Run its scene with --fidelity solid.")
     )
+    if runs:
+        why, way = (
+            "its last level, which alone keeps them, did not end",
+            "Run it with --resume and more --budget.",
+        )
     if strikes:
         way += f" Its strikes are filmed with --field {PATH}."
     raise ResultError(f"{result}: holds no {FIELDS}, the fields that a film shows: {why}. {way}")

@@ -5,7 +5,16 @@ from typing import Any
 
 import numpy as np
 
-from fem_impact.figures.panels import LOOKS, Panel, Picture, Series, ShadedMap, half_widths, numbers
+from fem_impact.figures.panels import (
+    LOOKS,
+    Panel,
+    Picture,
+    Series,
+    ShadedMap,
+    error_bars,
+    half_widths,
+    numbers,
+)
 from fem_impact.figures.still import INK, QUIET, colour_of, label_sides
 from fem_impact.tables.text import markup, plain, with_band
 
@@ -90,10 +99,12 @@ def _trace(series: Series, at: int, panel: Panel) -> dict[str, Any]:
             if value is None
             else plain(value, 4)
             if half is None
-            else with_band(value, half).replace("+-", "±")
+            else with_band(value, half, *series.ends).replace("+-", "±")
             for value, half in pairs
         ]
-        band = {"type": "data", "array": numbers(half_widths(series), DIGITS), "color": colour}
+        below, above = (numbers(side, DIGITS) for side in error_bars(series, panel.horizontal))
+        band: dict[str, Any] = {"type": "data", "array": above, "color": colour}
+        band |= {"symmetric": False, "arrayminus": below} if below != above else {}
         band |= look.get("band", {"thickness": 1.2, "width": 3})
         trace["error_x" if panel.horizontal else "error_y"] = band
     return trace

@@ -48,9 +48,9 @@ class Series:
     """A curve or points: ``x`` and ``y`` of equal length, and the colour: None is the next one.
 
     The colour is an index of `COLOURS` or a name of the palette. ``band`` holds half-widths, NaN where there
-    is none, about ``y``, or about ``x`` in a panel with rows; they are drawn as error bars. A value of NaN is
-    a gap. ``texts`` stand beside bars; those of points are shown at the pointer. Series of one label look the
-    same in all panels of a figure.
+    is none, about ``y``, or about ``x`` in a panel with rows; they are drawn as error bars, up to the
+    ``ends`` between which the numbers lie. A value of NaN is a gap. ``texts`` stand beside bars; those of
+    points are shown at the pointer. Series of one label look the same in all panels of a figure.
     """
 
     label: str
@@ -60,6 +60,7 @@ class Series:
     colour: int | str | None = None
     band: ArrayLike | None = None
     texts: tuple[str, ...] = ()
+    ends: tuple[float, float] = (-math.inf, math.inf)
 
     @property
     def drawn(self) -> Look:
@@ -180,6 +181,13 @@ def half_widths(series: Series) -> np.ndarray:
     if series.band is None:
         return np.full(len(np.asarray(series.y)), np.nan)
     return np.asarray(series.band, float)
+
+
+def error_bars(series: Series, horizontal: bool) -> np.ndarray:
+    """Return lengths of the error bars below and above all points, ``(2, n) float64``, up to its ends."""
+    values, halves = np.asarray(series.x if horizontal else series.y, float), half_widths(series)
+    low, high = series.ends
+    return np.maximum([np.minimum(halves, values - low), np.minimum(halves, high - values)], 0.0)
 
 
 def numbers(values: ArrayLike, digits: int = 17) -> list[float | None]:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from fem_impact.figures.panels import LOOKS, Mark, Panel, Picture, Series, ShadedMap
+from fem_impact.figures.panels import LOOKS, Mark, Panel, Picture, Series, ShadedMap, error_bars
 from fem_impact.files.atomic import atomic_path, write_text
 from fem_impact.tables.table import Cell, Table
 from fem_impact.tables.text import formula, plain
@@ -234,7 +234,7 @@ def _series(axes: Axes, series: Series, colour: str, below: np.ndarray, horizont
     if series.band is None:
         axes.plot(series.x, series.y, color=colour, label=label, **look)
     else:
-        bands: dict[str, Any] = {"xerr" if horizontal else "yerr": series.band}
+        bands: dict[str, Any] = {"xerr" if horizontal else "yerr": error_bars(series, horizontal)}
         axes.errorbar(series.x, series.y, **bands, color=colour, label=label, **ERROR | look)
     return below
 

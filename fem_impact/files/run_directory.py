@@ -1,10 +1,12 @@
 """The directory of a run or study: names of its files, whose it is, older results, drafts."""
 
+import os
+import shutil
 from datetime import UTC, datetime
 from pathlib import Path
 
 from fem_impact.errors import OutputPathError
-from fem_impact.files.atomic import CHECKSUM, DIGESTS, LOCK, make_directory, read_text
+from fem_impact.files.atomic import CHECKSUM, DIGESTS, LOCK, atomic_path, make_directory, read_text
 
 CHECKPOINT = "run.checkpoint"
 FIELDS = "fields.vtkhdf"
@@ -23,6 +25,16 @@ def is_resumable(out: Path) -> bool:
     """Return whether a run that was stopped left something in a directory from which it can go on."""
     levels = (out.glob(f"level-*/{name}") for name in (CHECKPOINT, "outcome.json"))
     return (out / CHECKPOINT).exists() or any(map(any, levels))
+
+
+def stands_also_at(file: Path, place: Path) -> None:
+    """Give a whole file a second place, where an older one goes; it is copied only where links are not."""
+    place.unlink(missing_ok=True)
+    try:
+        os.link(file, place)
+    except OSError:
+        with atomic_path(place) as draft:
+            shutil.copyfile(file, draft)
 
 
 def set_aside(out: Path) -> Path | None:

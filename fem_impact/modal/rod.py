@@ -208,8 +208,8 @@ def _modes(rod: ProjectileSpec, across: int) -> tuple[Array, Array, Array]:
         effects=("vibration", "barrier-rigid"),
         accuracy=Accuracy(tip_size=min(rod.diameter / 4, COARSEST), across=across, mass_scaling=1.0),
     )
-    # nothing strikes: a mesh of the user's own is not refused for how it would touch
-    meshed = MeshedBodies(Case.of(scene) if rod.own_mesh is None else Case(scene))
+    # nothing strikes: no body is refused for how it would touch
+    meshed = MeshedBodies(Case(scene))
     modes, mesh = meshed.rod_modes(), meshed.geometry.rod.mesh
     low = modes.omega < section_frequency(rod.material, rod.diameter)
     # modes are normalised with the mass of the half rod

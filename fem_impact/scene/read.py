@@ -197,7 +197,8 @@ def _projectile(table: tables.Table) -> ProjectileSpec:
     if "mesh" in known:
         return _of_mesh(known, own)
     if "profile" in known:
-        tables.check_keys(known, ("profile", "profile_smooth", "material"))
+        mine = ("profile", "profile_smooth", "material")
+        tables.check_keys(known, mine, (*mine, *own, "inner_diameter"))
         points = shapes.stated_points(known["profile"], "profile")
         shape = shapes.Profile(points, known.get("profile_smooth", False))
         return ProjectileSpec.turned(shape, tables.within(known, "material", library.read_material), **own)

@@ -150,6 +150,8 @@ def read_history(path: str | Path) -> Table:
         The file is missing or not the run's, a column is missing or holds what is no number, times do not
         rise, or the energies of a row do not add up.
     """
+    if Path(path).is_dir():
+        raise ResultError(f"{path}: is a directory. Name the file in it: {Path(path) / 'history.csv'}.")
     check_digest(Path(path))
     table = read_csv(path)
     numbers = {name: table.numbers(name) for name in dict.fromkeys((*HISTORY, *table.names))}

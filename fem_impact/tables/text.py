@@ -78,6 +78,8 @@ def with_band(value: float, band: float, low: float = -inf, high: float = inf) -
     ('11.0000 +- 0.0074', '11.0000 +- 0.0011')
     >>> with_band(2.4, 39.0, 0.0, 100.0), with_band(-0.001, 0.5), with_band(1.2e-6, 3e-6, 0.0)
     ('2 (0 to 42)', '0.00 +- 0.50', '(1.2 (0.0 to 4.2))e-6')
+    >>> with_band(25.05, 99.0, 0.0, 100.0)
+    '25 (0 to 100)'
     """
     if band <= 0.0:
         return f"{value:.4g} +- 0"
@@ -89,6 +91,8 @@ def with_band(value: float, band: float, low: float = -inf, high: float = inf) -
     told = f"{round(value, places) + 0.0:.{max(0, places)}f}"  # no minus zero
     if (low <= value - band and value + band <= high) or not low <= value <= high:
         return f"{told} +- {rounded_up(band, places)}"
+    if places < 0:  # ends need no more digits, but the number would not add up with others
+        told = plain(value, 2)
     first = f"{round(max(low, value - band), places) + 0.0:.{max(0, places)}f}"
     return f"{told} ({first} to {rounded_up(min(high, value + band), places)})"
 

@@ -19,6 +19,15 @@ def test_a_run_without_fields(cli, tmp_path, fidelity, words):
     assert f"one: holds no fields.vtkhdf, the fields that a film shows: {words}" in err
 
 
+def test_a_run_whose_last_level_did_not_end(cli, tmp_path):
+    result_maker.write_result(tmp_path / "one", fidelity="solid")
+    (tmp_path / "one" / "level-3").mkdir()
+    (tmp_path / "one" / "fields.vtkhdf").unlink(missing_ok=True)
+    (tmp_path / "one" / "level-3" / "fields.vtkhdf").write_bytes(b"")
+    code, _, err = cli("render", "one")
+    assert code == 5 and "its last level, which alone keeps them, did not end. Run it with --resume" in err
+
+
 def test_a_path_needs_strikes_and_is_shown_whole(cli, tmp_path):
     result_maker.write_result(tmp_path / "one", fidelity="modal")
     _, _, err = cli("render", "one", "--field", "path")

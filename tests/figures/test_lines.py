@@ -2,11 +2,12 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from fem_impact.figures import still
 from fem_impact.figures.live import live
-from fem_impact.figures.panels import Mark, Panel, Picture, Series, ShadedInterval, ShadedMap
+from fem_impact.figures.panels import Mark, Panel, Picture, Series, ShadedInterval, ShadedMap, error_bars
 from fem_impact.figures.still import draw
 from fem_impact.tables.table import read_csv
 
@@ -142,3 +143,11 @@ def test_a_shaded_map_has_its_values_and_ends(drawn):
     assert drawn([panel]).axes[0].collections[0].get_clim() == (-2.0, 2.0)
     (trace,) = live(picture([panel]))["panels"][0]["data"]
     assert trace["z"] == [[1.0, -2.0]] * 3 and (trace["zmin"], trace["zmax"]) == (-2.0, 2.0)
+
+
+def test_error_bars_end_where_numbers_do():
+    share = Series("E_vib", [1.0, 2.0], [0.1, 0.95], band=[0.3, 0.02], ends=(0.0, 1.0))
+    assert error_bars(share, horizontal=False) == pytest.approx(np.array([[0.1, 0.02], [0.3, 0.02]]))
+    (drawn,) = live(picture([Panel("t", "x", "y", (share,))]))["panels"][0]["data"]
+    assert drawn["error_y"]["arrayminus"] == [0.1, 0.02] and drawn["error_y"]["array"] == [0.3, 0.02]
+    assert drawn["customdata"][0] == "0.10 (0.00 to 0.40)"

@@ -24,7 +24,7 @@ from fem_impact.case.cells import contact_edge
 from fem_impact.case.record import together
 from fem_impact.errors import ResultError, RunError, SceneError
 from fem_impact.files.atomic import directory_lock, read_text, write_digests
-from fem_impact.files.run_directory import BESIDE, is_resumable
+from fem_impact.files.run_directory import BESIDE, is_resumable, stands_also_at
 from fem_impact.options import RunOptions
 from fem_impact.outcome.groups import limitations
 from fem_impact.outcome.keys import Unknown
@@ -82,7 +82,7 @@ class LevelChain:
 
         Where that fails or is cut off, the outcome is that of the finest level that came to its end, and says
         why. It has the limits and bands of its levels, if it resolves the contact. Its files stand in
-        ``options.out``, those of the other levels below it.
+        ``options.out``, those of all levels below it.
 
         Raises
         ------
@@ -105,8 +105,8 @@ class LevelChain:
             outcome = self._stated()
             if out is not None:
                 for file in self._place(self.counted, self.done[self.counted - 1].repeats).iterdir():
-                    if file.is_file() and file.name not in ("scene.toml", STAMP):
-                        file.replace(out / file.name)
+                    if file.is_file() and file.name not in ("scene.toml", "outcome.json", STAMP):
+                        stands_also_at(file, out / file.name)  # the level keeps them, to be gone on from
                 outcome.write(out / "outcome.json")
                 write_digests(out, BESIDE)
         return outcome

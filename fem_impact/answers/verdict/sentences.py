@@ -97,10 +97,11 @@ def _anywhere(v: Verdict) -> str:
         return "For other inclinations the answer is not known: change impact.angle and assess them, too."
     by = " by the reduced model" if v.fidelity == "solid" else ""
     everywhere = "; rigid theory may be used at every inclination" if v.worst_answer == "yes" else ""
+    known = " of those that are known" * bool(v.not_known[0])
     if v.worst is v.here:
-        return f"No other inclination has a larger change{by}{everywhere}."
+        return f"No other inclination{known} has a larger change{by}{everywhere}."
     return (
-        f"At the worst inclination, {degrees(v.worst.angle):.0f} degrees, it changes {v.of} by "
+        f"At the worst inclination{known}, {degrees(v.worst.angle):.0f} degrees, it changes {v.of} by "
         f"{v.worst.told}"
         f"{doubt(v.worst)}{by}{everywhere or f'; {THERE[v.worst.answer(v.tolerance)]}'}."
     )

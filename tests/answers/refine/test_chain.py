@@ -276,12 +276,18 @@ def test_a_level_that_leaves_its_zones_is_repeated_with_more_room(monkeypatch):
     assert rooms[2] > rooms[1]
 
 
-def test_the_files_of_the_last_level_stand_above_those_of_the_others(tmp_path):
+def test_the_files_of_the_last_level_stand_above_all_and_a_run_that_ended_computes_nothing_again(
+    tmp_path, monkeypatch
+):
     outcome = simulate(SHORT, options=RunOptions(tmp_path))
     assert Outcome.read(tmp_path / "outcome.json") == outcome
     assert Outcome.read(tmp_path / "level-1" / "outcome.json") != outcome
     record = ContactRecord.read(tmp_path / "contact.npz")
     assert len(record.sites) == 1 and record.resolved
+    monkeypatch.setattr(level_module, "simulate_recorded", None)
+    again = simulate(SHORT, options=RunOptions(tmp_path, resume=True))
+    assert again.restitution == outcome.restitution and again.energy == outcome.energy
+    assert Outcome.read(tmp_path / "outcome.json") == again
 
 
 def test_levels_that_are_done_are_not_run_again(quick, tmp_path, monkeypatch):

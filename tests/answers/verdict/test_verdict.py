@@ -133,6 +133,8 @@ def test_this_inclination_and_the_worst_one_are_two_sentences(short, at, value, 
         "YES: at this inclination, 45 degrees, vibration changes e by +0.010 ± 0.010, by the "
     )
     assert may.partition("(allowed: 0.05). ")[2].startswith(words) or may.endswith(words)
+    partly = box(replace(short, here=here, elsewhere=other, not_known=((0.5,), "why")))[0][1]
+    assert "inclination of those that are known" in partly
 
 
 def test_a_yes_agrees_with_check_where_rigid_theory_has_no_contact_law(short):
