@@ -168,9 +168,9 @@ def require_plate(bodies: Bodies, meshed_through: bool) -> None:
         )
     if barrier.span is not None and barrier.span < (least := least_span(bodies.contact)):
         raise SceneError(
-            f"is so short that bending waves are back within {contact_time(bodies.contact) * 1e6:.3g} us, "
-            "before the contact ends: the plate gives way, a massive barrier is touched for "
-            f"{estimate.duration * 1e6:.3g} us.",
+            "is so short that bending waves are back before the contact ends. It lasts "
+            f"{contact_time(bodies.contact) * 1e6:.3g} us as the plate gives way "
+            f"({estimate.duration * 1e6:.3g} us on a massive barrier).",
             key="barrier.span",
             value=f"{barrier.span * 1e3:.3g} mm",
             remedy=f"Give at least {math.ceil(least * 1e3)} mm.",

@@ -146,6 +146,9 @@ class Table:
     rows: tuple[tuple[Cell, ...], ...]
     source: str = ""
 
+    def __repr__(self) -> str:
+        return f"Table({len(self)} rows: {', '.join(self.names)})"
+
     def __post_init__(self) -> None:
         for row in self.rows:
             if len(row) != len(self.columns):

@@ -47,7 +47,15 @@ class LevelMeshes:
         SceneError
             Finite elements cannot compute the scene.
         """
-        return Case.of(self.at(self.first), "solid", self.expected(self.first))
+        scene, stated = self.at(self.first), self.case.scene.accuracy.tip_size
+        try:
+            return Case.of(scene, "solid", self.expected(self.first))
+        except SceneError as error:
+            if stated is None or error.key != "accuracy.tip_size":
+                raise
+            own, first = (f"{(size or 0.0) * 1e3:.4g} mm" for size in (stated, scene.accuracy.tip_size))
+            problem = f"begins with a level of cells of {first}, which {error.problem}"
+            raise SceneError(problem, key=error.key, value=own, remedy=error.remedy) from None
 
     @cached_property
     def first(self) -> int:
