@@ -117,8 +117,8 @@ def reduce(case: Case, result: ModalResult) -> Outcome:
 
 
 def _too_light(case: Case) -> str:
-    """Say that a free barrier is lighter than the metal that deforms, empty where it is not."""
-    if case.scene.barrier.mass is None:
+    """Say that a free barrier is lighter than the metal that deforms, empty where it is not, or is rigid."""
+    if case.scene.barrier.mass is None or not case.contact.compliant:
         return ""
     try:
         require_heavier(case.bodies, case.zones)

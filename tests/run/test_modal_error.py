@@ -28,6 +28,7 @@ from fem_impact.run.modal_error import (
     stored,
 )
 from fem_impact.scene.read import read_dict
+from fem_impact.scene.shipped import replace_all
 
 
 def drawn(n, seed):
@@ -164,6 +165,8 @@ def test_a_light_barrier_shares_the_doubt_by_momentum_and_one_too_light_has_no_e
         assert other == pytest.approx(own * mass / 0.5, rel=1e-12)
         assert own + other == pytest.approx(whole, rel=0.2) and own < whole
     assert isinstance(tiny.half_widths, Unknown)
+    rigid = {"barrier.mass": "0.3 g", "effects": ["auto", "barrier-rigid"]}
+    assert "V_bn_m_per_s" in simulate(replace_all(load("t5b"), rigid), "modal").half_widths
     assert "of metal that deforms" in tiny.half_widths.reason
 
 
