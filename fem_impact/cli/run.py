@@ -32,6 +32,7 @@ from fem_impact.tables.text import plain, wrapped
 
 if TYPE_CHECKING:
     from fem_impact.answers.friction_spread import FrictionSpread
+    from fem_impact.case.case import Case
     from fem_impact.case.size import RunSize
     from fem_impact.outcome.groups import Energy
 
@@ -84,7 +85,7 @@ def run(options: Options) -> int:
             sys.stdout.write("\nThe first strike alone\n\n")
         print_outcome(outcome, out, own_tests, spread, scene.accuracy.target_of, scene.projectile.named)
         _say_comparison(scene, outcome, options)
-        _say_screening(scene, options)
+        _say_screening(case, options)
     if outcome.validity.finished:
         return 0
     cause = outcome.validity.stopped_because
@@ -116,14 +117,15 @@ def _say_comparison(scene: Scene, outcome: Outcome, options: Options) -> None:
     sys.stdout.writelines(f"{line}\n" for one in doubtful_tests(scene) for line in wrapped(f"warning: {one}"))
 
 
-def _say_screening(scene: Scene, options: Options) -> None:
+def _say_screening(case: Case, options: Options) -> None:
     """Print the closed-form screening of a scene, the same for all fidelities, and its verdict's command."""
     from fem_impact.answers.verdict.screening import screening
     from fem_impact.answers.verdict.sentences import lines_of, screening_lines
     from fem_impact.case.case import Case
 
     changes = [word for change in options.changes for word in ("--set", change)]
-    titled = screening_lines(screening(Case(scene).bodies), shlex.join([options.scene, *changes]))
+    bodies = Case(case.scene).bodies if case.fidelity == "modal" else case.bodies
+    titled = screening_lines(screening(bodies), shlex.join([options.scene, *changes]))
     lines = lines_of(titled, indent="")
     sys.stdout.write("\n".join(lines) + "\n")
 

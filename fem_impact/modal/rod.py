@@ -10,6 +10,7 @@ import numpy as np
 from fem_impact.arrays import Array
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.case import Case
+from fem_impact.case.mesh import require_mesh
 from fem_impact.fem.body import MeshedBodies
 from fem_impact.modal.motion import Sites
 from fem_impact.modal.sites import nearest_skin, rotated, settle, sites_of, skin
@@ -208,8 +209,12 @@ def _modes(rod: ProjectileSpec, across: int) -> tuple[Array, Array, Array]:
         effects=("vibration", "barrier-rigid"),
         accuracy=Accuracy(tip_size=min(rod.diameter / 4, COARSEST), across=across, mass_scaling=1.0),
     )
-    # nothing strikes: no body is refused for how it would touch
-    meshed = MeshedBodies(Case(scene))
+    # nothing strikes: a body is refused for its mesh, and not for how it would touch
+    case = Case(scene)
+    if rod.own_mesh is None:
+        require_mesh(rod, scene.across)
+        case.require_memory()
+    meshed = MeshedBodies(case)
     modes, mesh = meshed.rod_modes(), meshed.geometry.rod.mesh
     low = modes.omega < section_frequency(rod.material, rod.diameter)
     # modes are normalised with the mass of the half rod

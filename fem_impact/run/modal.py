@@ -13,7 +13,7 @@ from fem_impact.outcome.record import Outcome
 from fem_impact.progress import Progress
 from fem_impact.run import common
 from fem_impact.run.assemble import ImpactEnd, Reduction
-from fem_impact.run.modal_error import half_widths, place_of, sentence
+from fem_impact.run.modal_error import digs_in, half_widths, place_of, sentence
 from fem_impact.run.resolution import without_coefficients
 
 HALVINGS = 2  # of the time step
@@ -25,10 +25,10 @@ SOFT_ROD = Unknown(
     "alone: this model was .14 and .17 of E_0 too high in two scenes"
 )
 COEFFICIENTS = "e_edge", "e_paper"
-"""Keys of numbers that lie between 0 and 1 and are open where their half-width is as large."""
+"""Keys of numbers that are open where an edge digs in and their half-width is as large as they can be."""
 OPEN = (
-    "it lies between 0 and 1, and its half-width by the reduced model is {:.2g}; finite elements (--fidelity "
-    "solid) tell more"
+    "an edge digs in as in no stored scene, and the reduced model's half-width is {:.2g} of a number between "
+    "0 and 1; finite elements (--fidelity solid) tell more"
 )
 UNDAMPED = Unknown("the reduced model has no material damping")
 UNSENT = Unknown("a local contact law sends no waves into the barrier")
@@ -106,13 +106,14 @@ def reduce(case: Case, result: ModalResult) -> Outcome:
         return replace(outcome, validity=replace(said, model_band=reason))
     place = place_of(case, outcome)
     halves = half_widths(place, outcome, case.contact.approach)
+    is_open = digs_in(outcome) and halves["e_edge"] >= 1.0
     said = replace(
         said,
-        model_band={key: half for key, half in halves.items() if half < 1.0 or key not in COEFFICIENTS},
+        model_band={key: half for key, half in halves.items() if not is_open or key not in COEFFICIENTS},
         limitations=(*said.limitations, *limitations("model", sentence(place, outcome))),
     )
-    if (open_by := halves.get("e_edge", 0.0)) >= 1.0:
-        outcome = without_coefficients(outcome, Unknown(OPEN.format(open_by)))
+    if is_open:
+        outcome = without_coefficients(outcome, Unknown(OPEN.format(halves["e_edge"])))
     return replace(outcome, validity=said)
 
 
