@@ -106,7 +106,7 @@ def reduce(case: Case, result: ModalResult) -> Outcome:
         return replace(outcome, validity=replace(said, model_band=reason))
     place = place_of(case, outcome)
     halves = half_widths(place, outcome, case.contact.approach)
-    is_open = digs_in(outcome) and halves["e_edge"] >= 1.0
+    is_open = digs_in(outcome) and halves.get("e_edge", 0.0) >= 1.0
     said = replace(
         said,
         model_band={key: half for key, half in halves.items() if not is_open or key not in COEFFICIENTS},

@@ -232,7 +232,8 @@ def half_widths(place: Place, outcome: Outcome, approach: float) -> dict[str, fl
     if digs_in(outcome):
         halves["mu"] = max(halves["mu"], beyond)
         for key, change in _by_impulse(beyond, outcome, approach).items():
-            halves[key] = hypot(halves[key], change)  # beside what is open at a known impulse
+            if key in halves:
+                halves[key] = hypot(halves[key], change)  # beside what is open at a known impulse
     mass, base = outcome.motion.mass, or_none(outcome.barrier.mass)
     if base and or_none(outcome.barrier.Omega_b) is None:
         # the stored scenes are of heavy barriers: what is open between both bodies they share by momentum

@@ -27,6 +27,7 @@ from fem_impact.run.modal_error import (
     scale_of,
     stored,
 )
+from fem_impact.run.resolution import without_coefficients
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import replace_all
 
@@ -189,6 +190,11 @@ def test_a_doubt_about_the_impulse_along_the_barrier_is_one_about_what_it_gives_
     by_mu = slid * abs(arms.d_c * arms.d_d) / moved.k_squared / abs(moved.v_n)
     assert 0.4 < by_mu < half < by_mu + 0.3
     assert e - half < 0.55
+    # one whose e is not known keeps the other half-widths
+    case = Case.of(read_dict({**tables, "barrier": {"material": "copper"}}), "modal")
+    blank = without_coefficients(outcome, Unknown("open"))
+    halves = half_widths(place_of(case, blank), blank, case.contact.approach)
+    assert halves == {key: outcome.half_widths[key] for key in outcome.half_widths if key[:2] != "e_"}
 
 
 def test_a_ball_that_touches_with_its_pole_has_no_thin_wall():
