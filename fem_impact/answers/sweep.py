@@ -305,7 +305,7 @@ def _panel(
         known = [at for at in places if np.isfinite(values[at])]
         if known:
             band = None if bands is None else bands[known]
-            x, lie = [along[at] for at in known], ends_of(KEY_TABLE[name])
-            series.append(Series(title, x, values[known], "joined", band=band, ends=lie))
+            x = [along[at] for at in known]
+            series.append(Series(title, x, values[known], "joined", band=band, ends=ends_of(KEY_TABLE[name])))
     title = SHOWN.get(name, name)
     return Panel(title, label, title, tuple(series))

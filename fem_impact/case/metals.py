@@ -121,9 +121,10 @@ def _heat(bodies: Bodies) -> str:
             f"The melting point of {names} is not known: a flash temperature above it is too high. State "
             f"{' and '.join(f'heating.{body}_melting' for body in unmelted)}."
         )
+    own = " and ".join(dict.fromkeys(key.split("_", 1)[1] for key in missing))
     return (
-        f"The heat of the contact is not known: {' and '.join(missing)} stand neither in [heating] of the "
-        f"scene nor as {' and '.join(dict.fromkeys(key.split('_', 1)[1] for key in missing))} of a material."
+        "The heat of the contact is not known: neither [heating] of the scene states "
+        f"{' and '.join(missing)} nor a material its {own}."
     )
 
 

@@ -68,9 +68,9 @@ def _check_fields(result: Path) -> None:
     if (result / FIELDS).is_file():
         return
     runs = sorted(path.parent.name for path in result.glob(f"*/{FIELDS}"))
-    if runs and not (result / "outcome.json").is_file():
-        raise ResultError(f"{result}: is a study. Name one of its runs, such as {result / runs[0]}.")
     if not (result / "outcome.json").is_file():
+        if runs:
+            raise ResultError(f"{result}: is a study. Name one of its runs, such as {result / runs[0]}.")
         raise ResultError(f"{result}: is a study of which no run has kept its fields. Run one scene itself.")
     from fem_impact.outcome.record import Outcome
 

@@ -210,9 +210,9 @@ def _modes(rod: ProjectileSpec, across: int) -> tuple[Array, Array, Array]:
         accuracy=Accuracy(tip_size=min(rod.diameter / 4, COARSEST), across=across, mass_scaling=1.0),
     )
     # nothing strikes: a body is refused for its mesh, and not for how it would touch
+    require_mesh(rod, scene.across)
     case = Case(scene)
     if rod.own_mesh is None:
-        require_mesh(rod, scene.across)
         case.require_memory()
     meshed = MeshedBodies(case)
     modes, mesh = meshed.rod_modes(), meshed.geometry.rod.mesh

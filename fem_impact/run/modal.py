@@ -8,8 +8,8 @@ from fem_impact.case.layers import require_heavier
 from fem_impact.errors import SceneError
 from fem_impact.modal.impact import Arrival, ModalResult, solve
 from fem_impact.outcome.groups import Energy, Heat, Markers, RunCost, limitations
-from fem_impact.outcome.keys import Num, Unknown, unknown
-from fem_impact.outcome.record import Outcome
+from fem_impact.outcome.keys import Num, Unknown, or_none, unknown
+from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.progress import Progress
 from fem_impact.run import common
 from fem_impact.run.assemble import ImpactEnd, Reduction
@@ -24,8 +24,6 @@ SOFT_ROD = Unknown(
     "the work in the surface of a projectile that is softer than the barrier is known by finite elements "
     "alone: this model was .14 and .17 of E_0 too high in two scenes"
 )
-COEFFICIENTS = "e_edge", "e_paper"
-"""Keys of numbers that are open where an edge digs in and their half-width is as large as they can be."""
 OPEN = (
     "an edge digs in as in no stored scene, and the reduced model's half-width is {:.2g} of a number between "
     "0 and 1; finite elements (--fidelity solid) tell more"
@@ -106,14 +104,13 @@ def reduce(case: Case, result: ModalResult) -> Outcome:
         return replace(outcome, validity=replace(said, model_band=reason))
     place = place_of(case, outcome)
     halves = half_widths(place, outcome, case.contact.approach)
-    is_open = digs_in(outcome) and halves.get("e_edge", 0.0) >= 1.0
+    if digs_in(outcome) and (half := halves.get("e_edge", 0.0)) >= 1.0:
+        outcome = without_coefficients(outcome, Unknown(OPEN.format(half)))
     said = replace(
         said,
-        model_band={key: half for key, half in halves.items() if not is_open or key not in COEFFICIENTS},
+        model_band={key: halves[key] for key in halves if or_none(KEY_TABLE[key].of(outcome)) is not None},
         limitations=(*said.limitations, *limitations("model", sentence(place, outcome))),
     )
-    if is_open:
-        outcome = without_coefficients(outcome, Unknown(OPEN.format(halves["e_edge"])))
     return replace(outcome, validity=said)
 
 

@@ -256,11 +256,8 @@ def modal_effect(scene: Scene, pair: Pair, of: str = "e") -> VibrationEffect:
     """
     value, case = difference(pair, of), Case(untargeted(scene), "modal")
     half, far = known_error(case, pair[0], of, value)
-    thin = (
-        half_space_error(case.bodies) * abs(or_none(pair[0].restitution.edge.e) or 1.0)
-        if is_thin(case.bodies)
-        else 0.0
-    )
+    e = or_none(pair[0].restitution.edge.e)
+    thin = half_space_error(case.bodies) * abs(1.0 if e is None else e) if is_thin(case.bodies) else 0.0
     halves = {share.key.path[-1]: pair[0].estimate(share.key)[1] for share in SHARES}
     shares = {name: half for name, half in halves.items() if half is not None}
     return VibrationEffect(
