@@ -24,6 +24,7 @@ ABOVE = 0.35  # of a cell, within which skin of the lowest point may touch in a 
 BESIDE = (
     1.05  # cells beside a line of a user's nodes: in a single row that is split every face has hanging nodes
 )
+MOST = 1_000_000  # places of skin that may touch: no machine holds a mesh with cells for more of them
 DEEP = 1.5  # radii of the estimated contact, and cells, up to which metal may flow from where it may touch
 
 
@@ -204,42 +205,63 @@ def expected_record(bodies: Bodies, rod_edge: float, barrier_edge: float) -> Con
     size, turn = bodies.estimate, bodies.mesh_inclination
     edge = max(rod_edge, barrier_edge)
     high = max(FLAT * size.depth, ABOVE * edge)
-    skin = skin_of(bodies, 0.5 * rod_edge)
-    away = skin - bodies.lowest_point
+    touched, apart = low_skin(bodies, 0.5 * rod_edge, high)
+    away = touched - bodies.lowest_point
     t = away[:, 0] * cos(turn) + away[:, 2] * sin(turn)
-    n = away[:, 2] * cos(turn) - away[:, 0] * sin(turn)
-    low = n <= high
-    touched, under = skin[low], np.stack([t[low], away[low, 1], np.zeros(low.sum())], axis=1)
+    under = np.stack([t, away[:, 1], np.zeros(len(t))], axis=1)
     # no wider than what may touch, which a flat face or a flank limits
     radius = min(size.radius, 0.5 * float(np.linalg.norm(np.ptp(under, axis=0))) + 0.5 * edge)
     spread = DEEP * max(edge, radius)
     slid = SLIDE * size.depth * bodies.contact.sliding / max(bodies.contact.approach, 1e-6)
-    steps = np.linspace(0.0, slid, 2 + int(abs(slid) / edge)) if slid else np.zeros(1)
+    steps = np.linspace(0.0, slid, 2 + int(abs(slid) / max(edge, 2 * apart))) if slid else np.zeros(1)
     under = np.concatenate([under + np.array([step, 0.0, 0.0]) for step in steps])
-    rod = BodyRecord(touched, touched, np.zeros(len(touched)), rod_edge, rod_edge, spread)
+    rod = BodyRecord(touched, touched, np.zeros(len(touched)), rod_edge, 2 * apart, spread)
     reach = barrier_edge * (BESIDE if isinstance(bodies.body, Faceted) else 1.0)
     barrier = BodyRecord(under, under, np.zeros(len(under)), barrier_edge, reach, spread)
     return ContactRecord(rod, barrier if bodies.contact.compliant else None)
 
 
-def skin_of(bodies: Bodies, apart: float) -> Array:
-    """Return places (k, 3), m, of the half projectile's skin in its own frame, about so far apart, m."""
-    body = bodies.body
+def low_skin(bodies: Bodies, apart: float, high: float) -> tuple[Array, float]:
+    """Return places (k, 3), m, of the half projectile's skin in its own frame, and how far they are apart, m.
+
+    They are those no higher than ``high``, m, over its lowest point, about ``apart`` or, where that makes
+    more than `MOST`, farther apart.
+    """
+    body, turn = bodies.body, bodies.mesh_inclination
     if isinstance(body, Faceted):
         corners = body.points[body.facets]
-        return np.concatenate([body.points[np.unique(body.facets)], corners.mean(axis=1)])
+        skin = np.concatenate([body.points[np.unique(body.facets)], corners.mean(axis=1)])
+        return skin[_height(bodies, skin) <= high], apart
     line = body.meridian()
     if isinstance(body, Projectile):
         line = np.vstack([line, [body.diameter / 2, body.length], [0.0, body.length]])
     elif line[-1, 0] > 0.0:
         line = np.vstack([line, [0.0, body.length]])
     along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))])
+    apart = max(apart, pi * along[-1] / MOST)
     arc = np.linspace(0.0, along[-1], 2 + int(along[-1] / apart))
     arc = np.unique(np.concatenate([arc, along]))
     rho, z = np.interp(arc, along, line[:, 0]), np.interp(arc, along, line[:, 1])
     around = np.linspace(0.0, pi, 1 + max(AROUND, int(pi * rho.max() / apart)))
-    places = np.stack(
+    # whole circles, then whole meridians, none of whose places is low: the skin of a whole rod is many times
+    # that of a contact
+    lowest = np.stack([np.copysign(rho, sin(turn)), np.zeros_like(rho), z], axis=1)
+    rho, z = (values[_height(bodies, lowest) <= high] for values in (rho, z))
+    axis = _height(bodies, np.stack([np.zeros_like(rho), np.zeros_like(rho), z], axis=1))
+    leaning = rho * abs(sin(turn))
+    if leaning.min() > 0.0:
+        lowest_cosine = ((axis - high) / leaning).min()
+        around = around[np.cos(around) * np.sign(sin(turn)) >= lowest_cosine]
+    if len(rho) * len(around) > MOST:
+        return low_skin(bodies, 2 * apart, high)
+    skin = np.stack(
         [np.outer(rho, np.cos(around)), np.outer(rho, np.sin(around)), np.outer(z, np.ones(len(around)))],
         axis=-1,
-    )
-    return np.asarray(places.reshape(-1, 3))
+    ).reshape(-1, 3)
+    return np.asarray(skin[_height(bodies, skin) <= high]), apart
+
+
+def _height(bodies: Bodies, places: Array) -> Array:
+    """Return the height, m, of places (k, 3) of the projectile over its lowest point."""
+    away, turn = places - bodies.lowest_point, bodies.mesh_inclination
+    return np.asarray(away[:, 2] * cos(turn) - away[:, 0] * sin(turn))

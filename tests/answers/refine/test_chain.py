@@ -276,14 +276,14 @@ def test_a_level_that_leaves_its_zones_is_repeated_with_more_room(monkeypatch):
     assert rooms[2] > rooms[1]
 
 
-def test_a_size_that_no_machine_holds_is_told_as_it_was_stated():
-    """It said 0.0093 mm, the cells of the first level, where 0.002 mm stood."""
-    fine = LevelMeshes.of(Case(replace_all(load("t5b"), {"accuracy.tip_size": "0.002 mm"})))
-    with pytest.raises(
-        SceneError, match=r"begins with a level of cells of 0\.009\d+ mm, which makes"
-    ) as refused:
+@pytest.mark.parametrize("size, first, held", [("0.002", "0.0092", "0.037"), ("0.0005", "0.0023", "0.037")])
+def test_a_size_that_no_machine_holds_is_told_as_it_was_stated(size, first, held):
+    """It said 0.0093 mm, the cells of the first level, where 0.002 mm stood; 0.0005 mm took all memory."""
+    fine = LevelMeshes.of(Case(replace_all(load("t5b"), {"accuracy.tip_size": f"{size} mm"})))
+    with pytest.raises(SceneError, match=rf"a level of cells of {first}\d+ mm, which makes") as refused:
         _ = fine.pilot
-    assert (refused.value.key, refused.value.value) == ("accuracy.tip_size", "0.002 mm")
+    assert (refused.value.key, refused.value.value) == ("accuracy.tip_size", f"{size} mm")
+    assert refused.value.remedy == f"Give at least {held} mm."
 
 
 def test_the_files_of_the_last_level_stand_above_all_and_a_run_that_ended_computes_nothing_again(
