@@ -56,6 +56,7 @@ def _called(argv: Sequence[str] | None) -> int:
         signal.signal(signal.SIGTERM, _stop)  # cleans up like Ctrl-C
         if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # not of one told to ignore it
             signal.signal(signal.SIGINT, _stop)
+        sys.unraisablehook = _not_lost
     return _guarded(options.handler, options)
 
 
@@ -67,6 +68,14 @@ def _stop(number: int, frame: FrameType | None) -> None:
             return
         frame = frame.f_back
     raise KeyboardInterrupt
+
+
+def _not_lost(lost: "sys.UnraisableHookArgs") -> None:
+    """Stop a little later where a stop was raised within a callback that loses it (of a weak reference)."""
+    if lost.exc_type is KeyboardInterrupt:
+        threading.Timer(LATER, interrupt_main, (signal.SIGTERM,)).start()
+    else:
+        sys.__unraisablehook__(lost)
 
 
 def _guarded(handler: Callable[[Options], int], options: Options) -> int:

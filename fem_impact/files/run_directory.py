@@ -11,6 +11,8 @@ from fem_impact.files.atomic import CHECKSUM, DIGESTS, LOCK, atomic_path, make_d
 CHECKPOINT = "run.checkpoint"
 FIELDS = "fields.vtkhdf"
 RECORD = "contact.npz"
+STAMP = "level.stamp"
+"""What a level computes, in its directory before it begins."""
 BESIDE = ("contacts.csv", "strikes.csv", "history.csv", FIELDS, "waves.h5", RECORD)
 """Files beside an outcome, whose digests stand in `DIGESTS`."""
 COMPUTED = (CHECKPOINT, "outcome.json", *BESIDE, DIGESTS, "level-*")
@@ -84,6 +86,7 @@ _MARKS: dict[str, bytes] = {
     "history.csv": b"time_s,",
     "store.sqlite": b"SQLite format 3",
     CHECKPOINT: b"",
+    STAMP: b"",
     LOCK: b"",
 }
 """Files that show who wrote them, with what stands in each; an empty history is that of a killed run."""

@@ -307,3 +307,21 @@ def test_what_a_model_refuses_of_a_scene_is_told_with_its_place(cli):
     assert 'error: --set: impact.until = "rest"' in told
     Path("mine.toml").write_text(f'{text}until = "rest"\n')
     assert 'error: mine.toml: impact.until = "rest"' in cli("run", "mine.toml", "--fidelity", "rigid")[2]
+
+
+@pytest.mark.parametrize("resume", [(), ("--resume",)])
+def test_a_run_stopped_as_its_first_level_began_runs_in_its_directory(cli, monkeypatch, resume):
+    """Only the level's stamp stood there: the directory was taken for somebody else's."""
+    runs = []
+
+    def stopped(*_):
+        runs.append(1)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("fem_impact.answers.refine.level.simulate_recorded", stopped)
+    for more in ((), resume):
+        code, _, err = cli("run", "t5b", "--quiet", "--out", "here", *more)
+        assert (code, "interrupted" in err) == (130, True), err
+        files = {path.name for path in Path("here").rglob("*") if path.is_file()}
+        assert files == {"level.stamp", "scene.toml"}
+    assert len(runs) == 2

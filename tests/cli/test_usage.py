@@ -5,7 +5,9 @@ import json
 import re
 import shlex
 import signal
+import sys
 import time
+import weakref
 from functools import partial
 from importlib import import_module
 
@@ -185,20 +187,39 @@ def test_a_far_option_is_not_proposed(cli):
     assert "there is no option --out." in err and "Did you mean" not in err
 
 
+@pytest.fixture
+def signals():
+    """How signals and lost exceptions are answered, put back after the test."""
+    kept = {one: signal.getsignal(one) for one in (signal.SIGTERM, signal.SIGINT)}
+    hook = sys.unraisablehook
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell starts what runs behind deaf to it
+    yield
+    sys.unraisablehook = hook
+    for one, handler in kept.items():
+        signal.signal(one, handler)
+
+
 @pytest.mark.parametrize("stop", [signal.SIGTERM, signal.SIGINT])
-def test_a_stop_in_a_callback_of_the_compiler_is_not_lost(cli, stop):
+def test_a_stop_in_a_callback_of_the_compiler_is_not_lost(cli, signals, stop):
     """What is raised there goes no further: the run went on, or ended by an error of the compiler."""
     scope = {"__name__": "llvmlite.binding.executionengine", "stop": partial(signal.raise_signal, stop)}
     exec("def notify(): stop(); reached.append(1)", scope | {"reached": (reached := [])}, scope)
-    kept = {one: signal.getsignal(one) for one in (signal.SIGTERM, signal.SIGINT)}
-    signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell starts what runs behind deaf to it
-    try:
-        cli("schema")
-        with pytest.raises(KeyboardInterrupt):
-            ctypes.CFUNCTYPE(None)(scope["notify"])()
-            for _ in range(500):
-                time.sleep(0.01)
-    finally:
-        for one, handler in kept.items():
-            signal.signal(one, handler)
+    cli("schema")
+    with pytest.raises(KeyboardInterrupt):
+        ctypes.CFUNCTYPE(None)(scope["notify"])()
+        for _ in range(500):
+            time.sleep(0.01)
     assert reached == [1]
+
+
+@pytest.mark.parametrize("stop", [signal.SIGTERM, signal.SIGINT])
+def test_a_stop_in_a_callback_of_a_weak_reference_is_not_lost(cli, signals, stop):
+    """A run went on for six minutes after it, with a traceback of `weakref`."""
+    cli("schema")
+    held = [set()]
+    reference = weakref.ref(held[0], lambda _: signal.raise_signal(stop))
+    with pytest.raises(KeyboardInterrupt):
+        held.clear()
+        for _ in range(500):
+            time.sleep(0.01)
+    assert reference() is None

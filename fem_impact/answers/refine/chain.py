@@ -16,7 +16,7 @@ from functools import cached_property, partial
 from pathlib import Path
 
 from fem_impact.answers.refine import extrapolate, forecast, needed
-from fem_impact.answers.refine.level import STAMP, LevelRun, simulate_level, with_half_step
+from fem_impact.answers.refine.level import LevelRun, simulate_level, with_half_step
 from fem_impact.answers.refine.level_meshes import LevelMeshes, steps_between
 from fem_impact.answers.refine.quantities import TARGETED
 from fem_impact.case.case import Case
@@ -24,7 +24,7 @@ from fem_impact.case.cells import contact_edge
 from fem_impact.case.record import together
 from fem_impact.errors import ResultError, RunError, SceneError
 from fem_impact.files.atomic import directory_lock, read_text, write_digests
-from fem_impact.files.run_directory import BESIDE, is_resumable, stands_also_at
+from fem_impact.files.run_directory import BESIDE, STAMP, is_resumable, stands_also_at
 from fem_impact.options import RunOptions
 from fem_impact.outcome.groups import limitations
 from fem_impact.outcome.keys import Unknown

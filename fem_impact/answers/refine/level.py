@@ -7,7 +7,7 @@ from fem_impact.answers.refine.needed import ROWS
 from fem_impact.case.case import Case
 from fem_impact.case.record import ContactRecord
 from fem_impact.files.atomic import read_text, write_text
-from fem_impact.files.run_directory import RECORD
+from fem_impact.files.run_directory import RECORD, STAMP
 from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.record import Outcome
@@ -17,9 +17,6 @@ from fem_impact.run.resolution import NOT_RESOLVED, without
 from fem_impact.run.simulate import simulate_recorded
 from fem_impact.scene.types import Scene
 from fem_impact.solid.stepguard import THIN_CRUSHED
-
-STAMP = "level.stamp"
-"""File of a level's directory that says what was computed there."""
 
 
 @dataclass(frozen=True, slots=True)
