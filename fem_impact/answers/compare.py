@@ -53,7 +53,7 @@ STATISTICS = {f"measured_{name}": name for name in ("mean", "sd", "low", "high")
 def verdict(model: float, band: float | None, measured: Statistic) -> str:
     """Return whether the computed value agrees with the measurement.
 
-    "inside": in the 95 % interval of the mean; "undecided: mesh band": only the value's mesh band reaches
+    "inside": in the 95 % interval of the mean; "undecided: mesh band": only the value's band reaches
     that interval; otherwise the distance from the mean, less the band, in standard deviations (SD) of single
     tests, "outside, within the scatter" up to two.
 
@@ -105,7 +105,8 @@ def compare(outcome: Outcome, tests: MeasuredTests | None = None) -> list[Compar
     """Return one row a quantity of an outcome beside tests; without them beside the set of its scene's id.
 
     With a second mesh, model and band are the limit for vanishing elements and its uncertainty; without one,
-    model is the run's own value and band is None.
+    model is the run's own value and band is None. The band of the reduced model is its half-width; a number
+    of it that has none is not judged.
     """
     set_id, rows = outcome.provenance.scene_id, []
     statistics = (tests or measured_set(set_id)).statistics()
@@ -119,8 +120,12 @@ def compare(outcome: Outcome, tests: MeasuredTests | None = None) -> list[Compar
         measured = statistics.get(quantity.measured or "")
         if isinstance(model, Unknown):
             judged = f"not known: {model.reason}"
+        elif measured is not None and band is None and outcome.provenance.fidelity == "modal":
+            judged = "not judged: how far the reduced model is off is not known"
         elif measured is not None:
             judged = verdict(model, band, measured)
+            if outcome.provenance.fidelity == "modal":
+                judged = judged.replace("mesh band", "the model's error")
         elif quantity.measured:
             judged = "not measured"
         else:

@@ -38,7 +38,8 @@ def friction_spread(scene: Scene, fidelity: str, outcome: Outcome | None = None)
     """Return what the stated interval of friction changes of the first impact.
 
     Finite elements take the reduced model for it, a body that has none the rigid theory. An ``outcome`` that
-    this program has just computed stands for the run at the stated friction, where it is of the same model.
+    this program has just computed stands for the run at the stated friction, where it is of the same model;
+    changes are those of numbers that it knows, and take none of them beyond its ends, as of shares 0 and 1.
     """
     surface = scene.surface
     if surface.friction_low < surface.friction_high:
@@ -53,7 +54,9 @@ def friction_spread(scene: Scene, fidelity: str, outcome: Outcome | None = None)
             interval = (
                 f"f = {surface.friction_low:g} to {surface.friction_high:g} instead of {surface.friction:g}"
             )
-            return FrictionSpread(f"At the right: what {interval} changes, by {by}.", _changes(nominal, ends))
+            changes = _changes(nominal, ends)
+            held = _held(outcome, changes) if outcome else changes
+            return FrictionSpread(f"At the right: what {interval} changes, by {by}.", held)
     return FrictionSpread("", {})
 
 
@@ -83,3 +86,13 @@ def _changes(nominal: Outcome, ends: list[Outcome]) -> dict[Key, tuple[float, fl
             if high - low > max(LEAST * abs(numbers[0]), ROUND_OFF):
                 changes[key] = low, high
     return changes
+
+
+def _held(outcome: Outcome, changes: Mapping[Key, tuple[float, float]]) -> dict[Key, tuple[float, float]]:
+    """Return the changes of numbers that the outcome knows, up to the ends of each."""
+    held = {}
+    for key, (low, high) in changes.items():
+        value, (least, most) = or_none(outcome.estimate(key)[0]), outcome.ends_of(key)
+        if value is not None:
+            held[key] = max(low, min(0.0, least - value)), min(high, max(0.0, most - value))
+    return held

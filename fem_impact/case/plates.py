@@ -10,6 +10,7 @@ from fem_impact.case.effects.barrier import compliance_share
 from fem_impact.errors import SceneError
 from fem_impact.physics.contact import pressure_speed
 from fem_impact.physics.plate import contact_time, least_span, plate_waves, zener_number
+from fem_impact.tables.text import plain
 
 # of e, by a half-space under the contact: above it that is told, and finite elements mesh the plate through
 THIN = 0.02
@@ -49,6 +50,15 @@ def contact_width(bodies: Bodies) -> float:
     return 2 * bodies.estimate.radius
 
 
+def _width_told(bodies: Bodies) -> str:
+    """Return the width of the contact as text; of one much longer than wide also what it is the mean of."""
+    size, width = bodies.estimate, f"{plain(contact_width(bodies) * 1e3, 2)} mm"
+    short, long = sorted((2e3 * size.a_t, 2e3 * size.a_b))
+    if long < 4 * short:
+        return width
+    return f"{width} (the geometric mean of {plain(long, 2)} mm and {plain(short, 2)} mm)"
+
+
 def is_thin(bodies: Bodies) -> bool:
     """Return whether finite elements mesh a plate through its thickness, as it is thin beside the contact."""
     return "plate-bending" in bodies.effects and half_space_error(bodies) > THIN
@@ -65,7 +75,7 @@ def thin_plate(bodies: Bodies, meshed_through: bool) -> str:
     if h is None or error <= THIN:
         return ""
     width = contact_width(bodies)
-    thin = f"the contact is {width * 1e3:.2g} mm wide, {width / h:.2g} of the plate's thickness"
+    thin = f"the contact is {_width_told(bodies)} wide, {plain(width / h, 2)} of the plate's thickness"
     if meshed_through:
         return (
             f"idealised: {thin}, so the plate is meshed through it and bends by itself: its impedance is not "
@@ -98,7 +108,7 @@ def too_thin(bodies: Bodies, meshed: bool) -> tuple[str, ...]:
         if size.depth > wall:
             told.append(f"left out: {dent}, {behind}")
         elif width > wall and not meshed:
-            told.append(f"left out: the contact is {width * 1e3:.2g} mm wide, {behind}")
+            told.append(f"left out: the contact is {_width_told(bodies)} wide, {behind}")
     return tuple(told)
 
 
@@ -160,8 +170,8 @@ def require_plate(bodies: Bodies, meshed_through: bool) -> None:
     if is_wider(bodies) and not meshed_through:
         by_mesh = ", or use fidelity solid, which meshes the plate through its thickness"
         raise SceneError(
-            f"is less than the width of the contact, {contact_width(bodies) * 1e3:.2g} mm: it is no local "
-            "one, and the plate would bulge under it.",
+            f"is less than the width of the contact, {_width_told(bodies)}: it is no local one, and the "
+            "plate would bulge under it.",
             key="barrier.thickness",
             value=f"{barrier.thickness * 1e3:.3g} mm",
             remedy=f"Give a thicker plate or a lower speed{by_mesh * is_thin(bodies)}.",

@@ -205,8 +205,8 @@ def _contact_lines(case: Case) -> Iterator[str]:
     faces = "".join(f"; {one.name} f {one.surface.friction:g}" for one in scene.projectile.faces)
     yield f"friction f {surface.friction:g} ({sure}), {surface.state} surfaces{faces}"
     yield (
-        f"the contact, estimated: {1e3 * size.a_t:.2g} mm x {1e3 * size.a_b:.2g} mm in radius, "
-        f"{1e3 * size.depth:.2g} mm deep, for {1e6 * size.duration:.3g} us"
+        f"the contact, estimated: {plain(1e3 * size.a_t, 2)} mm x {plain(1e3 * size.a_b, 2)} mm in radius, "
+        f"{plain(1e3 * size.depth, 2)} mm deep, for {plain(1e6 * size.duration)} us"
     )
     yield f"{screening(case.bodies).sentence}. The verdict: `fem-impact assess`"
 

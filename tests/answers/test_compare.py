@@ -62,6 +62,19 @@ def test_limits_and_bands_reach_the_rows():
     assert found["mu"] == (0.5, None)
 
 
+def test_the_reduced_model_is_judged_by_its_own_error_and_where_it_has_none_not_at_all():
+    """Numbers without a half-width were called a miss, and others open by the band of a mesh."""
+    numbers = {"e_paper": 0.3, "E_ln_paper_over_E_0": 0.4, "E_lt_paper_over_E_0": 0.3}
+    record = outcome(scene_id="t4", mesh_limit={"e_paper": 0.3}, mesh_band={"e_paper": 0.2}, **numbers)
+    reduced = outcome(
+        scene_id="t4", fidelity="modal", model_band={"e_paper": 0.2}, mesh_limit=None, **numbers
+    )
+    found = {row["quantity"]: row["verdict"] for row in compare(reduced)}
+    assert found["e"] == "undecided: the model's error"
+    assert found["E_ln/E_0"] == "not judged: how far the reduced model is off is not known"
+    assert compare(record)[0]["verdict"] == "undecided: mesh band"
+
+
 def test_a_share_of_the_energy_is_told_within_0_and_1():
     row = {"model": 0.05, "band": 0.2}
     assert told(row | {"quantity": "E_r/E_0"}) == "0.05 (0.00 to 0.25)"

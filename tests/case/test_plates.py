@@ -16,6 +16,7 @@ from fem_impact.outcome.groups import texts
 from fem_impact.physics.plate import least_span
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace_all
+from fem_impact.tables.text import plain
 
 
 def stated(thickness, **changes):
@@ -80,6 +81,16 @@ def test_a_contact_wider_than_the_plate_is_one_for_finite_elements():
         Case.of(scene, "modal")
     assert not_reduced(Case(scene).bodies) == "a plate thinner than its contact is wide"
     assert not_reduced(Case(stated("5 mm")).bodies) == ""
+
+
+def test_a_long_contact_says_of_what_its_width_is_the_mean():
+    """A tube on its side touched 280 mm x 1.4 mm, and 20 mm was called the width."""
+    fall = {"impact.angle": "90 deg", "impact.v_n": "-5 m/s", "impact.v_t": "0 m/s"}
+    scene = stated("1 mm", **fall)
+    size = Case(scene).estimate
+    long, short = (plain(2e3 * half, 2) for half in (size.a_t, size.a_b))
+    with pytest.raises(SceneError, match=rf"the geometric mean of {long} mm and {short} mm"):
+        Case.of(scene, "modal")
 
 
 FINE = {"accuracy.across": 40, "accuracy.tip_size": "0.3 mm"}

@@ -83,6 +83,10 @@ class Criterion(ABC):
     unit: str
     per_unit: float
 
+    def require(self, scene: Scene) -> None:
+        """Refuse a scene that does not state what the number needs (SceneError)."""
+        return
+
     @abstractmethod
     def reduced(self, scene: Scene) -> Bound | Unknown:
         """Return the number by the reduced model (SceneError: the scene is refused)."""
@@ -229,6 +233,10 @@ class HeatCriterion(Limited):
     def of_solid(self, outcome: Outcome) -> Num:
         """Return the rise, K."""
         return outcome.heat.rise
+
+    def require(self, scene: Scene) -> None:
+        """Refuse a scene without heat capacities and conductivities (SceneError)."""
+        halves(Case(scene).bodies)
 
     def base(self, scene: Scene) -> float:
         """Return the temperature of the surroundings, K."""

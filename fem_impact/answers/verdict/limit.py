@@ -136,10 +136,11 @@ def judge(
     Raises
     ------
     SceneError, UsageError
-        The scene or an interval cannot be used.
+        The scene or an interval cannot be used, or the scene does not state what the number needs.
     """
     check_means(fidelity, budget_s)
     scene = scene.first_impact
+    criterion.require(scene)
     f = scene.surface.friction_low, scene.surface.friction_high
     friction = {} if f[0] == f[1] else {FRICTION: f}
     intervals = [interval_of(scene, key, ends) for key, ends in {**friction, **(uncertain or {})}.items()]
@@ -282,9 +283,11 @@ def _apart(criterion: Criterion, number: float, digits: int = 3) -> str:
 def _told(criterion: Criterion, bound: Bound) -> str:
     """Return a number between its least and most, in the unit of its criterion."""
     value, low = _in_unit(criterion, bound.value), _in_unit(criterion, bound.low)
+    if bound.low == bound.ceiling:
+        return f"at least {value} ({bound.beyond})"
     if bound.beyond:
-        least = "at least " if bound.value == bound.ceiling else ""
-        return f"{least}{value} ({low} or more; {bound.beyond})"
+        more = " or more" if bound.value == bound.ceiling else ""
+        return f"{low} or more, at the best estimate {value}{more} ({bound.beyond})"
     return f"{value} ({low} to {_in_unit(criterion, bound.high)})"
 
 

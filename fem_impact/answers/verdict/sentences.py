@@ -8,7 +8,7 @@ from fem_impact.answers.simulate import refused_by
 from fem_impact.answers.verdict.assess import Verdict
 from fem_impact.answers.verdict.levels import next_step
 from fem_impact.answers.verdict.screening import Screening
-from fem_impact.answers.verdict.vibration import CALLED, Answer, VibrationEffect, untargeted
+from fem_impact.answers.verdict.vibration import CALLED, MESHES, Answer, VibrationEffect, untargeted
 from fem_impact.case.case import Case
 from fem_impact.outcome.groups import texts
 from fem_impact.outcome.keys import Unknown, or_none
@@ -159,10 +159,12 @@ def _heating(effect: VibrationEffect) -> str:
 def basis(v: Verdict) -> tuple[Line, ...]:
     """Return what the verdict rests on: title and sentence."""
     here, twin = v.here, v.scene.projectile.named("the same scene with a rod that cannot vibrate")
+    # the change is that of vanishing cells
+    on = " (on the finest mesh)" if here and here.model == MESHES else ""
     return (
         ("case", case_sentence(v.scene)),
         ("T1/tau and gamma", f"{v.screening.sentence}."),
-        *((("with vibration", _motion(here.free)), (twin, _motion(here.stiff))) if here else ()),
+        *(((f"with vibration{on}", _motion(here.free)), (twin + on, _motion(here.stiff))) if here else ()),
         *((f"step {number}", f"{step}.") for number, step in enumerate(v.steps, 1)),
         *((("fidelity", f"{v.fidelity}. {here.source}"),) if here else ()),
         *((("heat of the contact", _heat(here.free)),) if here else ()),

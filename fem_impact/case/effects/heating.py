@@ -32,7 +32,8 @@ def halves(bodies: Bodies) -> Halves:
             ", or leave contact-heating out of effects" if "contact-heating" in bodies.scene.effects else ""
         )
         problem = "is not known: the material states none."
-        remedy = f"State {' and '.join(missing)} in [heating], in W/(m K) and J/(kg K){forced}."
+        wanted = (f"{key}, {'J/(kg K)' if key.endswith('capacity') else 'W/(m K)'}" for key in missing)
+        remedy = f"State {' and '.join(wanted)}, in [heating]{forced}."
         raise SceneError(problem, key=f"heating.{missing[0]}", remedy=remedy)
     known = {key: value for key, value in values.items() if value is not None}
     rod, barrier = bodies.contact.rod, bodies.contact.barrier
