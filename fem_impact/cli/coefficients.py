@@ -8,6 +8,7 @@ from fem_impact.cli.scene_options import angle_of, named_scene, rod_of
 from fem_impact.cli.terminal import print_answer
 from fem_impact.errors import SceneError, UsageError
 from fem_impact.evidence.paper.own_data import own_coefficients
+from fem_impact.run.tests import other_impacts
 from fem_impact.scene.own_tests import Camera, read_camera
 from fem_impact.scene.units import option_quantity
 from rigid import Arms, Body, RigidError
@@ -32,6 +33,8 @@ def coefficients(options: Options) -> int:
     except RigidError as error:
         raise SceneError(f"{error}.", source=str(options.file), remedy="Check signs and arms.") from None
     document = {"file": str(options.file), **document}
+    if scene:
+        document["notes"] = [*other_impacts(scene, camera), *document["notes"]]
     print_answer(options, document, own_text(document))
     return 0
 

@@ -157,13 +157,8 @@ def doubtful_tests(scene: Scene) -> list[str]:
     file = scene.measured or ""
     if not file.endswith(OWN) or holds_means(file):
         return []
-    camera, body, fall = read_camera(file), scene.projectile.rigid_body, scene.relative
-    motion, speed, warnings = camera.motion, hypot(fall.v_n, fall.v_t), []
-    for name, component in (("v_n", fall.v_n), ("v_t", fall.v_t)):
-        far = np.flatnonzero(abs(motion[name] - component) > FAR * speed)
-        if far.size:
-            values = f"has {name} = {motion[name][far[0]]:.4g} m/s, the scene {component:.4g} m/s"
-            warnings.append(f"{_named(camera, far)} {values}: it is not the scene's impact.")
+    camera, body = read_camera(file), scene.projectile.rigid_body
+    motion, warnings = camera.motion, other_impacts(scene, camera)
     means = {"mass": body.mass, "k2": body.k2}
     before = kinetic_energy(motion["v_n"], motion["v_t"], scene.impact.omega, **means)
     after = kinetic_energy(motion["V_n"], motion["V_t"], motion["Omega"], **means)
@@ -174,6 +169,17 @@ def doubtful_tests(scene: Scene) -> list[str]:
             f"{_named(camera, gained)} has more kinetic energy after than before the impact: {both}."
         )
     return warnings
+
+
+def other_impacts(scene: Scene, camera: Camera) -> list[str]:
+    """Return a sentence on single tests that are not of the scene's impact, by v_n and by v_t."""
+    fall, told = scene.relative, []
+    for name, component in (("v_n", fall.v_n), ("v_t", fall.v_t)):
+        far = np.flatnonzero(abs(camera.motion[name] - component) > FAR * hypot(fall.v_n, fall.v_t))
+        if far.size:
+            values = f"has {name} = {camera.motion[name][far[0]]:.4g} m/s, the scene {component:.4g} m/s"
+            told.append(f"{_named(camera, far)} {values}: it is not the scene's impact.")
+    return told
 
 
 def _named(camera: Camera, rows: Ints) -> str:

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from fem_impact.errors import ResultError, did_you_mean
+from fem_impact.scene.fields import V_N
 from fem_impact.scene.units import Unit
 from fem_impact.scene.user_table import UserTable, finite, in_si, read_user_table, unit_of
 from rigid.inputs import Floats
@@ -19,6 +20,8 @@ MEANS = "quantity,mean,sd,n"
 """Headers of a file of single tests, and of one of means."""
 LARGEST = 1e6
 """Bound of the size of a velocity, m/s or rad/s."""
+FASTEST = -V_N.low
+"""The most that a scene may state as a speed, m/s."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,6 +126,11 @@ def _check_motion(motion: Mapping[str, Floats], table: UserTable, stated: Mappin
         if bad.any():
             place, text = table.column(stated[name])[int(np.argmax(bad))]
             raise ResultError(f"{place}: {text} {rule}.")
+    for name in (name for name, dimension in OF_TESTS.items() if dimension == "speed"):
+        if (fast := abs(motion[name]) > FASTEST).any():
+            place, text = table.column(stated[name])[int(np.argmax(fast))]
+            rule = f"is more than {FASTEST:g} m/s, the most that a scene may state: is its unit right?"
+            raise ResultError(f"{place}: {text} {rule}")
 
 
 OF_MEANS = {"e": "", "mu": "", "Omega": "angular speed", "V_n": "speed", "V_t": "speed"}

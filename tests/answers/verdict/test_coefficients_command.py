@@ -59,6 +59,22 @@ def test_known_coefficients_are_found(cli, camera_file):
     assert centre["from_contact_m"] == pytest.approx(-0.1 * (arms.d_c - 0.5 * arms.d_d), rel=1e-6)
 
 
+def test_a_velocity_in_another_unit_is_refused_and_another_impact_than_the_scenes_is_told(cli, camera_file):
+    """Tests in mm/s that were called m/s had e to three digits, without a word."""
+    thousands = [
+        ",".join([row[0], *(f"{1e3 * float(x):g}" for x in row[1:])]) for row in (r.split(",") for r in GOOD)
+    ]
+    code, _, err = cli("coefficients", camera_file(*thousands), *ROD)
+    assert code == 5 and "line 2, column v_n_m_per_s: -1572" in err and "is its unit right?" in err
+    out = cli("coefficients", camera_file(*GOOD), "--scene", "t5b", "--set", "impact.v_t=-0.4 m/s", "--json")[
+        1
+    ]
+    assert (
+        "Test 1 of 3, the first of 3 like it, has v_t = -1.602 m/s, the scene -0.4 m/s"
+        in json.loads(out)["notes"][0]
+    )
+
+
 def test_a_scene_states_the_projectile_that_was_tested(cli, camera_file):
     """A tube has other inertia than the solid rod of its size; its own coefficients come back."""
     body, alpha = load("tube").projectile.rigid_body, load("tube").impact.angle
