@@ -222,7 +222,11 @@ def half_widths(place: Place, outcome: Outcome, approach: float) -> dict[str, fl
     # the plastic work of the body that flows is what the other shares leave
     plastic = [key for key in PLASTIC if or_none(KEY_TABLE[key].of(outcome))]
     if not outcome.motion.friction:  # nothing rubs; along an elastic body nothing pushes at all
-        halves |= {"W_friction_over_E_0": 0.0} | ({} if plastic else {"mu": 0.0})
+        halves["W_friction_over_E_0"] = 0.0
+        if not plastic and "V_n_m_per_s" in halves:  # which an impact that was cut off does not know
+            arm = abs(known(outcome.restitution.edge.d_c)) / outcome.motion.k_squared
+            turned = halves["V_n_m_per_s"] * arm
+            halves |= {"mu": 0.0, "V_t_m_per_s": 0.0, "Omega_rad_per_s": turned}
     halves |= dict.fromkeys(plastic, sum(halves.get(key, 0.0) for key in TOLD[-3:]))
     for key in (*TOLD[-3:], *plastic):  # shares lie between 0 and 1
         if key in halves:

@@ -171,6 +171,18 @@ def test_a_light_barrier_shares_the_doubt_by_momentum_and_one_too_light_has_no_e
     assert "of metal that deforms" in tiny.half_widths.reason
 
 
+def test_what_nothing_rubs_keeps_its_speed_along_the_barrier_and_turns_by_the_normal_impulse_alone():
+    """A sphere that fell straight down had a spin of 0 +- 9.5 rad/s."""
+    scene = load("elastic-frictionless")
+    outcome = simulate(scene, "modal")
+    halves, arm = outcome.half_widths, outcome.restitution.edge.d_c
+    assert halves["V_t_m_per_s"] == halves["mu"] == 0.0 < halves["V_n_m_per_s"]
+    turned = halves["V_n_m_per_s"] * abs(arm) / outcome.motion.k_squared
+    assert halves["Omega_rad_per_s"] == pytest.approx(turned) and turned > 0.0
+    upright = simulate(replace_all(scene, {"impact.angle": "0 deg", "impact.v_t": "0 m/s"}), "modal")
+    assert upright.half_widths["Omega_rad_per_s"] == 0.0 < upright.half_widths["V_n_m_per_s"]
+
+
 def test_a_doubt_about_the_impulse_along_the_barrier_is_one_about_what_it_gives_the_motion():
     """A disc that falls on its rim without friction has mu .21 from its edge alone: all of it is in doubt.
 
