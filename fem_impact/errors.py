@@ -141,14 +141,23 @@ def did_you_mean(name: str, known: Iterable[str], otherwise: str, bare: Callable
     """Return a remedy that proposes the nearest known name in any case, ``otherwise`` where none is near.
 
     Hyphens before a name do not make it nearer to another, and of two names that differ in them alone the one
-    like the given name is proposed; ``bare`` may leave out other parts of names.
+    like the given name is proposed; ``bare`` may leave out other parts of names. A name with one wrong letter
+    behind its first is nearer than one that lacks a letter: mn is mm, not m.
     """
     from difflib import get_close_matches
 
     like_it_last = sorted(known, key=lambda candidate: candidate.startswith("-") == name.startswith("-"))
     by_bare = {bare(candidate): candidate for candidate in like_it_last}
-    near = get_close_matches(bare(name), by_bare, 1)
+    asked = bare(name)
+    mistyped = sorted((one for one in by_bare if _is_mistyped(asked, one)), key=lambda one: one != asked)
+    near = mistyped or get_close_matches(asked, by_bare, 1)
     return f"Did you mean {by_bare[near[0]]}?" if near else otherwise
+
+
+def _is_mistyped(name: str, known: str) -> bool:
+    """Return whether a name is a known one but for one letter behind its first."""
+    wrong = sum(map(str.__ne__, name, known))
+    return len(name) == len(known) and name[:1] == known[:1] and wrong <= 1
 
 
 def printable(text: str) -> str:

@@ -149,6 +149,14 @@ def test_the_nearest_name_is_found_in_any_case():
     assert did_you_mean("xyz", ("plain", "A"), "Known: A.") == "Known: A."
 
 
+def test_a_wrong_letter_is_likelier_than_a_letter_too_many():
+    lengths = ("m", "mm", "cm", "in")
+    assert did_you_mean("mn", lengths, "") == "Did you mean mm?"
+    assert did_you_mean("mmm", lengths, "") == "Did you mean mm?"
+    assert did_you_mean("m", lengths, "") == "Did you mean m?"
+    assert did_you_mean("angla", ("angles", "angle"), "") == "Did you mean angle?"
+
+
 @pytest.mark.parametrize(
     "name", ["Points", "Connectivity", "CellData/body", "Steps/Values", "PointData/displacement"]
 )
