@@ -22,7 +22,7 @@ from fem_impact.outcome.groups import EffectChoice, texts
 from fem_impact.pages.drawing import draw_projectile
 from fem_impact.progress import clock_text, range_text
 from fem_impact.run.tests import count, doubtful_tests, tests_of
-from fem_impact.scene.inputs import STATED, inputs
+from fem_impact.scene.inputs import STATED, inputs, rounded_text
 from fem_impact.scene.types import Scene, to_dict, to_toml
 from fem_impact.tables.table import Table
 from fem_impact.tables.text import plain, wrapped
@@ -179,7 +179,7 @@ def _contact_lines(case: Case) -> Iterator[str]:
     scene, size = case.scene, case.estimate
     tables, layers = to_dict(scene), scene.barrier.layers
     stated = tables["barrier"].items()
-    more = [f"{key} {value}" for key, value in stated if key not in ("material", "layers")]
+    more = [_stated(key, value) for key, value in stated if key not in ("material", "layers")]
     on = "".join(f"{1e3 * one.thickness:.4g} mm of {one.material.name} on " for one in layers)
     yield ", ".join([f"{on}{scene.barrier.material.name}", *more])
     if scene.barrier.thickness and not scene.barrier.bends:
@@ -196,7 +196,7 @@ def _contact_lines(case: Case) -> Iterator[str]:
     seen, body = case.scene.relative, case.bodies.body
     speed2 = seen.v_n**2 + seen.v_t**2
     energy = 0.5 * body.mass * (speed2 + body.k2 * seen.omega**2)
-    motion = ", ".join(f"{key} {value}" for key, value in tables["impact"].items())
+    motion = ", ".join(_stated(key, value) for key, value in tables["impact"].items())
     by = "" if seen == scene.impact else ", both as seen from the barrier"
     yield f"{motion}: {speed2**0.5:.4g} m/s, E_0 = {energy:.4g} J{by}"
     surface = scene.surface
@@ -209,6 +209,11 @@ def _contact_lines(case: Case) -> Iterator[str]:
         f"{plain(1e3 * size.depth, 2)} mm deep, for {plain(1e6 * size.duration)} us"
     )
     yield f"{screening(case.bodies).sentence}. The verdict: `fem-impact assess`"
+
+
+def _stated(key: str, value: object) -> str:
+    """Return a value of the scene after its key, as stated; rounding of a unit is left out."""
+    return f"{key} {rounded_text(str(value), 4)}"
 
 
 def _size_lines(case: Case) -> list[str]:

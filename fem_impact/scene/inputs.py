@@ -7,6 +7,7 @@ from fem_impact.scene.library import CHANGED, materials, melting_of, source_of
 from fem_impact.scene.material import Material
 from fem_impact.scene.types import Scene, material_table, to_dict
 from fem_impact.tables.table import Table
+from fem_impact.tables.text import plain
 
 STATED = "the scene, or its default"
 UNSOURCED = "no source stated"
@@ -86,7 +87,7 @@ def _rows(key: str, value: Any, source: str = STATED) -> list[tuple[str, str, st
         ]
     if value and isinstance(value, list) and isinstance(value[0], dict):
         return [row for number, part in enumerate(value, 1) for row in _rows(f"{key}[{number}]", part)]
-    return [(key, _short(_words(value)), source)]
+    return [(key, rounded_text(_words(value)), source)]
 
 
 def _words(value: Any) -> str:
@@ -101,10 +102,16 @@ def _words(value: Any) -> str:
     return ", ".join(parts)
 
 
-def _short(value: str) -> str:
-    """Return a value in at most 10 digits: the scene keeps them all, the rest is rounding of a unit."""
+def rounded_text(value: str, digits: int = 10) -> str:
+    """Return a value whose number is long in so many digits: the scene keeps all, the rest is of its unit.
+
+    Examples
+    --------
+    >>> rounded_text("6.283185307179586 rad/s", 4), rounded_text("33.333 deg", 4), rounded_text("rest")
+    ('6.283 rad/s', '33.333 deg', 'rest')
+    """
     number, blank, unit = value.partition(" ")
     try:
-        return f"{float(number):.10g}{blank}{unit}" if len(number) > 12 else value
+        return f"{plain(float(number), digits)}{blank}{unit}" if len(number) > 12 else value
     except ValueError:
         return value

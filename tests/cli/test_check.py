@@ -199,3 +199,9 @@ def test_a_fall_is_told_as_speed_and_energy_and_a_coin_as_a_plate(cli):
     coin = "projectile={profile=[['0 mm', '12 mm'], ['2 mm', '12 mm']], material='brass'}"
     said = " ".join(cli("check", "t5b", "--set", coin, "--set", "measured=")[1].split())
     assert "us (plate and bar)" in said and "contact time: has no upper limit, so the effect is on" in said
+
+
+def test_a_value_whose_unit_is_rounded_is_told_in_few_digits(cli):
+    turning = ("--set", "impact.omega=60 rpm", "--set", "impact.angle=33.333 deg")
+    said = " ".join(cli("check", "t5b", *turning)[1].split())
+    assert "omega 6.283 rad/s" in said and "angle 33.333 deg" in said
