@@ -137,8 +137,14 @@ def in_options(message: str, options: Collection[str]) -> str:
     return _ARGUMENT.sub(option, message)
 
 
-def did_you_mean(name: str, known: Iterable[str], otherwise: str, bare: Callable[[str], str] = _bare) -> str:
-    """Return a remedy that proposes the nearest known name in any case, ``otherwise`` where none is near.
+def did_you_mean(name: str, known: Iterable[str], otherwise: str) -> str:
+    """Return a remedy that proposes the `nearest` known name, ``otherwise`` where none is near."""
+    near = nearest(name, known)
+    return f"Did you mean {near}?" if near else otherwise
+
+
+def nearest(name: str, known: Iterable[str], bare: Callable[[str], str] = _bare) -> str:
+    """Return the nearest known name in any case, empty where none is near.
 
     Hyphens before a name do not make it nearer to another, and of two names that differ in them alone the one
     like the given name is proposed; ``bare`` may leave out other parts of names. A name with one wrong letter
@@ -151,7 +157,7 @@ def did_you_mean(name: str, known: Iterable[str], otherwise: str, bare: Callable
     asked = bare(name)
     mistyped = sorted((one for one in by_bare if _is_mistyped(asked, one)), key=lambda one: one != asked)
     near = mistyped or get_close_matches(asked, by_bare, 1)
-    return f"Did you mean {by_bare[near[0]]}?" if near else otherwise
+    return by_bare[near[0]] if near else ""
 
 
 def _is_mistyped(name: str, known: str) -> bool:

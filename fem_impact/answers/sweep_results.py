@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
@@ -10,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from fem_impact.answers.vary import Variation, in_unit, measure
 from fem_impact.errors import UsageError, did_you_mean
 from fem_impact.jobs.job import Failure
-from fem_impact.outcome.keys import Unknown, known, or_none
+from fem_impact.outcome.keys import Unknown, known, nearest_key, or_none
 from fem_impact.outcome.record import KEY_TABLE, KEYS, Outcome
 from fem_impact.tables.table import Cell, Table
 
@@ -30,8 +29,6 @@ COLUMNS = tuple(
 """Columns of an outcome: every number, count, flag and text of it by its key; of its contacts, how many."""
 NUMBERS = frozenset(key.name for key in KEYS if key.kind == "number")
 """Columns of floats."""
-UNIT = re.compile(r"_(over_E_0|rad_per_s|m_per_s|W_per_m2|[a-zA-Z]{1,2}2?)$")
-"""End of a column's name that states its unit."""
 SHORT = (
     *("e_edge", "mu", "Omega_rad_per_s", "E_vib_over_E_0", "W_skin_over_E_0"),
     *("flash_temperature_K", "contacts", "strikes_again"),
@@ -54,11 +51,11 @@ def require_columns(names: Sequence[str]) -> None:
     Raises
     ------
     UsageError
-        With the nearest name, units left out.
+        With the nearest name.
     """
     for name in names:
         if name not in COLUMNS:
-            meant = did_you_mean(name, COLUMNS, "", lambda text: UNIT.sub("", text).lower())
+            meant = nearest_key(name, [KEY_TABLE[column] for column in COLUMNS], "")
             remedy = f"{meant} `fem-impact schema` lists and explains them.".lstrip()
             raise UsageError("is no column of an outcome.", key="columns=", value=name, remedy=remedy)
 

@@ -3,15 +3,16 @@
 The table of keys, the checks of a file, its text and the attributes in docstrings are made from these.
 """
 
+import re
 import tomllib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, field, fields, is_dataclass
 from importlib.resources import files
 from operator import attrgetter
 from types import UnionType
 from typing import Any, Literal, NoReturn, TypeVar, dataclass_transform, get_args, get_origin, get_type_hints
 
-from fem_impact.errors import ResultError
+from fem_impact.errors import ResultError, nearest
 
 T = TypeVar("T")
 Kind = Literal["number", "count", "flag", "text", "texts", "named texts", "named numbers", "entries"]
@@ -178,6 +179,24 @@ def _key(
         entry=entry,
         choices=choices,
     )
+
+
+UNIT = re.compile(r"(?<=\w\w)_(over_E_0|(rad|m)_per_s|W_per_m2|MB|kg|rad|m[23]?|[JKNWs])$")
+"""End of a key's name that states its unit."""
+
+
+def nearest_key(name: str, keys: Collection[Key], otherwise: str) -> str:
+    """Return a remedy that proposes the nearest key, ``otherwise`` where none is near; units are left out.
+
+    A key is known by the name of its attribute as well; where several share it, all are proposed.
+    """
+    named = {key.name: [key.name] for key in keys}
+    called: dict[str, list[str]] = {}
+    for key in keys:
+        called.setdefault(key.path[-1], []).append(key.name)
+    known = {**called, **named}
+    meant = name if name in called else nearest(name, known, lambda text: UNIT.sub("", text).lower())
+    return f"Did you mean {' or '.join(known[meant])}?" if meant else otherwise
 
 
 def why_unknown(listed: Mapping[str, Any]) -> list[str]:

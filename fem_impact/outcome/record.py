@@ -12,11 +12,11 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, ClassVar, get_type_hints
 
-from fem_impact.errors import UsageError, did_you_mean
+from fem_impact.errors import UsageError
 from fem_impact.files.atomic import read_signed, read_text, signed, write_text
 from fem_impact.outcome import groups
 from fem_impact.outcome.check import SCHEMA_VERSION, check_record
-from fem_impact.outcome.keys import Key, Num, Unknown, keys_of, or_none
+from fem_impact.outcome.keys import Key, Num, Unknown, keys_of, nearest_key, or_none
 from fem_impact.outcome.strikes import Strikes
 from fem_impact.plugins import providers
 from fem_impact.tables.table import Missing, Table
@@ -234,7 +234,7 @@ def _key_named(key: Key | str) -> Key:
     if isinstance(key, Key):
         return key
     if key not in KEY_TABLE:
-        hint = did_you_mean(key, KEY_TABLE, "The table of keys in the documentation lists them.")
+        hint = nearest_key(key, KEYS, "The table of keys in the documentation lists them.")
         raise UsageError("is no key of an outcome.", key="key=", value=key, remedy=hint)
     return KEY_TABLE[key]
 

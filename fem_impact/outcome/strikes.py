@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping, Sequence
 from math import degrees, inf
 from typing import TYPE_CHECKING
 
-from fem_impact.errors import UsageError, did_you_mean
-from fem_impact.outcome.keys import Num, Unknown, group, keys_of, known, or_none
+from fem_impact.errors import UsageError
+from fem_impact.outcome.keys import Num, Unknown, group, keys_of, known, nearest_key, or_none
 from fem_impact.tables.table import Table
 from fem_impact.tables.text import with_band
 
@@ -127,9 +127,10 @@ class Strikes:
         UsageError
             Strikes have no such number.
         """
-        names = [one.name for one in keys_of(StrikeRecord)]
+        keys = tuple(keys_of(StrikeRecord))
+        names = [one.name for one in keys]
         if name not in names:
-            hint = did_you_mean(name, names, f"Give one of {', '.join(names)}.")
+            hint = nearest_key(name, keys, f"Give one of {', '.join(names)}.")
             raise UsageError("is no number of a strike.", key="name=", value=name, remedy=hint)
         if isinstance(self.spread, Unknown):
             return self.spread

@@ -261,6 +261,8 @@ def test_the_table_holds_every_scalar_of_an_outcome_once(swept):
         results.table(["W_skn"])
     with pytest.raises(UsageError, match="Did you mean Omega_rad_per_s"):
         results.table(["omega"])
+    with pytest.raises(UsageError, match=r"Did you mean e_paper or e_edge or e_impulse\?"):
+        results.table(["e"])
 
 
 def made_up(tips, **changed):

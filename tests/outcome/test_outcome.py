@@ -312,8 +312,26 @@ def test_a_notebook_shows_every_number_with_its_meaning(record):
 def test_an_estimate_is_asked_for_by_the_name_of_its_key():
     run = OUTCOME
     assert run.estimate("mu") == run.estimate(KEY_TABLE["mu"])
-    with pytest.raises(UsageError, match="Did you mean mu"):
+    with pytest.raises(UsageError, match=r"Did you mean mu\?"):
         run.estimate("muu")
+
+
+@pytest.mark.parametrize(
+    ("name", "meant"),
+    [
+        ("vibration", "E_vib_over_E_0"),
+        ("E_vibration_over_E_0", "E_vib_over_E_0"),
+        ("peak_force", "peak_force_N"),
+        ("omega", "Omega_rad_per_s"),
+        ("e", "e_paper or e_edge or e_impulse"),
+        ("e_m", "e_m_paper or e_m_edge or e_m_impulse"),
+        ("E_ln", "E_ln_paper_over_E_0 or E_ln_edge_over_E_0 or E_ln_impulse_over_E_0"),
+    ],
+)
+def test_a_key_is_found_by_the_name_of_its_attribute_and_without_its_unit(name, meant):
+    with pytest.raises(UsageError) as caught:
+        OUTCOME.estimate(name)
+    assert f"Did you mean {meant}?" in str(caught.value)
 
 
 @pytest.mark.parametrize(
