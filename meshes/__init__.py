@@ -19,6 +19,7 @@ from meshes.hexmesh import OUTER, SKIN, SYMMETRY, HexMesh, owners
 from meshes.moments import CellMoments, cell_moments
 from meshes.own import TIPS, OwnBody, Stated, own_body, read_own
 from meshes.quality import Quality, edge_lengths, quality, thicknesses, volume
+from meshes.reading.read import extent
 from meshes.reading.text import included
 from meshes.refine import refine
 from meshes.rod import RodMesh, rod
@@ -53,6 +54,7 @@ __all__ = [
     "drawn_depths",
     "drawn_to_ends",
     "edge_lengths",
+    "extent",
     "face_at",
     "included",
     "own_body",

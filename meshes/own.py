@@ -287,7 +287,8 @@ def _require_unfolded(mesh: HexMesh) -> None:
     where = place_text(mesh.points[mesh.cells[bad[0]]].mean(axis=0))
     raise MeshError(
         f"has {len(bad)} of {len(worst)} cells that are folded or inside out, the first cell {bad[0]} about "
-        f"{where}. Each cell needs positive Jacobians at its corners and Gauss points."
+        f"{where}. A corner or a node on an edge of such a cell lies beyond its other faces. Mend them in "
+        "the mesher: smooth the mesh there, or make it anew with smaller cells or with straight edges."
     )
 
 

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fem_impact.errors import MissingLibraryError, SceneError
-from fem_impact.scene.fields import check_choice, check_text
+from fem_impact.scene.fields import PROJECTILE, check_choice, check_text
 from fem_impact.scene.units import DIMENSIONS, parse_quantity
 
 if TYPE_CHECKING:
@@ -30,6 +30,7 @@ KEYS = (
 )
 TIPS = ("-z", "+z", "-x", "+x", "-y", "+y", "-axis", "+axis")
 POUND = 4.4482216  # N, of force, in which decks in inches count
+LENGTH = next(one for one in PROJECTILE if one.key == "length")
 LACKING = 0.01  # of its mass: a body that lacks more is another body
 Tip = str | tuple[float, float, float]
 
@@ -117,6 +118,12 @@ class OwnMesh:
         system = f", counted in {self.unit}, {'lbf' if force else 'N'} and s" if told else ""
         return kg * sum(one.mass for one in these), f"{', and '.join(told)}{system}"
 
+    def of_wrong_unit(self, error: SceneError) -> SceneError:
+        """Return the refusal of a mesh whose length or diameter no body has, in words about its unit."""
+        problem = f"has a {error.key} of {error.value}. Is its unit {self.unit}?"
+        remedy = f'State the unit of its coordinates, such as mesh_unit = "mm". {error.problem}'
+        return SceneError(problem, key="mesh", value=self.path, remedy=remedy)
+
     def half(self) -> HexMesh:
         """Return the half y >= 0 of the body."""
         return _body(self).half
@@ -192,7 +199,20 @@ def _body(mesh: OwnMesh) -> OwnBody:
     except meshes.MissingReaderError as error:
         raise MissingLibraryError(f"{mesh.path}: {error}") from None
     except meshes.MeshError as error:
+        _require_unit(mesh)
         raise SceneError(str(error), key="mesh", value=mesh.path) from None
+
+
+def _require_unit(mesh: OwnMesh) -> None:
+    """Refuse a file whose cells make no body if no body is as long: its unit is to be mended first."""
+    import meshes
+
+    size = _metres(mesh) * meshes.extent(mesh.path)
+    if isfinite(size) and not LENGTH.allows(2.0 * size):  # a part of a body may be half as long
+        try:
+            LENGTH.checked(size)
+        except SceneError as error:
+            raise mesh.of_wrong_unit(error) from None
 
 
 @lru_cache(maxsize=8)

@@ -104,9 +104,7 @@ class ProjectileSpec:
         except SceneError as error:
             if error.key not in ("length", "diameter"):
                 raise
-            problem = f"has a {error.key} of {error.value}. Is its unit {mesh.unit}?"
-            remedy = f'State the unit of its coordinates, such as mesh_unit = "mm". {error.problem}'
-            raise SceneError(problem, key="mesh", value=mesh.path, remedy=remedy) from None
+            raise mesh.of_wrong_unit(error) from None
 
     @property
     def is_rod(self) -> bool:

@@ -3,6 +3,8 @@
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
+
 from meshes.common import MeshError, MissingReaderError
 from meshes.reading.abaqus import abaqus
 from meshes.reading.ansys import ansys
@@ -96,6 +98,20 @@ def stored_mesh(path: str | Path) -> StoredMesh:
         return by_meshio(source, known[fitting[-1]])
     except ImportError as error:
         raise MissingReaderError(str(error.name), source.suffix) from error
+
+
+def extent(path: str | Path) -> float:
+    """Return the largest distance along an axis between nodes of the cells of a file, nan where it has none.
+
+    It is in the unit of the file, and known of cells that make no body, too.
+    """
+    try:
+        stored = stored_mesh(path)
+    except MeshError:
+        return float("nan")
+    named = np.concatenate([cells.ravel() for _, cells in stored.blocks] or [np.empty(0, np.int64)])
+    points = stored.points[np.unique(named[(named >= 0) & (named < len(stored.points))])]
+    return float(np.ptp(points, axis=0).max()) if len(points) else float("nan")
 
 
 def _tried(reader: Reader, source: Path) -> StoredMesh:

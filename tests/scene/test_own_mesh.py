@@ -101,6 +101,28 @@ def test_an_unlikely_unit_is_refused(scene, tmp_path, unit, reason):
         stated(tmp_path / "bar.vtu", mesh_unit=unit)
 
 
+def with_folded_cells(path, unit):
+    """Write a bar of 100 mm in a unit, m, of which a node is pulled through the cells beside it."""
+    points, cells = taper(width=10e-3, length=0.1, end=1.0, cells=(6, 3, 30))
+    points[cells[40, 6]] += [0.0, 0.0, 0.02]
+    return write(path, points / unit, cells)
+
+
+@pytest.mark.parametrize(
+    ("unit", "said", "length"), [(1e-3, "m", r"1e\+05 mm"), (1.0, "mm", "0.1 mm"), (1e-3, None, r"1e\+05 mm")]
+)
+def test_a_wrong_unit_is_named_before_folded_cells(tmp_path, unit, said, length):
+    path = with_folded_cells(tmp_path / "bar.vtu", unit)
+    with pytest.raises(SceneError, match=rf"has a length of {length}\. Is its unit {said or 'm'}\?"):
+        stated(path, mesh_unit=said)
+
+
+def test_folded_cells_are_refused_with_what_mends_them(tmp_path):
+    path = with_folded_cells(tmp_path / "bar.vtu", 1e-3)
+    with pytest.raises(SceneError, match=r"of 540 cells that are folded .* Mend them in the mesher: smooth"):
+        stated(path, mesh_unit="mm")
+
+
 def test_missing_files_garbage_and_what_does_not_fit_are_refused(scene, tmp_path):
     with pytest.raises(SceneError, match=r"projectile.mesh = .*: cannot be read: there is no such file"):
         stated(tmp_path / "none.vtu")
