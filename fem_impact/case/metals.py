@@ -18,6 +18,7 @@ from fem_impact.scene.units import format_quantity
 
 RATES = (1e2, 1e3, 1e4)  # 1/s, at which flow stresses are told
 HOT = 0.3  # expected flash rise over that to ignition; finite elements gave up to 3.3 times the expected rise
+HEAVY, SOFT = 2500.0, 1e9  # kg/m3, Pa: no usual solid is heavier and softer
 YIELDS = {"rod": "rod-plasticity", "barrier": "barrier-elastoplastic"}
 
 
@@ -35,7 +36,8 @@ def unknowns(bodies: Bodies) -> tuple[str, ...]:
     """Return what materials do not say and the model would use, a sentence each; heat, one number, last."""
     under = [("barrier", metal) for _, metal in bodies.barrier.strata[1:]]
     of_metals = [_body(body, metal, bodies) for body, metal in (*_metals(bodies).items(), *under)]
-    sentences = (*dict.fromkeys(of_metals), _friction(bodies), _heat(bodies))
+    soft = [_unlike_solids(key, metal) for key, metal in materials_of(bodies.scene).items()]
+    sentences = (*soft, *dict.fromkeys(of_metals), _friction(bodies), _heat(bodies))
     return tuple(sentence for sentence in sentences if sentence)
 
 
@@ -56,6 +58,17 @@ def _body(body: str, metal: materials.Material, bodies: Bodies) -> str:
             "rate, and no other metal's law takes its place. e and the force may be too low, dents too deep."
         )
     return ""
+
+
+def _unlike_solids(key: str, metal: materials.Material) -> str:
+    """Return the question whether the unit of E is right where a body is heavy and soft as no solid is."""
+    if metal.rho <= HEAVY or metal.E >= SOFT:
+        return ""
+    E, rho = format_quantity(metal.E, "stress"), format_quantity(metal.rho, "density")
+    return (
+        f"{key}.E = {E} ({metal.name}): is its unit right? Metals, ceramics and stones, as heavy as its "
+        f"rho = {rho}, have 10 to 400 GPa; rubbers, woods and plastics, which are as soft, are lighter."
+    )
 
 
 def _breaking(metal: materials.Material, pressure: float) -> str:

@@ -6,6 +6,7 @@ from fem_impact.case.case import Case
 from fem_impact.case.elastic_only import LEFT_OUT, NOT_STATED, UNSORTED, VISCOUS, left_out
 from fem_impact.case.metals import laws, unknowns
 from fem_impact.errors import SceneError
+from fem_impact.outcome.groups import texts
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.material import Material
 from fem_impact.scene.read import read_dict
@@ -49,6 +50,24 @@ def test_the_mechanism_is_that_of_the_family(name, E, kind):
 def test_without_a_family_it_is_told_by_the_stiffness(E, words):
     told = left_out(Material("thing", E, 0.3, 2000.0))
     assert words in told and told.removesuffix(NOT_STATED) in UNSORTED
+
+
+@pytest.mark.parametrize(
+    ("E", "rho", "asked"),
+    [
+        ("110 MPa", "4430 kg/m3", True),
+        ("110 GPa", "4430 kg/m3", False),
+        ("4.5 MPa", "1150 kg/m3", False),
+        ("16 GPa", "11340 kg/m3", False),
+    ],
+)
+def test_a_body_as_heavy_as_metal_and_as_soft_as_rubber_is_asked_for_its_unit(E, rho, asked):
+    own = {"name": "my-titanium", "E": E, "nu": 0.34, "rho": rho}
+    for fidelity in ("rigid", "solid"):
+        case = Case(read_dict(drop("plate-steel", own)), fidelity)
+        told = [one for one in texts(case.limitations, "input") if "is its unit right?" in one]
+        assert len(told) == asked
+        assert not asked or told[0].startswith(f"projectile.material.E = {E} (my-titanium): is its unit")
 
 
 def test_a_rubber_ball_is_not_warned_of_cracks():
