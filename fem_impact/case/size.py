@@ -32,6 +32,7 @@ from meshes.section import SLIMMEST, WIDEST, bored_section, section
 from rigid import Faceted, Turned
 
 SAMPLES = 20  # points along each edge of a box whose share inside the rod is counted
+FRAMES_SPAN = 3.0  # contact durations (estimated) over which the wanted number of frames is spread
 SPLIT = 7  # elements that a cell adds when it is split into eight
 # mean step of a run over that in which a wave crosses the finest edge: cells that flow are squeezed
 SMALLEST = {"rod": 0.52, "barrier": 0.54}

@@ -10,7 +10,7 @@ from fem_impact.answers.simulate import compiled
 from fem_impact.answers.verdict.screening import screening
 from fem_impact.case.case import Case
 from fem_impact.case.cells import ADVISED, ERROR, advice, contact_radius, expected_cells, kind
-from fem_impact.case.size import RunSize, about
+from fem_impact.case.size import FRAMES_SPAN, RunSize, about
 from fem_impact.cli.parser import Options
 from fem_impact.cli.paths import shown_path
 from fem_impact.cli.scene_options import asked_scene, say_kept
@@ -253,8 +253,9 @@ def _fields_line(scene: Scene, size: RunSize) -> str:
     if not frames:
         return "no pictures are kept (save.frames = 0): the run has no film"
     MB = frames * ELEMENT_BYTES[scene.save.fields] * (size.rod + size.barrier) / 1e6
-    more = "" if scene.save.fields == "all" else '; save.fields = "all" adds velocities and stress tensors'
-    return f"its pictures take up to {about(MB)} MB in fields.vtkhdf, {frames} of them (save.frames){more}"
+    more = "" if scene.save.fields == "all" else '; save.fields = "all" keeps more'
+    when = f"in {FRAMES_SPAN:g} times the estimated contact, more in a longer run"
+    return f"its pictures take about {about(MB)} MB in fields.vtkhdf: {frames} (save.frames) {when}{more}"
 
 
 # over the measured sets, means over places of the grid (`fem-impact cost paper`)

@@ -11,6 +11,7 @@ import numpy as np
 
 from fem_impact.arrays import Array
 from fem_impact.case.cells import body_cell
+from fem_impact.case.size import FRAMES_SPAN
 from fem_impact.fem.geometry import tail_corners
 from fem_impact.fem.kernels import COMPILING
 from fem_impact.files.fields_write import FieldWriter
@@ -34,7 +35,6 @@ if TYPE_CHECKING:
     from fem_impact.solid.heatwatch import HeatWatch
 
 
-FRAMES_SPAN = 3.0  # contact durations (estimated) over which the wanted number of frames is spread
 TRANSITS, EARLY = 2.0, 0.4  # lengths run by a stretching wave, in which this share of the frames is written
 
 

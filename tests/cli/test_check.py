@@ -3,12 +3,15 @@
 import json
 import re
 
+import pytest
+
 from fem_impact.case.case import Case
 from fem_impact.case.effects.registry import EFFECTS, NAMES
 from fem_impact.scene.library import materials, shipped
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load
 from fem_impact.scene.types import digest, to_toml
+from fem_impact.solid.watchers import _schedule
 
 
 def test_scenes_lists_every_shipped_scene(cli):
@@ -205,3 +208,13 @@ def test_a_value_whose_unit_is_rounded_is_told_in_few_digits(cli):
     turning = ("--set", "impact.omega=60 rpm", "--set", "impact.angle=33.333 deg")
     said = " ".join(cli("check", "t5b", *turning)[1].split())
     assert "omega 6.283 rad/s" in said and "angle 33.333 deg" in said
+
+
+def test_frames_are_told_over_the_time_that_they_are_spread_over(cli):
+    """A run that lasted longer stored 160 where 120 at most were promised."""
+    said = " ".join(cli("check", "t5b")[1].split())
+    assert "120 (save.frames) in 3 times the estimated contact, more in a longer run" in said
+    case = Case.of(load("t5b"))
+    early, later, parted = _schedule(case)
+    first = round(parted / early)
+    assert first + (3 * case.estimate.duration - parted) / later == pytest.approx(120, abs=1)
