@@ -117,7 +117,7 @@ class LevelChain:
         It raises what `run` does.
         """
         if not self.done:
-            forecast.require_pilot(self.meshes.pilot, self.limit_s)
+            forecast.require_pilot(self.meshes.pilot, self.limit_s, self.budget_s, self.options.progress)
         splits = self._next if self.done else self.meshes.first
         with closing(forecast.Turns()) as turns:
             while splits is not None:

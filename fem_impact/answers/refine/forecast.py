@@ -186,12 +186,19 @@ def range_s(few_s: float, many_s: float) -> list[float]:
     return [share * planned for share, planned in zip(LEFT, (few_s, many_s, many_s), strict=True)]
 
 
-def require_pilot(pilot: Case, limit_s: float) -> None:
-    """Refuse a pilot that surely takes more than ``limit_s``, s (OverBudgetError)."""
-    size = pilot.size
-    if max(PILOT * size.time, SURELY * setup_of(pilot)) > limit_s:
-        reason, enough = f"The coarsest level would take about {about_s(size.time)}", for_two_s(size.time)
-        raise OverBudgetError(f"{reason}: it is not begun. {FOR_TWO.format(enough)}", enough)
+def require_pilot(
+    pilot: Case, limit_s: float, budget_s: float, tell: Callable[[Notice], None] | None
+) -> None:
+    """Refuse a pilot that surely takes more than ``limit_s``, s (OverBudgetError).
+
+    It is told where the budget, s, may hold the pilot alone, whose numbers have no error.
+    """
+    pilot_s, enough = pilot.size.time, for_two_s(pilot.size.time)
+    reason, more = f"The coarsest level would take about {about_s(pilot_s)}", FOR_TWO.format(enough)
+    if max(PILOT * pilot_s, SURELY * setup_of(pilot)) > limit_s:
+        raise OverBudgetError(f"{reason}: it is not begun. {more}", enough)
+    if tell and budget_s < (1.0 + MIDDLE) * pilot_s:
+        tell(Notice(f"{reason}, and the budget of {about_s(budget_s)} may hold it alone. {more}"))
 
 
 def enough_s(used_s: float, level_s: float) -> int:

@@ -141,9 +141,8 @@ def judge(
     check_means(fidelity, budget_s)
     scene = scene.first_impact
     criterion.require(scene)
-    f = scene.surface.friction_low, scene.surface.friction_high
-    friction = {} if f[0] == f[1] else {FRICTION: f}
-    intervals = [interval_of(scene, key, ends) for key, ends in {**friction, **(uncertain or {})}.items()]
+    stated = {**_over_friction(scene), **(uncertain or {})}
+    intervals = [interval_of(scene, key, ends) for key, ends in stated.items()]
     scenes, lacking = _places(scene, intervals), not_reduced(Case(scene).bodies)
     steps, notes = list[str](), list[str]()
     if lacking and fidelity != "modal":
@@ -199,6 +198,12 @@ def judge(
         tuple(notes),
         more if answer == "undecided" else {},
     )
+
+
+def _over_friction(scene: Scene) -> dict[str, Ends]:
+    """Return the interval of friction that a scene states, by its key; none where it states none."""
+    low, high = scene.surface.friction_low, scene.surface.friction_high
+    return {FRICTION: (low, high)} if low < high else {}
 
 
 def _places(scene: Scene, intervals: Sequence[tuple[str, float, float, str]]) -> dict[Place, Scene]:

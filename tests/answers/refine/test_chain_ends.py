@@ -5,15 +5,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fem_impact.answers.refine import forecast
 from fem_impact.answers.refine import level as level_module
 from fem_impact.answers.refine.chain import LevelChain
 from fem_impact.answers.refine.forecast import SHORTER, OverBudgetError, Turns
+from fem_impact.answers.refine.level_meshes import LevelMeshes
 from fem_impact.answers.simulate import simulate
 from fem_impact.case.case import Case
 from fem_impact.errors import ResultError, RunError, SceneError
 from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import Unknown, known
 from fem_impact.outcome.record import Outcome
+from fem_impact.progress import Notice
 from fem_impact.run.resolution import without_end
 from fem_impact.scene.read import read_toml
 from fem_impact.scene.shipped import load, replace_all
@@ -309,6 +312,24 @@ def test_a_level_killed_in_the_middle_goes_on_from_its_checkpoint(tmp_path):
     assert not [note for note, _ in steps if "level 1" in note] and of_second[0] > 400
     assert outcome.restitution.edge.e == whole.restitution.edge.e
     assert outcome.energy.vibration == whole.energy.vibration
+
+
+@pytest.mark.parametrize(("budget", "is_told"), [(3.0, True), (4.0, False)])
+def test_a_budget_that_may_hold_the_pilot_alone_is_told_before_it_runs(monkeypatch, budget, is_told):
+    """A budget of 60 s ended after 83 s without a number, and nothing had told so."""
+    told = []
+
+    def stopped(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(level_module, "simulate_recorded", stopped)
+    pilot_s = LevelMeshes.of(Case(QUICK)).pilot.size.time
+    levels = LevelChain(Case(QUICK), RunOptions(progress=told.append), budget * pilot_s)
+    with pytest.raises(KeyboardInterrupt):
+        levels.refine()
+    notices = [one.text for one in told if isinstance(one, Notice)]
+    advice = f"may hold it alone. {forecast.FOR_TWO.format(forecast.for_two_s(pilot_s))}"
+    assert len(notices) == is_told and all(advice in one for one in notices)
 
 
 def test_to_resume_where_nothing_is_begins_and_another_scene_is_refused(failing, tmp_path):
