@@ -93,8 +93,8 @@ def run_jobs(
     ----------
     jobs : names must differ
     store : SQLite file, made if it is not there
-    progress : called after every job with the time that all jobs still need, and for every stored answer
-        that is not of its job and is computed again
+    progress : called after every job with the time that all jobs still need, once with how many are kept
+        from before, and for every stored answer that is not of its job and is computed again
     executor : any, such as what `on_scheduler` lends; local processes, one a core, when None
 
     Raises
@@ -106,6 +106,8 @@ def run_jobs(
     with Store.open(store) as base:
         results = stored_results(base, by_name.values(), progress)
         costs = expected_costs(by_name.values(), results)
+        if results:
+            progress(Notice(f"{len(results)} of {len(by_name)} runs are kept from before."))
         if costs:
             # the longest first, so that no worker is left alone with one at the end
             waiting = [by_name[name] for name in sorted(costs, key=lambda name: -costs[name])]

@@ -86,6 +86,14 @@ def test_a_damaged_record_is_computed_again(tmp_path):
     assert run(store, job("a"))[1] == ["a"]
 
 
+def test_what_is_kept_from_before_is_counted(tmp_path):
+    store, told = tmp_path / "store.sqlite", []
+    run(store, job("a"), job("b"))
+    run_jobs([job("a"), job("b"), job("c")], store, told.append, Here())
+    assert [one.text for one in told if isinstance(one, Notice)] == ["2 of 3 runs are kept from before."]
+    assert isinstance(told[0], Notice)  # before the others begin
+
+
 COLUMNS = ("outcome, reason", "outcome, reason, checksum")
 
 
