@@ -50,7 +50,7 @@ STATISTICS = {f"measured_{name}": name for name in ("mean", "sd", "low", "high")
 """Columns of a measured quantity, and their attributes of `rigid.experiments.Statistic`."""
 
 
-def verdict(model: float, band: float | None, measured: Statistic) -> str:
+def verdict(model: float, band: float | None, measured: Statistic, called: str = "mesh band") -> str:
     """Return whether the computed value agrees with the measurement.
 
     "inside": in the 95 % interval of the mean; "undecided: mesh band": only the value's band reaches
@@ -62,6 +62,7 @@ def verdict(model: float, band: float | None, measured: Statistic) -> str:
     model : computed value
     band : half-width of its mesh band, same unit; None without a second mesh
     measured : mean, standard deviation and 95 % interval of the tests
+    called : what the band is
 
     Examples
     --------
@@ -76,7 +77,7 @@ def verdict(model: float, band: float | None, measured: Statistic) -> str:
     if measured.low <= model <= measured.high:
         return "inside"
     if model - half <= measured.high and model + half >= measured.low:
-        return "undecided: mesh band"
+        return f"undecided: {called}"
     away = model - measured.mean
     if measured.sd == 0:
         return "miss: tests without scatter"
@@ -110,6 +111,7 @@ def compare(outcome: Outcome, tests: MeasuredTests | None = None) -> list[Compar
     """
     set_id, rows = outcome.provenance.scene_id, []
     statistics = (tests or measured_set(set_id)).statistics()
+    reduced = outcome.provenance.fidelity == "modal"
     # those of a camera, others that the tests hold, those none can see
     usual = {quantity.measured for quantity in MEASURED}
     more = [ComparedQuantity(n, KEY_TABLE[n], n) for n in statistics if n in KEY_TABLE and n not in usual]
@@ -120,12 +122,10 @@ def compare(outcome: Outcome, tests: MeasuredTests | None = None) -> list[Compar
         measured = statistics.get(quantity.measured or "")
         if isinstance(model, Unknown):
             judged = f"not known: {model.reason}"
-        elif measured is not None and band is None and outcome.provenance.fidelity == "modal":
+        elif measured is not None and band is None and reduced:
             judged = "not judged: how far the reduced model is off is not known"
         elif measured is not None:
-            judged = verdict(model, band, measured)
-            if outcome.provenance.fidelity == "modal":
-                judged = judged.replace("mesh band", "the model's error")
+            judged = verdict(model, band, measured, "the model's error" if reduced else "mesh band")
         elif quantity.measured:
             judged = "not measured"
         else:

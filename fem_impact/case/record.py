@@ -245,10 +245,10 @@ def low_skin(bodies: Bodies, apart: float, high: float) -> tuple[Array, float]:
     around = np.linspace(0.0, pi, 1 + max(AROUND, int(pi * rho.max() / apart)))
     # whole circles, then whole meridians, none of whose places is low: the skin of a whole rod is many times
     # that of a contact
-    lowest = np.stack([np.copysign(rho, sin(turn)), np.zeros_like(rho), z], axis=1)
-    rho, z = (values[_height(bodies, lowest) <= high] for values in (rho, z))
     axis = _height(bodies, np.stack([np.zeros_like(rho), np.zeros_like(rho), z], axis=1))
     leaning = rho * abs(sin(turn))
+    near = axis - leaning <= high
+    rho, z, axis, leaning = rho[near], z[near], axis[near], leaning[near]
     if leaning.min() > 0.0:
         lowest_cosine = ((axis - high) / leaning).min()
         around = around[np.cos(around) * np.sign(sin(turn)) >= lowest_cosine]
