@@ -619,6 +619,7 @@ def test_the_summary_names_the_column_of_e_and_explains_it(tmp_path):
     assert "`e_edge` is e at the point of the tip that touches first" in text
 
 
+@pytest.mark.long
 def test_finite_elements_of_a_sweep_run_on_levels_and_have_bands(monkeypatch, tmp_path):
     """A wanted error holds for each case, and the half-width stands beside each number."""
     scene = replace_all(load("quick"), {"save.frames": 0, "accuracy.levels": 2, "projectile.length": "40 mm"})

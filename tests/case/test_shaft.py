@@ -46,6 +46,7 @@ def test_models_without_a_mesh_tell_it(fidelity):
     assert any(text.startswith("Left out: a shaft that would yield") for text in texts), texts
 
 
+@pytest.mark.long
 def test_a_tube_on_its_side_is_flattened_where_its_rings_bear_less_than_comes_down():
     """48.3 mm by 3.2 mm, S235: 107 N/mm over .32 mm are 2.6 J for 150 mm, which come down at 3.1 m/s."""
     table = {

@@ -96,7 +96,7 @@ def test_what_needs_more_memory_than_there_is_is_refused_with_a_size_that_fits(c
 OWN = [
     ((24, 12, 24), 427),
     ((32, 16, 32), 1001),
-    ((40, 20, 40), 2223),
+    pytest.param((40, 20, 40), 2223, marks=pytest.mark.long),
     ((16, 8, 64), 441),
     ((20, 10, 100), 986),
 ]

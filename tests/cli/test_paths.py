@@ -104,6 +104,7 @@ ONE = ("--workers", "1", "--quiet")
 SWEEP = ("--vary", "impact.angle=30,40deg", "--fidelity", "rigid", *ONE)
 
 
+@pytest.mark.long
 def test_a_sweep_and_a_verdict_go_on_in_their_directories(cli):
     for line in (("sweep", "t5b", *SWEEP), ("assess", "t5b", "--fidelity", "modal")):
         assert [cli(*line, "--out", line[0])[0] for _ in range(2)] == [0, 0]

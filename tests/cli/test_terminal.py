@@ -42,6 +42,7 @@ def _all(stream):
         parts.append(part)
 
 
+@pytest.mark.long
 def test_a_table_on_a_terminal_is_set_by_rich():
     shown = on_terminal("verify", "modes", "--parameters")
     assert "━" in shown or "─" in shown

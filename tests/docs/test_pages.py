@@ -85,6 +85,7 @@ def files(tmp_path):
     (tmp_path / "tests.csv").write_text(marked("file: tests.csv", CAMERA) + "\n")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("line", QUICK)
 def test_quick_command_lines_do_what_they_say(line, cli, files):
     assert line in OWN

@@ -95,6 +95,7 @@ print(json.dumps([[*key, value] for key, value in found.items()]))
 )
 
 
+@pytest.mark.long
 def test_each_fidelity_computes_what_is_added_or_refuses_it(tmp_path):
     done = run(FIDELITY_RUNS, installed(tmp_path))
     assert done.returncode == 0, done.stderr

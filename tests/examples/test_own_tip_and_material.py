@@ -37,6 +37,7 @@ DROP = ("--height", "0.82 m", "--surface", "machined")
 HEAT = ("--heat", "--fidelity", "modal", "--json")
 
 
+@pytest.mark.long
 def test_an_added_tip_is_assessed_as_the_shape_it_has(ball, cli):
     code, out, err = cli("assess", *ROD, *DROP, "--tip", "ball", "--tip-radius", "9.5 mm", *HEAT)
     assert (code, err) == (0, "")

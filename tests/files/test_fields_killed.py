@@ -61,6 +61,7 @@ def killed_states(path, frame):
     return list(states(before, recorder.log))
 
 
+@pytest.mark.long
 def test_every_earlier_frame_is_readable_at_any_moment(writer, tmp_path):
     killed = tmp_path / "killed.vtkhdf"
     tried = 0

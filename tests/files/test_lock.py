@@ -142,6 +142,7 @@ def test_a_file_system_without_locks_is_used_without(tmp_path, monkeypatch):
         assert (tmp_path / LOCK).exists()
 
 
+@pytest.mark.long
 def test_a_terminated_run_leaves_no_draft(tmp_path):
     child = start(WRITER, tmp_path)
     assert list(tmp_path.glob(".fields-*"))
@@ -153,6 +154,7 @@ def test_a_terminated_run_leaves_no_draft(tmp_path):
     assert not list(tmp_path.glob(".*"))
 
 
+@pytest.mark.long
 def test_the_drafts_of_a_killed_run_are_removed_by_the_next(tmp_path):
     child = start(WRITER, tmp_path)
     child.kill()
@@ -162,6 +164,7 @@ def test_the_drafts_of_a_killed_run_are_removed_by_the_next(tmp_path):
     assert not list(tmp_path.glob(".*"))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("stop", [pytest.param(signal.SIGTERM, marks=pytest.mark.slow), signal.SIGKILL])
 def test_a_stopped_cost_leaves_no_worker(tmp_path, stop):
     line = [sys.executable, "-m", "fem_impact", "cost", "t5b", "--quiet", "--out", str(tmp_path)]

@@ -58,6 +58,7 @@ def cluster(tmp_path_factory):
         process.wait()
 
 
+@pytest.mark.long
 def test_a_worker_killed_in_mid_study_costs_nothing(cluster, tmp_path):
     address, workers, log = cluster
     jobs = [*(job(f"j{i}", "sleep 0.1") for i in range(14)), job("bad", "fail")]

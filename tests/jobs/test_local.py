@@ -43,6 +43,7 @@ class Meter:
         self.seen.append(progress)
 
 
+@pytest.mark.long
 def test_a_job_that_kills_its_process_fails_alone(tmp_path):
     meter, once = Meter(), tmp_path / "died"
     jobs = [job("a"), job("deadly", "die"), job("unlucky", f"die-once {once}"), job("b"), job("bad", "fail")]

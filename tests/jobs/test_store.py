@@ -238,6 +238,7 @@ def test_the_digest_follows_the_files_that_make_numbers(tmp_path, monkeypatch, f
     assert (source_digest.__wrapped__() != before) == moves
 
 
+@pytest.mark.long
 def test_the_digest_covers_all_modules_that_a_run_imports():
     """All but those that refuse, write files or show progress."""
     probe = (

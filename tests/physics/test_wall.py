@@ -48,6 +48,7 @@ def test_the_modes_of_a_mesh_begin_with_it():
     assert bending_period(ring().projectile) < 0.3 * lowest
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("bore", ["22.5 mm", pytest.param("24 mm", marks=pytest.mark.slow)])
 def test_a_thin_wall_has_the_cells_that_its_ovalling_needs(bore):
     finer, few = (slowest(replace_all(ring(bore), {"accuracy.across": n}))[0] for n in (24, 8))

@@ -174,6 +174,7 @@ def test_each_strike_takes_the_law_of_its_own_contact(floor):
     assert slipped == pytest.approx([0.4] * len(slipped), abs=1e-9)
 
 
+@pytest.mark.long
 def test_a_rod_slides_on_down_a_slope_steeper_than_its_friction_holds():
     strikes = simulate(replace(load("quick"), "impact.until", "rest"), "rigid").strikes
     assert strikes.end == "slides on"
@@ -220,6 +221,7 @@ def test_what_the_rules_are_and_what_the_law_leaves_out_is_told(floor):
     assert "lose nothing along the normal" in told
 
 
+@pytest.mark.long
 def test_a_body_of_segments_takes_the_material_of_the_part_that_strikes():
     parts = [{"to": "40 mm", "material": "rod-steel"}, {"material": "plate-steel"}]
     scene = rattling()

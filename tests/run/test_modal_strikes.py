@@ -51,6 +51,7 @@ def test_more_strikes_than_modes_compute_are_those_of_a_rigid_body(monkeypatch):
     assert each[3].force is None
 
 
+@pytest.mark.long
 def test_stages_that_a_scene_states_follow_each_other_and_the_change_is_told():
     stated = FLOOR | {"strikes.fidelity": "modal for the first 3, then rigid"}
     outcome = simulate(replace_all(load("quick"), stated), "modal")
@@ -92,6 +93,7 @@ def test_without_losses_motion_and_vibration_keep_the_energy(angle):
     assert max(one.taken for one in s.each) > 1e-3 * E_0  # a strike meets the vibration of the one before
 
 
+@pytest.mark.long
 def test_a_strike_may_take_vibration_back_into_motion():
     gained = []
     for angle in range(50, 80, 5):

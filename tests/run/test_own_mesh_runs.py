@@ -38,6 +38,7 @@ def scene(projectile, effects, **accuracy):
     )
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "ending", [".inp", *(pytest.param(ending, marks=pytest.mark.slow) for ending in (".vtu", ".msh"))]
 )
@@ -102,6 +103,7 @@ def test_free_modes_of_a_tapered_bar_are_those_of_its_beam(tmp_path):
         assert np.abs(found / (wanted / (2 * np.pi)) - 1).min() < 0.01
 
 
+@pytest.mark.long
 def test_a_rod_from_a_file_that_cannot_vibrate_gives_the_run_of_the_built_in_one(tmp_path):
     """The noses are of the same length, the rest of both moves as one rigid body."""
     effects = ["friction", "barrier-elastic"]

@@ -35,6 +35,7 @@ def test_an_own_projectile_is_run_by_its_modes(name):
     assert abs(outcome.energy.residual) < 1e-4
 
 
+@pytest.mark.long
 def test_an_own_projectile_may_be_rigid_behind_its_nose():
     outcome = simulate(replace_all(coarse("ogive"), {"effects": ["auto", "-vibration"]}), "solid")
     assert outcome.validity.finished
@@ -51,6 +52,7 @@ BALL = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "effects", [pytest.param(["friction"], marks=pytest.mark.slow), ["vibration", "friction"]]
 )

@@ -24,6 +24,7 @@ def scene(projectile, f, impact, tip_size):
     )
 
 
+@pytest.mark.long
 def test_a_bar_on_two_feet_beside_its_plane_of_symmetry_strikes(tmp_path):
     """Three levels of meshes give e .297 +- .040 and mu .086 +- .023."""
     points, cells = box(6, 3, 30, (-6, 0, 0), (6, 6, 60))
@@ -48,6 +49,7 @@ def test_a_coin_lands_on_its_rim():
     assert outcome.restitution.mu == pytest.approx(-0.165, abs=0.017)
 
 
+@pytest.mark.long
 def test_yield_and_a_hardening_modulus_need_no_ultimate_stress():
     """Three levels of meshes give e .297 +- .072; cells twice as large, .240 +- .052 on two."""
     cu = {"name": "cu", "E": "117 GPa", "nu": 0.35, "rho": "8930 kg/m3", "yield_stress": "400 MPa"}

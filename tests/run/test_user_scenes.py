@@ -32,7 +32,9 @@ def test_a_shipped_scene_runs_on_finite_elements(name):
     assert stays < deepest < (1.0 + springs_back) * stays  # both under the surface around it
 
 
-@pytest.mark.parametrize("name", COARSE)
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=pytest.mark.long) if n == "tungsten-rod" else n for n in COARSE]
+)
 def test_a_shipped_scene_runs_by_its_modes(name):
     outcome = simulate(load(name), "modal")
     assert outcome.validity.finished and abs(outcome.energy.residual) < 1e-4

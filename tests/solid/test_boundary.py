@@ -199,7 +199,7 @@ def test_weight_and_its_potential():
     assert weight.energies(state)[0] == pytest.approx(3.0 * 0.1 + 4.0 * 0.3)
 
 
-@pytest.mark.parametrize("name", ["t5b", "tube"])
+@pytest.mark.parametrize("name", ["t5b", pytest.param("tube", marks=pytest.mark.long)])
 def test_a_face_that_lands_flat_gets_no_motion_to_the_side(name):
     """Springs about the edge that was taken for the contact gave mu = -.0016 and a spin of .06 rad/s."""
     flat = {"impact.angle": "0 deg", "impact.v_t": "0 m/s", "accuracy.tip_size": "1.2 mm"}

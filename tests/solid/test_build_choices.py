@@ -79,6 +79,7 @@ def test_hardening_is_linear_where_its_modulus_is_stated():
     assert law.flow_stress(0.1) == pytest.approx(rod.yield_stress + 2e8)
 
 
+@pytest.mark.long
 def test_building_takes_little_memory():
     """Element matrices alone, if all were kept at once, would take 4.6 kB an element."""
     scene = load("t5b")

@@ -51,7 +51,7 @@ def test_a_very_heavy_barrier_is_a_massive_one(massive):
     assert motion(heavy) == pytest.approx(motion(massive), rel=1e-8)
 
 
-@pytest.mark.parametrize("effects", [PLANE, YIELDING])
+@pytest.mark.parametrize("effects", [PLANE, pytest.param(YIELDING, marks=pytest.mark.long)])
 def test_a_free_barrier_takes_the_momentum_that_the_rod_loses(effects):
     outcome = run(effects, **{"barrier.mass": "0.5 kg"})
     m, b = outcome.motion, outcome.barrier
@@ -117,7 +117,7 @@ def test_a_block_heavier_than_its_barrier_is_refused_before_it_is_meshed():
     assert build(Case.of(heavy, "solid")).layout.foundation.size
 
 
-@pytest.mark.parametrize("effects", [PLANE, [*YIELDING[:-1]]])
+@pytest.mark.parametrize("effects", [PLANE, pytest.param(YIELDING[:-1], marks=pytest.mark.long)])
 def test_a_plate_takes_energy_and_the_ledger_closes(effects):
     outcome = run([*effects, "plate-bending"], **PLATE)
     assert closes(outcome) and outcome.energy.plate > 0.1

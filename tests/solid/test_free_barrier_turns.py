@@ -29,7 +29,9 @@ RUBS = {"impact.v_t": "-4 m/s"}
 PLANE = ["vibration", "friction", "barrier-rigid", "large-rotation"]
 BLOCK = ["vibration", "friction", "barrier-elastic", "radiation", "large-rotation"]
 YIELDING = ["friction", "rod-plasticity", "barrier-elastoplastic", "radiation", "large-rotation"]
-BARRIERS = pytest.mark.parametrize("barrier", ["barrier-rigid", "barrier-elastic"])
+BARRIERS = pytest.mark.parametrize(
+    "barrier", ["barrier-rigid", pytest.param("barrier-elastic", marks=pytest.mark.long)]
+)
 
 
 def run(*changes, fidelity="solid"):
@@ -74,7 +76,9 @@ def test_on_a_plane_both_momenta_are_kept_to_round_off():
     assert abs(known(outcome.barrier.Omega_b)) > 10 and abs(outcome.energy.residual) < 1e-8
 
 
-@pytest.mark.parametrize(("effects", "lever"), [(BLOCK, 1e-6), (YIELDING, 1e-3)])
+@pytest.mark.parametrize(
+    ("effects", "lever"), [(BLOCK, 1e-6), pytest.param(YIELDING, 1e-3, marks=pytest.mark.long)]
+)
 def test_on_a_block_momentum_is_kept_and_angular_momentum_but_for_the_gap_of_the_skins(effects, lever):
     """Impulses on rod and block act at the height of either skin; cells that yield are bent between nodes."""
     outcome = run(ROD, TURNING, {"effects": effects})
@@ -162,7 +166,7 @@ def test_a_block_that_turns_with_its_foundation_is_not_strained():
     assert of_block.max() < 1e7  # its strain is 5e-3 without turning back, 800 MPa
 
 
-@pytest.mark.parametrize("effects", [PLANE, BLOCK])
+@pytest.mark.parametrize("effects", [PLANE, pytest.param(BLOCK, marks=pytest.mark.long)])
 def test_without_an_end_to_its_inertia_it_only_translates(effects):
     still = {key: value for key, value in TURNING.items() if key == "barrier.mass"}
     heavy = run(ROD, TURNING, {"effects": effects, "barrier.inertia": "1e9 kg m2"})

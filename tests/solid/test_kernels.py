@@ -31,6 +31,7 @@ def _turned(**asked):
     return done.stdout.split()
 
 
+@pytest.mark.long
 def test_the_width_of_registers_does_not_change_a_bit():
     features, d = _turned(NUMBA_CPU_FEATURES="+prefer-128-bit")
     assert features == "+prefer-128-bit"  # the environment comes first

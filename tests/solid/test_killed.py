@@ -116,6 +116,7 @@ def kill_once_begun(scene, out):
     check_readable(out)
 
 
+@pytest.mark.long
 def test_killed_and_resumed_is_never_stopped(alone, tmp_path):
     scene, _, took = alone
     kill_once_begun(scene, tmp_path / "run")

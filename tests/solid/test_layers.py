@@ -155,6 +155,7 @@ def test_the_reference_of_one_material_is_that_of_a_loaded_square():
     assert mean_give(STEEL, STEEL, 1e-3, 1e-3, 1e-3) == pytest.approx(exact, rel=3e-3)
 
 
+@pytest.mark.long
 def test_a_layered_block_gives_as_a_layered_half_space():
     """Layers from 1.2 to 8 mm of steel on aluminium, over the give of the same block of steel alone."""
     gives = []
@@ -195,6 +196,7 @@ def test_rows_of_cells_end_at_the_interfaces():
     assert (body.mesh.tie @ body.mesh.points)[hanging] == pytest.approx(body.mesh.points[hanging])
 
 
+@pytest.mark.long
 def test_each_material_that_yields_has_its_own_zone_and_law():
     model = build(Case.of(scene([("1.2 mm", "steel-4340")], base="lead")))
     zones = [zone for zone in model.zones if zone.body == "barrier"]
@@ -208,6 +210,7 @@ def test_each_material_that_yields_has_its_own_zone_and_law():
     assert [zone.G for zone in elastic.zones if zone.body == "barrier"] == [zones[1].G]
 
 
+@pytest.mark.long
 def test_a_layer_of_the_base_s_own_material_changes_nothing():
     plain, layered = (simulate(scene(layers)) for layers in ((), [("2.375 mm", "aluminium-6061-t6")]))
     assert layered.restitution.impulse.e == pytest.approx(plain.restitution.impulse.e, abs=4e-3)
@@ -242,6 +245,7 @@ def test_a_soft_base_flows_under_a_thin_layer():
     assert outcome.energy.plastic_barrier > 0.05
 
 
+@pytest.mark.long
 def test_the_shipped_scene_runs_on_a_coarse_mesh():
     from fem_impact.scene.shipped import load
 

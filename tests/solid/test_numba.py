@@ -83,9 +83,10 @@ def _cached_names():
     assert compiled_before("march.drift") and not compiled_before("march.nothing")
 
 
+LONG = "helpers that every caller absorbs (the option forceinline)"
 PARTS = {
     "kernels without counts of references (the option _nrt)": _counts,
-    "helpers that every caller absorbs (the option forceinline)": _inlining,
+    LONG: _inlining,
     "the time that compiling takes (numba.core.event)": _events,
     "vectors of four numbers (data models and addresses of arrays in numba.extending)": _vectors,
     "the settings of the compiler (numba.config)": _settings,
@@ -93,7 +94,9 @@ PARTS = {
 }
 
 
-@pytest.mark.parametrize("part", PARTS)
+@pytest.mark.parametrize(
+    "part", [pytest.param(part, marks=pytest.mark.long) if part == LONG else part for part in PARTS]
+)
 def test_numba_has_what_the_kernels_use(part):
     try:
         PARTS[part]()

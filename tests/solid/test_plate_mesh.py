@@ -86,6 +86,7 @@ def test_edges_push_and_turn_like_the_rest_of_the_plate(rows):
     )
 
 
+@pytest.mark.long
 def test_energy_goes_into_bending_waves_and_the_ledger_closes(yielding):
     energy = yielding.energy
     assert yielding.validity.finished and abs(energy.residual) < 1e-6
@@ -95,6 +96,7 @@ def test_energy_goes_into_bending_waves_and_the_ledger_closes(yielding):
     assert told.on and "by itself" in told.sentence
 
 
+@pytest.mark.long
 def test_cells_are_split_down_to_the_underside_within_the_fine_zone():
     thin = build(Case.of(scene(**{"barrier.thickness": "3.5 mm", "accuracy.across": 8})))
     mesh = thin.geometry.barrier

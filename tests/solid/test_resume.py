@@ -76,7 +76,9 @@ def test_these_sets_name_every_effect():
     assert {name for names in SETS for name in names} == set(NAMES)
 
 
-@pytest.mark.parametrize("effects", SETS)
+@pytest.mark.parametrize(
+    "effects", [*(pytest.param(one, marks=pytest.mark.long) for one in SETS[:-1]), SETS[-1]]
+)
 def test_resumed_is_uninterrupted(effects, tmp_path):
     scene, whole = short(effects), tmp_path / "whole"
     whole.mkdir()
@@ -106,6 +108,7 @@ def test_a_run_on_a_plate_that_is_meshed_through_goes_on(tmp_path):
     assert outcome_numbers(found) == outcome_numbers(expected)
 
 
+@pytest.mark.long
 def test_killed_after_its_last_step_a_run_does_not_go_on_past_its_end(tmp_path):
     scene = short(SETS[1])
     expected = kept(scene, tmp_path, checkpoint_s=0.0)  # a checkpoint whenever one may be written
@@ -234,6 +237,7 @@ def halted(tmp_path_factory):
     return [halted_run(short(effects, 5e-5), place / str(i)) for i, effects in enumerate(SETS)]
 
 
+@pytest.mark.long
 def test_every_declared_part_moves(halted):
     """So the next test notices if any of them is left out."""
     moved = {}
@@ -245,6 +249,7 @@ def test_every_declared_part_moves(halted):
     assert {item for item in moved if not moved[item]} == OF_THE_FILE
 
 
+@pytest.mark.long
 def test_whatever_moves_is_in_the_checkpoint(halted):
     """A part that moves and is not declared has its first value in the restored run."""
     for run, kept, new in halted:
@@ -287,6 +292,7 @@ def test_a_checkpoint_of_another_program_is_refused(stopped, monkeypatch):
     assert "written with another sources;" in refusal(scene, place)
 
 
+@pytest.mark.long
 def test_a_damaged_checkpoint_is_refused(stopped):
     scene, place = stopped
     path = place / CHECKPOINT

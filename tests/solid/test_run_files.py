@@ -76,6 +76,7 @@ def test_what_rests_on_the_last_separation_is_null_with_the_reason(run):
     assert "e=not known, mu=not known, Omega=not known" in repr(outcome)
 
 
+@pytest.mark.long
 def test_what_gravity_adds_closes_the_sum():
     slow = {
         "impact.v_n": "-0.1 m/s",
@@ -180,6 +181,7 @@ def test_stress_tensors_are_those_of_the_displacements_where_nothing_has_yielded
         assert np.abs(found[:, at]).max() > 3e7, (i, j)
 
 
+@pytest.mark.long
 @pytest.mark.skipif(sys.platform != "linux", reason="the other count is that of Linux")
 def test_peak_memory_is_that_of_the_process_alone():
     """A child starts with the largest memory of its parent in what getrusage counts."""

@@ -206,6 +206,7 @@ def test_spin_before_the_impact_enters_with_its_sign():
     assert pushes == pytest.approx(exact, rel=2e-2)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("barrier", "angle"),
     [("barrier-rigid", pi / 4), ("barrier-elastic", pi / 4), ("barrier-elastoplastic", pi / 3)],
@@ -320,6 +321,7 @@ def _between(share):
     return made
 
 
+@pytest.mark.long
 def test_a_contact_in_the_middle_of_a_cell_is_nearest_to_that_of_finer_cells(monkeypatch):
     stated = {"length": 0.08, "v_n": -2.1, "v_t": -2.1}
     finer = _outcome(scenes.run(*PLANE, "friction", **stated, tip=0.4e-3))
@@ -366,6 +368,7 @@ def test_rigid_barrier_has_plane_contact_over_the_whole_skin():
     assert len(model.impulses) == 1
 
 
+@pytest.mark.long
 def test_a_flat_strike_does_not_turn_the_rod_or_is_called_doubtful():
     """The whole face lands: skin beyond the fine zone must touch too, or the run must say it does not."""
     result = scenes.run(*SLIDE, "large-rotation", length=0.08, v_n=-1.0, v_t=0.0, angle=0.0)

@@ -95,6 +95,7 @@ def test_step_of_a_squeezed_tip_is_that_of_its_assembly(squeeze):
     assert guard.allowed == pytest.approx(whole_step(model, zone, x), rel=0.025)
 
 
+@pytest.mark.long
 def test_step_is_found_anew_only_where_single_elements_might_ask_for_less():
     model = plate()
     guard, zone = StepGuard(model), model.zones[1]

@@ -91,6 +91,7 @@ def test_rows_are_thin_where_a_plate_that_flows_may_stick(effects, rows):
     assert np.ptp(z, axis=1).min() / geometry.tip_size == pytest.approx(0.5**rows, rel=0.15)
 
 
+@pytest.mark.long
 def test_corners_of_the_fine_zone_stay_elastic_and_never_flow(monkeypatch):
     scene = replace(SCENE, "save.frames", 0)
     part = solve(Case.of(scene))

@@ -18,6 +18,7 @@ def test_results_come_in_the_order_of_the_work(workers):
         assert turns([partial(pow, 2, n) for n in range(5)], workers) == [1, 2, 4, 8, 16]
 
 
+@pytest.mark.long
 def test_the_second_worker_is_another_process_which_stays_and_a_new_one_after_a_failure():
     with closing(Turns()) as turns:
         own, other = turns([getpid, getpid], 2)

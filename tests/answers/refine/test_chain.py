@@ -140,6 +140,7 @@ def test_the_place_of_contact_has_the_impulse_and_the_time_of_the_contacts(quick
     assert told.width == 2 * site.high[1]
 
 
+@pytest.mark.long
 def test_fewer_cells_yield_than_about_an_estimated_contact_and_the_numbers_agree(quick):
     _, outcome = quick
     alone = simulate(replace(QUICK, accuracy=replace(QUICK.accuracy, levels=1)))
@@ -232,6 +233,7 @@ def test_a_contact_a_few_nodes_wide_has_three_times_the_last_changes_by_halved_c
     assert alone[0] == values[-1] != alone[1]
 
 
+@pytest.mark.long
 def test_a_chamfered_tube_runs_which_one_mesh_refuses():
     tube = {
         "profile": [["0 mm", "8.5 mm"], ["1 mm", "9.5 mm"], ["60 mm", "9.5 mm"]],
@@ -260,6 +262,7 @@ def test_a_budget_ends_the_levels_and_tells_what_is_missing():
     )
 
 
+@pytest.mark.long
 def test_a_level_that_leaves_its_zones_is_repeated_with_more_room(monkeypatch):
     run, rooms = level_module.simulate_recorded, []
 
@@ -276,6 +279,7 @@ def test_a_level_that_leaves_its_zones_is_repeated_with_more_room(monkeypatch):
     assert rooms[2] > rooms[1]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("size, first, held", [("0.002", "0.0092", "0.037"), ("0.0005", "0.0023", "0.037")])
 def test_a_size_that_no_machine_holds_is_told_as_it_was_stated(size, first, held):
     """It said 0.0093 mm, the cells of the first level, where 0.002 mm stood; 0.0005 mm took all memory."""
@@ -286,6 +290,7 @@ def test_a_size_that_no_machine_holds_is_told_as_it_was_stated(size, first, held
     assert refused.value.remedy == f"Give at least {held} mm."
 
 
+@pytest.mark.long
 def test_the_files_of_the_last_level_stand_above_all_and_a_run_that_ended_computes_nothing_again(
     tmp_path, monkeypatch
 ):
@@ -300,6 +305,7 @@ def test_the_files_of_the_last_level_stand_above_all_and_a_run_that_ended_comput
     assert Outcome.read(tmp_path / "outcome.json") == again
 
 
+@pytest.mark.long
 def test_levels_that_are_done_are_not_run_again(quick, tmp_path, monkeypatch):
     whole = quick[1]
     run, ran = level_module.simulate_recorded, []

@@ -269,6 +269,7 @@ def crushed(outcome, record):
     return without_end(outcome, "An element was crushed."), replace(record, crushed=True, left=True)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("end", "runs"), [(not_finite, 2), (crushed, 3)])
 def test_what_coarser_levels_found_is_kept_where_a_finer_one_fails(failing, end, runs, tmp_path):
     """One that is crushed runs once more, without its thin rows."""
@@ -284,6 +285,7 @@ def test_what_coarser_levels_found_is_kept_where_a_finer_one_fails(failing, end,
     assert (tmp_path / "contact.npz").is_file()
 
 
+@pytest.mark.long
 def test_numbers_of_a_coarser_level_that_did_not_resolve_the_contact_are_withheld(failing):
     failing(not_finite)
     outcome = simulate(QUICK)
@@ -296,6 +298,7 @@ def test_a_pilot_that_fails_is_an_error(monkeypatch):
         simulate(QUICK)
 
 
+@pytest.mark.long
 def test_a_level_killed_in_the_middle_goes_on_from_its_checkpoint(tmp_path):
     whole = simulate(SHORT)
 
@@ -332,6 +335,7 @@ def test_a_budget_that_may_hold_the_pilot_alone_is_told_before_it_runs(monkeypat
     assert len(notices) == is_told and all(advice in one for one in notices)
 
 
+@pytest.mark.long
 def test_to_resume_where_nothing_is_begins_and_another_scene_is_refused(failing, tmp_path):
     def interrupted(outcome, record):
         raise KeyboardInterrupt

@@ -206,6 +206,7 @@ def test_a_pilot_that_no_budget_holds_is_not_begun(monkeypatch):
     assert not begun
 
 
+@pytest.mark.long
 def test_a_run_tells_its_range_when_the_second_mesh_stands():
     told = []
     scene = replace_all(load("quick"), {"save.frames": 0})

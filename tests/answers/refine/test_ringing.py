@@ -44,7 +44,7 @@ def pin(tmp_path_factory):
     return chain, chain.run()
 
 
-@pytest.mark.parametrize("body", ["bar", "pin"])
+@pytest.mark.parametrize("body", ["bar", pytest.param("pin", marks=pytest.mark.long)])
 def test_flat_landing_without_poisson_effect_has_e_of_one_in_its_band(body, request):
     chain, outcome = request.getfixturevalue(body)
     last = chain.done[-1].outcome

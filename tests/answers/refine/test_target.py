@@ -170,6 +170,7 @@ def test_runs_of_one_level_share_what_they_found(ran, monkeypatch):
     assert second == pilot and third == pytest.approx(3 * second)
 
 
+@pytest.mark.long
 def test_the_files_are_those_of_the_finest_level_at_its_first_place(tmp_path):
     short = {"projectile.length": "40 mm", "accuracy.levels": 2, "accuracy.offsets": 2, "save.frames": 0}
     scene = replace_all(load("quick"), short)

@@ -9,6 +9,7 @@ from fem_impact.scene.shipped import load, replace_all
 FLOOR = {"impact.slope": "0 deg", "impact.until": "2 strikes", "surface.friction": 0.57}
 
 
+@pytest.mark.long
 def test_a_hardest_strike_in_which_both_models_agree_only_within_a_wide_tolerance():
     scene = replace_all(load("quick"), FLOOR)
     rigid, modal = (simulate(scene, fidelity).strikes for fidelity in ("rigid", "modal"))

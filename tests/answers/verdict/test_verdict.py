@@ -255,6 +255,7 @@ def test_the_half_width_of_a_change_holds_nine_in_ten_scenes_left_out_one_by_one
     assert (errors <= 0.3 * halves).mean() < 0.85  # and it is no wider than it must be
 
 
+@pytest.mark.long
 def test_the_known_error_grows_with_the_change_and_tells_in_what_a_scene_is_unlike():
     scene = load("t5b")
     whole, _ = modal_pair(scene)
@@ -766,6 +767,7 @@ def test_layers_are_decided_by_the_reduced_model():
     assert "tip A, 0.168 kg, on 2 mm of steel-4340 on aluminium-6061-t6" in case
 
 
+@pytest.mark.long
 def test_vibration_is_not_known_better_than_its_two_counts_agree(monkeypatch):
     """Both meshes give the same energy by chance; the counts by modes and without them differ."""
     bands = []
@@ -885,6 +887,7 @@ def test_a_yes_that_the_interval_of_friction_changes_is_told_as_one_at_its_frict
         assert "reaches -0.060" in told and "--uncertain surface.friction=0.45,0.7" in told
 
 
+@pytest.mark.long
 def test_an_undecided_reduced_model_names_the_command_that_may_decide(cli):
     line = ("assess", "t5b", "--fidelity", "modal", "--within", "e 0.02", "--set", "impact.angle=44 deg")
     _, out, _ = cli(*line)

@@ -98,9 +98,10 @@ print(*sys.modules)
     ("effects", "imported"),
     [
         (("vibration", "barrier-rigid"), ()),
-        (
+        pytest.param(
             ("friction", "barrier-elastoplastic", "contact-heating"),
             ("heatwatch", "boundary", "rigid_rest", *YIELDING),
+            marks=pytest.mark.long,
         ),
     ],
 )

@@ -45,7 +45,10 @@ def test_the_list_is_long_and_holds_refused_and_detected_ones():
     assert len({case.difficulty for case in CASES.values()}) == len(CASES)
 
 
-@pytest.mark.parametrize("name", QUICK)
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(name, marks=pytest.mark.long) if name == "flat-on-block" else name for name in QUICK],
+)
 def test_a_hard_case_closes(name, tmp_path):
     result = run_case(name, tmp_path)
     assert (result.verdict, result.reason) == ("closed", "")
@@ -87,6 +90,7 @@ def test_the_start_and_the_step_of_a_case_are_its_own():
     assert own.step == pytest.approx(0.5 * plain.step)
 
 
+@pytest.mark.long
 def test_a_face_that_lies_flat_is_meshed_as_a_whole(tmp_path):
     run_case("upright-edge", tmp_path)
     outcome = Outcome.read(tmp_path / "upright-edge" / "outcome.json")
@@ -96,6 +100,7 @@ def test_a_face_that_lies_flat_is_meshed_as_a_whole(tmp_path):
     assert face_reach(Case.of(tilted).bodies) == ((0.0, 0.0), 0.0)
 
 
+@pytest.mark.long
 def test_a_rod_that_comes_down_nearly_flat_ends_before_its_tail_strikes(tmp_path):
     assert run_case("angle-89-block", tmp_path).verdict == "closed"
     assert Outcome.read(tmp_path / "angle-89-block" / "outcome.json").contact.strikes_again is True

@@ -21,6 +21,7 @@ def order(errors, sizes):
     return np.polyfit(np.log(sizes), np.log(np.abs(errors)), 1)[0]
 
 
+@pytest.mark.long
 def test_frequencies_are_of_second_order():
     across, errors = np.array([8, 12]), []
     exact = cylinder_frequencies(219e9, 0.29, 7850.0, 0.06, 9.5e-3)

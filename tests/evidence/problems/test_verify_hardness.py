@@ -10,6 +10,7 @@ from fem_impact.evidence.references.axisymmetric import indent
 VALUES = defaults("hardness")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("f", [0.0, pytest.param(0.1, marks=pytest.mark.slow)])
 def test_both_codes_agree_on_cells_of_one_size(f):
     """Their errors by the cells are then alike: what is left is the hexahedra and their contact."""

@@ -12,6 +12,7 @@ def held(values):
     return {c.name: c for c in found.checks}
 
 
+@pytest.mark.long
 def test_a_sphere_on_plates_under_a_rigid_skin_obeys_zeners_equation():
     found = held({"cells": 3, "across": 8, "block": 0})
     assert found["e, lambda 1"].reference < 0.2 < 0.9 < found["e, lambda 0.05"].reference

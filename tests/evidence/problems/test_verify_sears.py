@@ -15,6 +15,7 @@ def test_a_short_rod():
     assert verify("sears", SHORT).passed
 
 
+@pytest.mark.long
 def test_the_edge_of_the_study():
     found = verify("sears", SHORT | {"tip_radius": "3 mm", "block": 0, "speed": 2.0})
     assert found.passed
@@ -22,7 +23,12 @@ def test_the_edge_of_the_study():
 
 
 @pytest.mark.parametrize(
-    "change", [SHORT, SHORT | {"across": 16}, SHORT | {"tip_radius": "3 mm", "block": 0}]
+    "change",
+    [
+        SHORT,
+        pytest.param(SHORT | {"across": 16}, marks=pytest.mark.long),
+        SHORT | {"tip_radius": "3 mm", "block": 0},
+    ],
 )
 def test_the_cells_are_counted_where_it_touches(change):
     """Not over the diameter: with 8 cells across they are 1.2 times as wide, with 16 0.86 times."""

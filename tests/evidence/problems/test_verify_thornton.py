@@ -6,6 +6,7 @@ from fem_impact.evidence.problems.problem import problem, verify
 from fem_impact.evidence.problems.thornton_tip import judged_slope
 
 
+@pytest.mark.long
 def test_restitution_falls_with_speed():
     found = verify("thornton", {"cells": 3})
     values = {c.name: c for c in found.checks}

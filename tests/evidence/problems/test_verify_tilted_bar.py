@@ -43,7 +43,10 @@ def test_the_contact_springs_of_public_codes_give_their_rebound(f):
     [
         {"f": 0.35, "angle": "35 deg"},
         {"f": 0.1, "angle": "10 deg", "length": "90 mm", "side": "25 mm", "nu": 0.45, "speed": 6.0},
-        {"f": 0.8, "angle": "30 deg", "E": "70 GPa", "rho": 2700, "nu": 0.0, "length": "0.4 m"},
+        pytest.param(
+            {"f": 0.8, "angle": "30 deg", "E": "70 GPa", "rho": 2700, "nu": 0.0, "length": "0.4 m"},
+            marks=pytest.mark.long,
+        ),
     ],
 )
 def test_other_bars_and_angles(changes):

@@ -13,7 +13,9 @@ def errors(found):
     return {c.name: c.error for c in found.checks}
 
 
-@pytest.mark.parametrize("speed", [pytest.param(1.0, marks=pytest.mark.slow), 4.0, 8.0])
+@pytest.mark.parametrize(
+    "speed", [pytest.param(1.0, marks=pytest.mark.slow), 4.0, pytest.param(8.0, marks=pytest.mark.long)]
+)
 def test_a_coarse_sphere_on_a_plane_is_a_finite_ball(speed):
     """Held to the error of its mesh, below half a per cent: elements that are 1 % off are noticed at 4 m/s.
 
@@ -43,7 +45,7 @@ def test_a_coarse_sphere_on_a_block_radiates_as_into_a_half_space():
     assert time.tolerance < force.tolerance < 0.015
 
 
-@pytest.mark.parametrize(("block", "speed"), [(0, 0.1), (1, 0.3)])
+@pytest.mark.parametrize(("block", "speed"), [(0, 0.1), pytest.param(1, 0.3, marks=pytest.mark.long)])
 def test_the_fewest_cells_are_enough(block, speed):
     """The ball's cells at its pole are pi / 2 times the share of its diameter: there were 1.3, not 2."""
     values = {"cells": 2, "across": 8, "speed": speed, "block": block}

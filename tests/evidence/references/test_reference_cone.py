@@ -11,6 +11,7 @@ STEEL = Metal(206e9, 0.29, 7850.0, 320e6, 643.75, 0.1033)
 ANGLE = radians(70.3)
 
 
+@pytest.mark.long
 def test_a_cone_that_does_not_yield_is_sneddons(monkeypatch):
     """p = E* cot / 2 and a / d = 2 tan / pi (Sneddon 1965, doi:10.1016/0020-7225(65)90019-4), a flat cone."""
     monkeypatch.setattr(cone, "SLOW", 3e-5)
@@ -29,12 +30,14 @@ def test_pressure_and_radius_change_with_the_cells_by_their_first_order_error_al
     assert limits[0] == pytest.approx(limits[1], rel=0.02)
 
 
+@pytest.mark.long
 def test_friction_raises_the_pressure_and_holds_the_bulge_back():
     plain, rough = (cone.indent(STEEL, ANGLE, f, 5).coefficients() for f in (0.0, 0.2))
     assert 1.05 * plain[0] < rough[0] < 1.2 * plain[0]
     assert rough[1] < plain[1]
 
 
+@pytest.mark.long
 def test_flow_stress_shifts_the_pressure_in_proportion_where_everything_flows():
     double = Metal(2 * STEEL.E, STEEL.nu, STEEL.rho, 2 * STEEL.yield_stress, STEEL.slope, STEEL.exponent)
     assert cone.indent(double, ANGLE, 0.2, 5).coefficients() == pytest.approx(

@@ -158,6 +158,7 @@ def test_a_fast_oblique_ball_takes_more_tangential_impulse():
     assert (found.centre_t - plain.centre_t) / 0.34 == pytest.approx(-0.0196, abs=1e-3)
 
 
+@pytest.mark.long
 def test_the_excess_of_an_edge_is_its_own():
     """It hardly depends on the rod behind it, which the free beam takes off."""
     patch = ((0.06, 0.15),)

@@ -371,6 +371,7 @@ def test_another_seed_draws_other_scenes(tmp_path):
     assert {scene.name for scene in own} - {scene.name for scene in other} == {*MEASURED_SETS}
 
 
+@pytest.mark.long
 def test_the_report_counts_and_shows(tmp_path):
     request, results = Request(tmp_path, quick=True), {}
     for job in study.plan(request, {}):

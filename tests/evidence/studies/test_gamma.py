@@ -178,6 +178,7 @@ def test_a_point_has_the_limit_and_the_band_of_its_levels():
     assert point_of(LONG, {LONG.name: Failure("x", "folded")}).reason == "folded"
 
 
+@pytest.mark.long
 def test_the_study_says_how_much_where_and_why(tmp_path, drawn):
     request = Request(tmp_path, quick=True)
     results = computed(request)
@@ -200,6 +201,7 @@ def test_the_study_says_how_much_where_and_why(tmp_path, drawn):
     assert {one.look for one in shares} == {"area"}
 
 
+@pytest.mark.long
 def test_vibration_that_falls_is_explained_by_its_later_contacts(tmp_path, drawn):
     """Yielding vibration falls to nothing at gamma 70, with and without a second contact that takes it."""
     request = Request(tmp_path, quick=True)

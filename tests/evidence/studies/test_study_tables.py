@@ -96,6 +96,7 @@ def test_a_missing_library_costs_a_film_only(tmp_path, monkeypatch):
     assert film(run) == ["t4: install libegl1"]
 
 
+@pytest.mark.long
 def test_several_runs_are_drawn_in_processes_and_what_lacks_is_told_once(tmp_path):
     runs = [tmp_path / name for name in ("t4", "t5b")]
     for run in runs:

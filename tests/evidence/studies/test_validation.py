@@ -170,6 +170,7 @@ def calibrated(monkeypatch):
     return page
 
 
+@pytest.mark.long
 def test_calibration_finds_the_friction_that_the_measurement_was_made_with(tmp_path, calibrated):
     request = Request(tmp_path, ("t5b",))
     published(conclude, request, results_of(request))
