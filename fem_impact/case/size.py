@@ -204,13 +204,19 @@ def no_rest() -> SceneError:
 
 
 def _finest_that_fits(slots: ModelSpec, bodies: Bodies, zones: Zones, there: float) -> str:
-    """Return the remedy by a larger tip size, nothing where none fits."""
+    """Return the remedy by a larger tip size, which a barrier size grows with; nothing where none fits."""
+    stated = bodies.scene.accuracy
     for levels in range(len(zones.rod) - 1, 0, -1):
         size = float(f"{zones.rod_base / 2**levels:.2g}")
-        accuracy = replace(bodies.scene.accuracy, tip_size=size)
+        barrier = stated.barrier_size and float(f"{stated.barrier_size * size / zones.tip_size:.2g}")
+        accuracy = replace(stated, tip_size=size, barrier_size=barrier)
         coarser = Bodies(replace(bodies.scene, accuracy=accuracy), bodies.effects)
         if run_size(slots, coarser, zones_of(coarser)).memory <= there:
-            return f"Give at least {format_quantity(size, 'length')}."
+            told, finer = f"Give at least {format_quantity(size, 'length')}", barrier and barrier < size
+            of_barrier = (
+                f", and {format_quantity(barrier, 'length')} as accuracy.barrier_size" if finer else ""
+            )
+            return f"{told}{of_barrier}."
     return ""
 
 

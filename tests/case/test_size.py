@@ -1,5 +1,6 @@
 """The estimated size of a run beside meshes that are built and runs that were measured."""
 
+import re
 from math import exp, log
 
 import pytest
@@ -90,6 +91,16 @@ def test_what_needs_more_memory_than_there_is_is_refused_with_a_size_that_fits(c
     with pytest.raises(SceneError, match="GB of memory"):
         Case.of(replace_all(scene, {"accuracy.tip_size": finer}))
     Case.of(scene, "modal")  # needs no block
+
+
+def test_a_barrier_size_that_is_stated_grows_with_the_size_that_fits(monkeypatch):
+    """No size was found that fits, as the block kept its own cells."""
+    fine = {"accuracy.tip_size": "0.005 mm", "accuracy.barrier_size": "0.001 mm"}
+    monkeypatch.setattr(sizes, "machine_memory", lambda: 16e9)
+    with pytest.raises(SceneError, match="GB of memory") as refused:
+        Case.of(replace_all(load("t5b"), fine))
+    tip, barrier = re.findall(r"[\d.]+ mm", refused.value.remedy)
+    assert Case.of(replace_all(load("t5b"), {"accuracy.tip_size": tip, "accuracy.barrier_size": barrier}))
 
 
 # largest resident memory, MB, of a process that computed the modes of a half box of cells of 1 mm

@@ -55,10 +55,7 @@ class LevelMeshes:
                 raise
             own, first = (f"{(size or 0.0) * 1e3:.4g} mm" for size in (stated, scene.accuracy.tip_size))
             problem = f"begins with a level of cells of {first}, which {error.problem}"
-            coarser = (self.at(splits) for splits in range(self.usual - 1, -1, -1))
-            held = next((scene.accuracy.tip_size for scene in coarser if _is_held(scene)), None)
-            remedy = f"Give at least {held * 1e3:.2g} mm." if held else error.remedy
-            raise SceneError(problem, key=error.key, value=own, remedy=remedy) from None
+            raise SceneError(problem, key=error.key, value=own, remedy=error.remedy) from None
 
     @cached_property
     def first(self) -> int:
@@ -174,15 +171,6 @@ class LevelMeshes:
     def usual(self) -> int:
         """Splits that resolve the contact estimated, or that the stated size asks for."""
         return self._splits[1] if self._bodies.contact.compliant else self._splits[0]
-
-
-def _is_held(scene: Scene) -> bool:
-    """Return whether the machine has the memory for the mesh of a scene."""
-    try:
-        Case(scene).require_memory()
-    except SceneError:
-        return False
-    return True
 
 
 def steps_between(ran: int, finest: int, wanted: int) -> list[int]:

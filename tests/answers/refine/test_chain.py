@@ -279,7 +279,6 @@ def test_a_level_that_leaves_its_zones_is_repeated_with_more_room(monkeypatch):
     assert rooms[2] > rooms[1]
 
 
-@pytest.mark.long
 @pytest.mark.parametrize("size, first, held", [("0.002", "0.0092", "0.037"), ("0.0005", "0.0023", "0.037")])
 def test_a_size_that_no_machine_holds_is_told_as_it_was_stated(size, first, held):
     """It said 0.0093 mm, the cells of the first level, where 0.002 mm stood; 0.0005 mm took all memory."""
