@@ -233,6 +233,7 @@ def swept(tmp_path_factory):
     return sweep(load("t5b"), vary, fidelity="rigid", out=out), out
 
 
+@pytest.mark.long
 def test_the_table_holds_every_scalar_of_an_outcome_once(swept):
     results, _ = swept
     table, outcome = results.table(), results.rows[0].outcome.to_dict()

@@ -126,6 +126,7 @@ def test_the_time_of_a_users_mesh_holds_that_of_its_modes(tmp_path):
     assert off(size.time - rest, 9.5) < 2
 
 
+@pytest.mark.long
 def test_a_users_mesh_that_does_not_fit_is_refused_before_any_work(tmp_path, monkeypatch):
     monkeypatch.setattr(sizes, "machine_memory", lambda: 8e8)
     scene = half_box(tmp_path, 32, 16, 32)

@@ -43,6 +43,7 @@ def test_lines_fit_a_terminal(cli, camera_file):
     assert [line for text in told for line in text.splitlines() if len(line) > 79] == []
 
 
+@pytest.mark.long
 def test_the_commands_of_the_page_work(cli, camera_file):
     lines = page_lines()
     assert {shlex.split(line)[1] for line in lines} == set(COMMANDS)

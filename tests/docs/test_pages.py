@@ -97,7 +97,11 @@ NUMBER = r"-?\d+\.?\d*(?:e[+-]\d+)?"
 OUTPUTS = [block for block in blocks("text") if block.marker.startswith("output: ")]
 
 
-@pytest.mark.parametrize("block", OUTPUTS, ids=str)
+@pytest.mark.parametrize(
+    "block",
+    [pytest.param(b, marks=pytest.mark.long) if b.page == "README.md" else b for b in OUTPUTS],
+    ids=str,
+)
 def test_every_output_shown_is_that_of_its_command(block, cli, files):
     """Words to the letter, numbers within what processors differ by."""
     _, out, err = cli(*shlex.split(block.marker.removeprefix("output: "))[1:])

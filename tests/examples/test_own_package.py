@@ -118,6 +118,7 @@ def test_each_fidelity_computes_what_is_added_or_refuses_it(tmp_path):
         assert found[fidelity, "lunar-gravity"]["V_n"] != found[fidelity, ""]["V_n"]
 
 
+@pytest.mark.long
 def test_what_a_scene_does_not_name_changes_nothing_in_it(tmp_path):
     code = """
 import fem_impact
@@ -144,6 +145,7 @@ def test_the_command_lists_what_packages_add_and_what_computes_it(tmp_path):
     }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("change", "words"),
     [
@@ -170,6 +172,7 @@ def test_without_the_package_its_names_are_refused():
     assert "is a shape, not one of the published tips" in done.stderr
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("group", "entry", "words"),
     [

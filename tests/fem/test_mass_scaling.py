@@ -40,6 +40,7 @@ def test_a_scaled_rod_keeps_mass_centre_and_inertia(name):
     assert (factors[slices] == 1.0).all()
 
 
+@pytest.mark.long
 def test_the_step_grows_with_the_root_of_the_scaling():
     steps = {factor: build(Case.of(scaled(factor, load("t5b")))).step for factor in (1.0, 2.0, 4.0)}
     assert steps[2.0] / steps[1.0] == pytest.approx(np.sqrt(2.0), rel=0.05)
@@ -71,6 +72,7 @@ def test_a_wave_crosses_a_box_through_its_thinnest_side():
     assert times[box] == pytest.approx(edges[box].min(axis=1) / speed, rel=1e-6)
 
 
+@pytest.mark.long
 def test_scaled_masses_hardly_move_the_result_and_are_told():
     true, heavy = (simulate(scaled(factor)) for factor in (1.0, 4.0))
     assert heavy.cost.steps < 0.7 * true.cost.steps

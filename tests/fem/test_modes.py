@@ -51,6 +51,7 @@ def test_frequencies_of_the_long_rod(long):
     assert long[1].frequency[:4] == pytest.approx(REFERENCE[0.24], rel=5e-3)
 
 
+@pytest.mark.long
 def test_runs_with_the_same_rod_find_its_modes_once():
     scene = changed(load("t5b"), "accuracy.tip_size", "1.2 mm")
     first, moved, longer = (

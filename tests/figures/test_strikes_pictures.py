@@ -84,6 +84,7 @@ def test_the_hardest_strike_is_told_of_the_certain_ones_and_the_agreement_with_i
     assert "ones strike 1, " in heat
 
 
+@pytest.mark.long
 def test_the_pages_of_a_run_show_the_strikes(tmp_path):
     simulate(SCENE, "rigid", RunOptions(out=tmp_path))
     sheet = write_sheet(tmp_path).read_text()

@@ -164,6 +164,7 @@ for number in itertools.count():
 """
 
 
+@pytest.mark.long
 def test_killed_run_leaves_readable_fields(tmp_path):
     path = tmp_path / "fields.vtkhdf"
     here = Path(__file__).parent

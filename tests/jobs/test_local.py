@@ -96,6 +96,7 @@ def test_an_interrupt_stops_running_jobs_at_once():
     assert isinstance(running.exception(), BrokenExecutor)
 
 
+@pytest.mark.long
 def test_a_worker_of_another_version_is_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(run_module, "source_digest", lambda: "another program")
     with LocalProcesses(1) as processes, pytest.raises(RunError, match="another version"):

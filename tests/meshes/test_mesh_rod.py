@@ -111,6 +111,7 @@ shapes = st.tuples(
 )
 
 
+@pytest.mark.long
 @settings(max_examples=30, deadline=None)
 @given(shapes, st.floats(0.0, np.pi / 2.0), st.integers(0, 3))
 @example((0.0095, 0.191875, 6.0, 6), 5 * np.pi / 36, 2)  # the flattest of 3900 edges scanned: .379

@@ -39,6 +39,7 @@ def about(place, size):
     return Zone(np.asarray(place), np.eye(3), np.full(3, -size), np.full(3, size))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("flat", FLATNESS)
 @pytest.mark.parametrize("name", ["disc", "chamfered", "ring", "thin", "lid", "cap"])
 def test_short_bodies_are_meshed_with_any_cells_across(name, flat):
@@ -118,6 +119,7 @@ def short_bodies(draw):
     return line, np.array([[radius, first * thick], [radius, length - (1 - last) * thick]])
 
 
+@pytest.mark.long
 @settings(max_examples=40, deadline=None)
 @given(short_bodies(), st.sampled_from([6, 8, 10, 16]), st.floats(0.0, 1.0), st.integers(0, 2))
 def test_a_random_short_body_is_meshed_and_refined_anywhere(body, across, place, levels):

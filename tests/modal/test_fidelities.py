@@ -234,6 +234,7 @@ def test_the_skin_and_the_dent_are_those_of_the_body_that_flows(changes, where):
         assert (energy.skin_barrier == energy.plastic_barrier == 0.0) == bool(changes)
 
 
+@pytest.mark.long
 def test_no_dent_where_nothing_yields():
     assert "dent" not in " ".join(
         texts(simulate(load("elastic-frictionless"), "modal").validity.limitations, "model")

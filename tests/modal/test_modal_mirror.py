@@ -29,6 +29,7 @@ def tilted(angle):
     return simulate(replace(PUNCH, "impact.angle", f"{angle} deg"), "modal")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("angle", [3, 8, 40])
 def test_a_mirrored_scene_gives_mirrored_numbers(angle):
     one, other = tilted(angle), tilted(-angle)

@@ -361,6 +361,7 @@ def impulses(found):
     return np.sum([*strikes, *(phase.impulse for phase in found.phases), found.settling], axis=0)
 
 
+@pytest.mark.long
 @given(falls())
 def test_energy_momentum_and_moment_are_kept_over_the_whole_sequence(case):
     body, begin, e, f, (g_n, g_t) = case
@@ -384,6 +385,7 @@ def test_energy_momentum_and_moment_are_kept_over_the_whole_sequence(case):
     assert found.end.V_t - begin.V_t == pytest.approx(q - g_t * time, abs=1e-10 * (speed + abs(G) * time))
 
 
+@pytest.mark.long
 @given(falls())
 def test_a_mirror_image_strikes_as_its_mirror_image(case):
     body, begin, e, f, (g_n, g_t) = case

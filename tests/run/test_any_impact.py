@@ -182,6 +182,7 @@ def test_another_inclination_may_turn_the_velocity_up_the_slope():
 COARSE = {"levels": 2, "tip_size": "1.2 mm", "unresolved": "report"}
 
 
+@pytest.mark.long
 def test_finite_elements_mirror_an_impact_to_round_off():
     rod = {**ROD, "tip": "B", "tip_radius": "3 mm"}
     stated = scene(rod, 45, -0.4, 20.0, ["friction", *ELASTIC], accuracy=COARSE)

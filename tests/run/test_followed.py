@@ -236,6 +236,7 @@ def test_a_body_of_segments_takes_the_material_of_the_part_that_strikes():
     assert tail.e != pytest.approx(plain.e, abs=1e-3)
 
 
+@pytest.mark.long
 def test_strikes_in_an_earlier_dent_are_counted():
     """All of a ball that falls straight down; none of one whose place on the barrier moves on."""
     told = {}
@@ -321,6 +322,7 @@ def test_a_model_that_nothing_is_moved_of_repeats_its_own_path(steep):
         assert one.lost == pytest.approx(other.lost, rel=0.05)
 
 
+@pytest.mark.long
 def test_what_meshes_leave_open_of_strikes_widens_what_is_told_of_them(steep):
     """By levels of 1 and 0.5 mm whose first strikes have an e 0.1 apart: by the rule of their limit."""
     solid = [replace_record(one, fidelity="solid") for one in steep.each[:2]]

@@ -59,6 +59,7 @@ def closed_form(stated):
     return line * LENGTH, bending, np.sqrt(pull / line) / (2 * LENGTH)
 
 
+@pytest.mark.long
 def test_mass_and_frequencies_of_a_jacketed_bar_are_those_of_a_compound_beam(tmp_path):
     stated = scene(jacketed(tmp_path), {"CORE": "tungsten-heavy-alloy"})
     mass, bending, stretching = closed_form(stated)

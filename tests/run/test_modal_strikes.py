@@ -65,6 +65,7 @@ def test_stages_that_a_scene_states_follow_each_other_and_the_change_is_told():
     assert {one.fidelity for one in alone.each} == {"rigid"}
 
 
+@pytest.mark.long
 def test_the_books_of_the_rattle_close(rattle):
     """And so do those of each strike: gravity acts in it as in the flights, and nothing else is left."""
     s = rattle.strikes
@@ -79,6 +80,7 @@ def test_the_books_of_the_rattle_close(rattle):
     assert "strikes are computed with modes" in told
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("angle", [60, 75])
 def test_without_losses_motion_and_vibration_keep_the_energy(angle):
     changes = FLOOR | {"effects": ELASTIC, "impact.until": "4 strikes", "impact.angle": f"{angle} deg"}
@@ -155,6 +157,7 @@ def test_effects_that_are_left_out_leave_a_sequence(effects):
     )
 
 
+@pytest.mark.long
 def test_a_low_rattle_down_a_slope_is_followed_at_once():
     """A rod that hardly leaves the barrier is not looked for over its whole flight."""
     changes = {

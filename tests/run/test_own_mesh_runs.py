@@ -58,6 +58,7 @@ def test_the_programs_own_rod_from_a_file_gives_its_run_again(tmp_path, ending):
     assert abs(again.energy.residual) < 1e-6
 
 
+@pytest.mark.long
 def test_a_tapered_bar_that_yields_on_a_barrier_that_yields_is_balanced(tmp_path):
     points, cells = taper(cells=(4, 2, 20))
     path = write(tmp_path / "taper.inp", 1e3 * points, cells)

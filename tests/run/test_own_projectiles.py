@@ -16,6 +16,7 @@ def coarse(name):
     return replace_all(load(name), {"accuracy.tip_size": TIPS[name], "save.frames": 0})
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", [pytest.param(n, marks=() if n == QUICK else SLOW) for n in TIPS])
 def test_an_own_projectile_is_run_on_finite_elements(name):
     scene = coarse(name)

@@ -39,6 +39,7 @@ def test_a_bar_on_two_feet_beside_its_plane_of_symmetry_strikes(tmp_path):
     assert outcome.restitution.mu == pytest.approx(0.086, abs=0.023)
 
 
+@pytest.mark.long
 def test_a_coin_lands_on_its_rim():
     """Three levels of meshes give e .415 +- .080 and mu -.165 +- .017."""
     coin = {"profile": [["0 mm", "12 mm"], ["2 mm", "12 mm"]], "material": "brass"}

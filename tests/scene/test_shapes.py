@@ -333,6 +333,7 @@ def test_the_last_segment_ends_at_the_tail():
         replace(made, "projectile.length", "40 mm")
 
 
+@pytest.mark.long
 def test_lengths_of_a_body_of_segments_are_swept_and_the_user_is_told(cli):
     line = ("sweep", "heavy-tail", "--vary", "projectile.length=0.1,0.16m", "--fidelity", "rigid")
     code, out, _ = cli(*line, "--workers", "1")

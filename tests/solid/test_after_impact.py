@@ -150,6 +150,7 @@ def told(words, cause, place):
     return words.startswith(when) and words.endswith("Use a coarser accuracy.tip_size or a lower speed.")
 
 
+@pytest.mark.long
 def test_a_run_that_makes_energy_stops_and_keeps_its_answer():
     """At 1.1 times the stable step the highest mode of the rod grows: it is seen and stopped."""
     planned = Case.of(scenes.scene("vibration", "barrier-rigid", length=0.08))

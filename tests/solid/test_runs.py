@@ -274,6 +274,7 @@ def test_a_free_spin_costs_nothing_and_keeps_lengths():
     assert spin == pytest.approx(-45.0, rel=1e-6)
 
 
+@pytest.mark.long
 def test_small_rotations_let_a_spinning_rod_grow():
     """Nodes fly on straight lines: no strain energy, but a length that grows by theta^2 / 2."""
     _, stretch, _, spin = _spun(*PLANE)

@@ -80,6 +80,7 @@ def test_the_depth_in_a_round_nose_is_that_under_its_outline():
     assert np.quantile(np.abs(found - exact)[near], 0.9) < 0.1 * DEPTH
 
 
+@pytest.mark.long
 def test_a_run_tells_friction_and_skin_together():
     result = scenes.run(
         "vibration", "friction", "rod-plasticity", "barrier-elastoplastic", length=0.08, v_n=-2.1, v_t=-2.1
@@ -91,7 +92,6 @@ def test_a_run_tells_friction_and_skin_together():
     assert energy.skin == pytest.approx(energy.friction + energy.skin_rod + energy.skin_barrier)
 
 
-@pytest.mark.long
 def test_the_work_of_a_projectile_that_is_softer_than_the_barrier_counts():
     scene = replace_all(load("quick"), {"projectile.material": "brass", "save.frames": 0})
     energy = simulate(scene, "solid").energy

@@ -187,7 +187,9 @@ CORNERED = TabulatedHardening(((0.0, 300e6), (0.01, 301e6), (0.02, 420e6), (0.03
 
 
 @pytest.mark.parametrize("rate", [None, RATE])
-@pytest.mark.parametrize("strain", [pytest.param(0.012, marks=pytest.mark.long), 0.025, 0.08])
+@pytest.mark.parametrize(
+    "strain", [pytest.param(0.012, marks=pytest.mark.long), 0.025, pytest.param(0.08, marks=pytest.mark.long)]
+)
 def test_confined_compression_along_a_table(strain, rate):
     """However many corners were passed, the flow stress is that of the table at the plastic strain."""
     h, steps = 1e-3, 400

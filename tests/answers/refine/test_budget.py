@@ -12,6 +12,7 @@ from fem_impact.answers.refine.forecast import Turns, longest_s
 from fem_impact.jobs.executors import cores
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("workers", [1, 2])
 def test_results_come_in_the_order_of_the_work(workers):
     with closing(Turns()) as turns:

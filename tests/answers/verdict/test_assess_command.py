@@ -201,6 +201,7 @@ def test_verdict_on_slenderness_in_both_units():
     assert long["gamma_per_mm0_3815"] / long["limit_per_mm0_3815"] == pytest.approx(57.25 / 26.45, rel=1e-3)
 
 
+@pytest.mark.long
 def test_the_published_drop_as_a_command(cli):
     line = ("assess", *PUBLISHED, "--surface", "contaminated", "--tip", "A", "--heat", "--fidelity", "modal")
     code, out, err = cli(*line)

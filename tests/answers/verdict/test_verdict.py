@@ -291,6 +291,7 @@ def test_no_change_is_known_where_an_edge_digs_in_as_in_no_stored_scene():
     assert (found.answer, found.here) == ("undecided", None) and e.reason in found.notes[0]
 
 
+@pytest.mark.long
 def test_finite_elements_alone_are_not_answered_for_by_the_reduced_model(monkeypatch):
     meshed(monkeypatch, [None] * 20)
     found = assess(load("t5b"), "solid", tolerance=0.2, budget_s=1e5)
@@ -381,6 +382,7 @@ def test_the_change_of_another_number_is_that_of_two_runs(of, key):
     assert here.band == known_error(Case(load("t5b")), here.free, of, here.value)[0] > 0.0
 
 
+@pytest.mark.long
 def test_what_finite_elements_show_of_the_reduced_models_error_counts_at_other_inclinations(monkeypatch):
     """Where they say +.259 and the reduced model +.025, its +.203 elsewhere is not known to .157."""
     meshed(monkeypatch, [0.3, 0.3])
@@ -391,6 +393,7 @@ def test_what_finite_elements_show_of_the_reduced_models_error_counts_at_other_i
     assert found.worst is found.here  # its own change is the largest, by finite elements
 
 
+@pytest.mark.long
 def test_levels_that_disagree_leave_the_answer_open(monkeypatch):
     asked = meshed(monkeypatch, [0.0, 0.008] * 5)
     found = assess(load("t5b"), tolerance=0.02, budget_s=1e5)
@@ -398,6 +401,7 @@ def test_levels_that_disagree_leave_the_answer_open(monkeypatch):
     assert any("No finer level is tried" in note for note in found.notes)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("shift", "by"), [(0.008, "modal"), (0.05, "solid"), (0.004, "solid")])
 def test_a_wider_error_of_meshes_that_agree_does_not_replace_the_reduced_models(monkeypatch, shift, by):
     """It tells .010 +- .012. Levels count that decide, or know better."""
@@ -419,6 +423,7 @@ def test_the_finest_two_levels_count_and_the_change_before(monkeypatch):
     assert wide.here.band == pytest.approx(0.04)
 
 
+@pytest.mark.long
 def test_a_scene_like_none_that_was_computed_both_ways_is_not_left_to_the_reduced_model(monkeypatch):
     """However wide the tolerance."""
     asked = meshed(monkeypatch, [0.0, 0.0])
@@ -517,6 +522,7 @@ def test_a_budget_that_allows_one_level_leaves_the_reduced_model_and_says_so(mon
     assert "alone does not tell its error" in second
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("ran", [0, 1])
 def test_a_level_given_up_for_its_budget_names_the_one_that_holds_it(monkeypatch, ran):
     asked = meshed(monkeypatch, [0.0])
@@ -572,6 +578,7 @@ def test_an_assessment_keeps_its_budget_within_1_3_times_and_says_what_it_does(m
     assert len(begun) == len(asked) > 2 - (growth > 3)
 
 
+@pytest.mark.long
 def test_a_budget_too_small_for_a_finer_level_is_spent_on_another_place_of_the_grid(monkeypatch):
     """Both places agree: the band is a third of that of meshes that run once, at least half of the change."""
     asked = meshed(monkeypatch, [0.0, 0.008, 0.0, 0.008])
@@ -585,6 +592,7 @@ def test_a_budget_too_small_for_a_finer_level_is_spent_on_another_place_of_the_g
     assert "scatter by these" in found.here.source
 
 
+@pytest.mark.long
 def test_an_error_far_too_large_asks_for_as_many_levels_as_bring_it_down(monkeypatch):
     """Each level about halves an error."""
     meshed(monkeypatch, [0.0, 0.03])
@@ -611,6 +619,7 @@ def test_inclinations_without_an_answer_are_named_and_leave_the_worst_open(monke
     assert (found.answer, found.worst_answer) == ("yes", "undecided")
 
 
+@pytest.mark.long
 def test_a_change_known_no_better_than_it_can_be_is_no_number(monkeypatch):
     """A number between 0 and 1 changes by 1 at most: 80 degrees told -0.871 +- 1.657."""
     real = vibration.modal_effect
@@ -760,6 +769,7 @@ def solid_alone(monkeypatch, moved, check=0.02):
 THIN = {"barrier.thickness": "2 mm", "accuracy.across": 10}
 
 
+@pytest.mark.long
 def test_layers_are_decided_by_the_reduced_model():
     found = assess(load("layered"))
     assert (found.fidelity, found.answer) == ("modal", "yes")
@@ -819,6 +829,7 @@ def test_one_level_decides_nothing(monkeypatch):
     assert told["missing"].startswith("a model that tells how e changes") and told["here"] is None
 
 
+@pytest.mark.long
 def test_a_mesh_of_the_users_own_is_decided_on_levels(monkeypatch, striker):
     asked = solid_alone(monkeypatch, [0.3, 0.3])
     found = assess(striker, "solid", budget_s=1e5)
@@ -868,6 +879,7 @@ def test_an_undecided_verdict_says_what_is_missing(short):
     assert "an error below 0.0225 instead of 0.0232; or a change of 0.051" in close.missing
 
 
+@pytest.mark.long
 def test_friction_without_an_interval_is_said_to_count_as_exact():
     stated = replace_all(load("t5b"), {"surface": {"state": "custom", "friction": 0.4, "source": "mine"}})
     told = dict(document(assess(stated, "modal"))["basis"])

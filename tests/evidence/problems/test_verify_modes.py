@@ -44,6 +44,7 @@ def test_a_bar_too_stubby_or_too_slender_is_refused(length):
         verify("modes", {"length": length})
 
 
+@pytest.mark.long
 def test_modes_of_another_metal_and_size():
     found = verify(
         "modes", {"length": 0.3, "diameter": 0.04, "E": "70 GPa", "nu": 0.33, "rho": 2700, "across": 8}

@@ -38,6 +38,7 @@ def test_a_sphere_that_sticks_gives_its_tangential_energy_back():
     assert e["tangential restitution, plain"].computed < e["tangential restitution, plain"].reference - 0.02
 
 
+@pytest.mark.long
 def test_a_blow_that_sticks_on_a_rigid_plane_is_shown_unless_it_slides():
     kinds = [
         {c.name: c.kind for c in verify("oblique-sphere", {**COARSE, "block": 0, "f": f}).checks}

@@ -66,6 +66,7 @@ def test_a_coarse_ball_has_the_mass_moment_and_centre_of_a_ball():
     assert found.inertia == pytest.approx(0.4 * mass * p["radius"] ** 2, rel=4e-3)
 
 
+@pytest.mark.long
 def test_the_closing_loss_shrinks_with_the_cells():
     """O(h^2) on a round tip: at the edge the gap goes as distance^1.5, so its last node closes as h^0.5."""
     p = problem("hertz").values({"across": 8, "block": 0, "speed": 4.0, "radius": 2e-3})
