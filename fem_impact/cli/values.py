@@ -45,7 +45,7 @@ def read_values(text: str) -> tuple[str, list[Any]]:
     if not equals or not key.strip() or not listed.strip():
         raise UsageError("is not of the form key=values.", key=f'"{text}"', remedy=_EXAMPLE)
     match = _RANGE.fullmatch(listed)
-    if match is None and re.match(rf"\s*{NUMBER}[^,]*\.\.", listed):
+    if match is None and re.match(rf"\s*{NUMBER}[^,]*(\.\.|:)", listed):
         problem = "is no range: that is first..last:step, with one unit at its end."
         raise UsageError(problem, key=f'"{text}"', remedy=_EXAMPLE)
     return key.strip(), _steps(match, text) if match else _listed(listed)

@@ -51,7 +51,7 @@ def test_lists_and_ranges_with_units(text, values):
     [
         *("impact.angle", "impact.angle=", "x=10..60:0deg", "x=60..10:5deg"),
         *("x=15..60", "x=15..60deg", "x=15deg..60deg:5deg", "x=15-60..70"),
-        *("x=20...60:5deg", "x=20.. .60:5deg.", "x=0...5:0.1"),
+        *("x=20...60:5deg", "x=20.. .60:5deg.", "x=0...5:0.1", "x=0:0.6:5", "x=10:5:60deg"),
     ],
 )
 def test_what_names_no_values_is_refused(text):
