@@ -133,7 +133,7 @@ def sweep(
             done = run_jobs(jobs, place / STORE, meter, engine)
             results = Results(vary, tuple(row_of(case, done.get(case.name)) for case in every))
             if out is not None:
-                publish_sweep(results, scene.title, line, place, columns, cases_digest(scene, vary, fidelity))
+                publish_sweep(results, scene.title, line, place, columns, cases_digest(every, fidelity))
     return results
 
 
@@ -161,9 +161,10 @@ def _without_heat(scene: Scene) -> dict[str, str]:
     return {key.name: why for key in KEYS if key.path[0] == "heat"}
 
 
-def cases_digest(scene: Scene, vary: Mapping[str, Sequence[Any]], fidelity: str) -> str:
-    """Return the SHA-256 of what a sweep computes: scene, values and fidelity."""
-    return checksum({"scene": digest(scene), "vary": dict(vary), "fidelity": fidelity})
+def cases_digest(every: Sequence[Variation], fidelity: str) -> str:
+    """Return the SHA-256 of what a sweep computes: its scenes, however their numbers were written."""
+    scenes = [str(case.values) if case.scene is None else digest(case.scene) for case in every]
+    return checksum({"scenes": scenes, "fidelity": fidelity})
 
 
 def publish_sweep(

@@ -199,7 +199,7 @@ def no_rest() -> SceneError:
     return SceneError(
         "deforms as a whole: the fine zone of its contact leaves no part that could move as one rigid body.",
         key="projectile",
-        remedy='Let it vibrate: effects = ["auto", "vibration"].',
+        remedy='A body that vibrates is computed: effects = ["auto", "vibration"].',
     )
 
 

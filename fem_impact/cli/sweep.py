@@ -35,9 +35,9 @@ def sweep(options: Options) -> int:
     vary = dict(pairs)
     _refuse_both(read_changes(options.changes), vary)
     scene = asked_scene(options)
-    cases(scene, vary)  # refuses what cannot run before a directory is made
+    every = cases(scene, vary)  # refuses what cannot run before a directory is made
     fidelity, workers = options.fidelity or FIDELITY, options.workers or cores()
-    about = cases_digest(scene, vary, fidelity)
+    about = cases_digest(every, fidelity)
     out = checked_out(options.out or Path("results") / f"sweep-{scene.id}-{about[:8]}")
     lent = on_scheduler(options.scheduler) if options.scheduler else nullcontext()
     with told_kept(out, options), closing(chosen_meter(options)) as meter, lent as executor:

@@ -8,7 +8,7 @@ from fem_impact.case.case import Case
 from fem_impact.modal.flat import CELLS, LAW
 from fem_impact.modal.motion import AT, SITE, ModalState, Touched
 from fem_impact.modal.rod import ModalRod
-from fem_impact.modal.sites import skin
+from fem_impact.modal.sites import arc_end, skin
 from fem_impact.modal.touch import LAID
 from fem_impact.physics.contact import FLAT, ContactPair, impedance
 from fem_impact.physics.contact_law import FULLY_PLASTIC, REPRESENTATIVE, FlowLaw, flow_law
@@ -27,32 +27,43 @@ def lay_flat(
 
     It is where its middle lies within `FLAT` depths of the contact of its end (``pair``), over a surface that
     neither end has touched, and it rises by less than `LEANS` of its length; of two parts that meet there the
-    one that leans less. A flank not ``longest``, m, and near its end presses into the groove of that.
-    Returns both sites and the stiffness of the whole, N/m; None where nothing is.
+    one that leans less. A flank not ``longest``, m, and near its end presses into the groove of that; one
+    that lies within the round contact beside it is part of that. Returns both sites and the stiffness of the
+    whole, N/m; None where nothing is.
     """
-    count, free = len(rod.sites.along_t), held.flats.law[:, LAW.known] == 0.0
-    turn, depth = float(now.rigid[AT.turn]), pair.estimate.depth
-    low, place = height_of(rod, now, s), np.array(skin(rod.sites, s, turn))
+    sites, free = rod.sites, held.flats.law[:, LAW.known] == 0.0
+    count, depth, low = len(sites.along_t), pair.estimate.depth, height_of(rod, now, s)
 
-    def lean(other: int) -> float:
-        """Return how far the part to another site rises over its length."""
-        part = float(np.linalg.norm(np.array(skin(rod.sites, other, turn)) - place))
-        return (height_of(rod, now, other) - low) / part
+    def part(side: int, other: int) -> tuple[float, float, list[tuple[float, float]]]:
+        """Return how far the part between two rounds rises over its length, its far end's height, its ends.
 
-    for other in sorted({(s + 1) % count, (s - 1) % count} - {s}, key=lean):
+        It begins where the round that touches ends, which is not where a wide nose touches.
+        """
+        if side:
+            near = arc_end(sites, sites.begin[s + 1] - 1, sites.high)
+            far = arc_end(sites, sites.begin[other], sites.low)
+        else:
+            near = arc_end(sites, sites.begin[s], sites.low)
+            far = arc_end(sites, sites.begin[other + 1] - 1, sites.high)
+        heights = [raised(rod, now, k, place) for k, place in ((s, near), (other, far))]
+        length = max(dist(near, far), 1e-12)  # of rounds that meet in a corner
+        return (heights[1] - heights[0]) / length, heights[1], [in_body(case, *near), in_body(case, *far)]
+
+    beside = [(side, other) for side, other in enumerate(((s - 1) % count, (s + 1) % count)) if other != s]
+    for (lean, height, ends), other in sorted((part(*one), one[1]) for one in beside):
         if held.site[s, SITE.known] or held.site[other, SITE.known] or not free.any():
             continue
-        gap = height_of(rod, now, other) - low
-        ends = [in_body(case, *skin(rod.sites, k, turn)) for k in (s, other)]
-        short = not _is_face(ends) and dist(*ends) <= min(longest, NEAR * sqrt(rod.k2))
-        if not short and lean(other) < LEANS and gap <= 2 * FLAT * depth and _is_straight(case, ends, depth):
+        gap = height - low
+        within = max(min(longest, NEAR * sqrt(rod.k2)), sqrt(2 * _roundness(rod, s) * depth))
+        short = not _is_face(ends) and dist(*ends) <= within
+        if not short and lean < LEANS and gap <= 2 * FLAT * depth and _is_straight(case, ends, depth):
             f = int(np.argmax(free))
             held.flats.ends[f] = s, other
             flow = flow_law(pair, case.slots.rod_law, case.slots.barrier_law)
             if isinstance(case.bodies.body, Faceted):
                 _set_facet(case, held, f, ends, pair, flow)
             elif _is_face(ends):
-                _set_face(case, held, f, ends, pair, flow, _roundness(rod, s, turn))
+                _set_face(case, held, f, ends, pair, flow, _roundness(rod, s))
             else:
                 _set_side(case, held, f, ends, pair, flow)
             for k in (s, other):
@@ -71,8 +82,12 @@ def in_body(case: Case, t: float, n: float) -> tuple[float, float]:
 
 def height_of(rod: ModalRod, now: ModalState, s: int) -> float:
     """Return the height, m, of what is lowest of a site over the mass centre."""
-    turn = float(now.rigid[AT.turn])
-    t, n = skin(rod.sites, s, turn)
+    return raised(rod, now, s, skin(rod.sites, s, float(now.rigid[AT.turn])))
+
+
+def raised(rod: ModalRod, now: ModalState, s: int, place: tuple[float, float]) -> float:
+    """Return the height, m, over the mass centre of a place (t, n), m, that moves as a site does."""
+    turn, (t, n) = float(now.rigid[AT.turn]), place
     t, n = t + rod.sites.along_t[s] @ now.q, n + rod.sites.along_n[s] @ now.q
     return float(cos(turn) * n - sin(turn) * t)
 
@@ -83,7 +98,7 @@ def flexibility(case: Case) -> float:
     return (1 - pair.barrier.nu**2) / pair.barrier.E if pair.compliant else 0.0
 
 
-def _roundness(rod: ModalRod, s: int, turn: float) -> float:
+def _roundness(rod: ModalRod, s: int) -> float:
     """Return the radius, m, of the edge at a site; 0 of a corner."""
     begin, end = rod.sites.begin[s], rod.sites.begin[s + 1]
     return float(rod.sites.radius[begin:end].min())

@@ -97,6 +97,12 @@ def skin(sites: Sites, s: int, turn: float) -> tuple[float, float]:
     return float(sites.t[a] + r * np.sin(turned)), float(sites.n[a] - r * np.cos(turned))
 
 
+def arc_end(sites: Sites, a: int, turns: Array) -> tuple[float, float]:
+    """Return the place (t, n), m, as `skin` does, where an arc ends: ``turns`` (a,), rad, are low or high."""
+    r, turn = sites.radius[a], turns[a]
+    return float(sites.t[a] + r * np.sin(turn)), float(sites.n[a] - r * np.cos(turn))
+
+
 def lowest_place(sites: Sites, turn: float, q: Array) -> tuple[float, float]:
     """Return (t, n), m, from the mass centre to what is lowest of a rod at a turn, rad.
 

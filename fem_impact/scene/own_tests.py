@@ -275,7 +275,8 @@ def _read_row(row: Mapping[str, str], scatter: str, place: str, others: Collecti
     shared = factor * finite(f"{place}, column systematic", row.get("systematic") or "0")
     if shared < 0 or (shared == 0 and tests == 1):
         bound = "be above 0: one test has no other uncertainty" if tests == 1 else "not be below 0"
-        raise ResultError(f"{place}, column systematic: {row.get('systematic') or '0'} must {bound}.")
+        stated = row.get("systematic") or "its standard uncertainty, which is not stated,"
+        raise ResultError(f"{place}, column systematic: {stated} must {bound}.")
     sd = spread * tests**0.5 if scatter == "standard_error" else spread
     columns = (column for column, cell in row.items() if column.startswith(CORRELATION) and cell)
     together = {c.removeprefix(CORRELATION): finite(f"{place}, column {c}", row[c]) for c in columns}

@@ -48,7 +48,12 @@ class UserTable:
             cells = stated if any(stated[len(self.names) :]) else stated[: len(self.names)]
             if len(cells) != len(self.names):
                 counts = f"line {line} has {len(cells)} cells, the header {len(self.names)}"
-                raise ResultError(f"{self.path}: {counts}. Give each line one cell a column.")
+                remedy = "Give each line one cell a column."
+                if len(cells) > len(self.names):
+                    remedy += (
+                        " Numbers with decimal commas need semicolons between the cells, from the header on."
+                    )
+                raise ResultError(f"{self.path}: {counts}. {remedy}")
             yield line, dict(zip(self.names, cells, strict=True))
 
     def column(self, name: str) -> list[tuple[str, str]]:

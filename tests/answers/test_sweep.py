@@ -510,6 +510,15 @@ def test_the_same_sweep_goes_on_in_its_directory_after_a_kill_and_with_other_col
     assert not earlier_runs(Path("here"))
 
 
+def test_the_sweep_of_a_command_goes_on_in_python_however_its_numbers_are_written(cli):
+    line = ("sweep", "t5b", "--vary", "surface.friction=0..0.4:0.2", "--fidelity", "rigid", "--out", "here")
+    assert cli(*line)[0] == 0
+    sweep(load("t5b"), {"surface.friction": [0, 0.2, 0.4]}, "rigid", "here")
+    assert not earlier_runs(Path("here"))
+    sweep(load("t5b"), {"surface.friction": [0, 0.2, 0.5]}, "rigid", "here")
+    assert len(earlier_runs(Path("here"))) == 1
+
+
 def raises(error):
     """A function that raises an error."""
 

@@ -182,7 +182,10 @@ def test_the_command_says_first_that_the_reduced_model_refutes_little(tmp_path, 
     [
         ("quantity,mean,sd,n\npeak_force_kN,9,1,4\n", "not a quantity of tests. Did you mean peak_force_N?"),
         (MU.replace("0.015", "-0.015"), "column systematic"),
-        ("quantity,mean,sd,n\nmu,0.3,,1\n", "must be above 0: one test has no other"),
+        (
+            "quantity,mean,sd,n\nmu,0.3,,1\n",
+            "standard uncertainty, which is not stated, must be above 0: one test has no other",
+        ),
         ("quantity,mean,sd,n,r_e\nmu,0.3,0.1,4,0.5\n", "column r_e: 0.5 is none"),
         ("quantity,mean,sd,n,r_e,r_mu\ne,0.3,0.1,4,,0.5\nmu,0.3,0.1,4,-0.5,\n", "0.5 in the line of e, -0.5"),
         (

@@ -11,7 +11,7 @@ from fem_impact.outcome.record import Outcome
 LEDGER = 1e-4  # of E_0
 ROUND_OFF = 1e-9  # of E_0
 LOWEST_E, HIGHEST_E = 0.0, 1.05  # kinematic restitution that needs no explanation
-STRIKES_AGAIN = "strikes again later"
+STRIKES_AGAIN = "strikes again later", "other end strikes"
 UNRESOLVED = "the contact was not resolved"
 
 
@@ -29,7 +29,7 @@ def _of_finished(outcome: Outcome) -> Iterator[str]:
     if abs(outcome.energy.residual) > LEDGER:
         yield f"the ledger misses {outcome.energy.residual:.1e} of E_0"
     away = outcome.motion.V_n - outcome.barrier.V_bn
-    if away <= 0 and STRIKES_AGAIN not in outcome.validity.stopped_because:
+    if away <= 0 and not any(words in outcome.validity.stopped_because for words in STRIKES_AGAIN):
         yield f"its mass centre goes into the barrier at {-away:.3g} m/s"
     yield from _of_resolved(outcome) if is_resolved(outcome) else _of_unresolved(outcome)
 

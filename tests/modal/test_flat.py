@@ -138,3 +138,14 @@ def test_the_face_of_the_measured_rod_rebounds_as_by_finite_elements():
     assert "a dashpot for the waves that it sends" in " ".join(texts(outcome.validity.limitations, "model"))
     inclined = texts(simulate(scene_of(45), "modal").validity.limitations, "model")
     assert "lands flat" not in " ".join(inclined)
+
+
+@pytest.mark.parametrize("angle", [5, 15, 30, 40])
+def test_a_round_nose_that_sinks_deep_into_rubber_stays_one(angle):
+    """Its arc and the short cone beside it lay within the dent, and landed flat: e fell from .83 to .03."""
+    nose = {"projectile.tip": "A", "projectile.tip_radius": "10 mm", "projectile.diameter": "20 mm"}
+    soft = {"barrier.material": "natural-rubber", "surface.state": "custom", "surface.friction": 0.5}
+    _, found = land(angle, nose, soft | {"surface.source": "assumed"}, v_n=-1.93)
+    assert found.finished and not found.laid
+    scene = scene_of(angle, nose, soft | {"surface.source": "assumed"}, v_n=-1.93)
+    assert 0.65 < simulate(scene, "modal").restitution.edge.e < 0.85

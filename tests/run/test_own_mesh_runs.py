@@ -163,7 +163,7 @@ def test_a_meshed_plate_always_vibrates(tmp_path):
     case = Case.of(scene(own, ["auto", "barrier-elastic"]))
     assert case.slots.vibrating
     assert next(choice.number for choice in case.choices if choice.name == "vibration") is None
-    with pytest.raises(SceneError, match=r"deforms as a whole.* Let it vibrate: effects"):
+    with pytest.raises(SceneError, match=r"deforms as a whole.* A body that vibrates is computed: effects"):
         Case.of(scene(own, ["auto", "-vibration", "barrier-elastic"]))
 
 

@@ -32,6 +32,7 @@ FIDELITIES = ("auto", "modal", "solid")
 ANGLES = tuple(np.radians(np.arange(5.0, 81.0, 5.0)))
 """Inclinations among which the worst one is looked for, rad."""
 WIDER = "Finite elements bear that out less narrowly: {}."
+NO_SOLID = "Finite elements have no answer here"
 LACKING = "There is no reduced model of {}: finite elements alone answer."
 
 
@@ -107,6 +108,8 @@ class Verdict:
         margin, enough = abs(self.tolerance - size), size + band
         digits = digits_apart(margin, band)
         missing = f"an error below {plain(margin, digits)} instead of {plain(band, digits)}"
+        if not self.more and any(note.startswith(NO_SOLID) for note in self.notes):
+            missing += ", which no model tells here"
         if enough >= 1.0:  # no change that may be neglected
             return f"{missing}."
         wider = plain(enough, digits_apart(self.tolerance, enough))
@@ -193,7 +196,10 @@ def assess(
         except (SceneError, RunError) as refused:
             if isinstance(refused, SceneError) and (fidelity == "solid" or quick is None):
                 raise
-            solid, sentences = None, [f"Finite elements have no answer here: {refused}"]
+            solid, sentences = (
+                None,
+                [f"{NO_SOLID}, where two runs are needed, with and without vibration: {refused}"],
+            )
             more = with_budget(budget_of(refused))
         effect, used = (solid, "solid") if solid or fidelity == "solid" else (quick, "modal")
         notes += sentences

@@ -48,12 +48,14 @@ def require_closed_form(bodies: Bodies, spec: ModelSpec, fidelity: str) -> None:
         where = _unheld(bodies, spec)
     if not where:
         return
-    other = " or modal" * (fidelity == "solid" and not flows)
+    metals = [*bodies.rod.materials, *(metal for _, metal in bodies.barrier.strata)]
+    lossy = {metal.name: metal for metal in metals if metal.loss_factor}
+    viscous, other = " and ".join(lossy), " or modal" * (fidelity == "solid" and not flows)
     raise SceneError(
-        f"calls for contact-loss, which {where} does not have: an answer without it has e too high by about "
-        f"{number(bodies):.2g}.",
+        f"of {viscous} calls for contact-loss, which {where} does not have: an answer without it has e too "
+        f"high by about {number(bodies):.2g}.",
         key="loss_factor",
-        value=f"{bodies.contact.loss_factor:.3g}",
+        value=", ".join(f"{metal.loss_factor:g}" for metal in lossy.values()),
         remedy=f'Use fidelity rigid{other}, or add "-contact-loss" to effects.',
     )
 

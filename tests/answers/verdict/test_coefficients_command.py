@@ -149,6 +149,7 @@ def test_tables_of_spreadsheets_are_read_as_they_are_saved(cli, camera_file, mar
         ((GOOD[0], "", "4,1.5,-1.5,0.3,-0.4,5"), HEADER, ["line 4, column v_n_m_per_s: 1.5 must be"]),
         ((*GOOD, "4,-1.5,-1.5,-1.6,-0.4,5"), HEADER, ["line 5, column V_n_m_per_s: -1.6 must exceed v_n"]),
         ((*GOOD, "4,-1.5,-1.5"), HEADER, ["line 5 has 3 cells, the header 6"]),
+        ((*GOOD, "4,-1,5,-1,5,0,1,2"), HEADER, ["line 5 has 8 cells", "decimal commas need semicolons"]),
         (GOOD, HEADER.replace("Omega_rad_per_s", "spin"), ["lacks Omega"]),
         (GOOD, HEADER.replace("v_n_m_per_s", "v_n"), ["'v_n' names no unit", "v_n_m_per_s"]),
         (GOOD, HEADER.replace("v_n_m_per_s", "v_n [kn]"), ["'kn' is not a unit of speed", "mm/s"]),

@@ -110,6 +110,8 @@ def test_finite_elements_say_what_they_do_not_hold_and_each_remedy_works(key, va
     tree[section][name] = values[value]
     with pytest.raises(SceneError, match=rf"contact-loss, which {reason}.* does not have.*fidelity rigid"):
         Case.of(read_dict(tree))
+    with pytest.raises(SceneError, match=r'loss_factor = "0.1(, 0.1)?": of .*rubber calls for'):
+        Case.of(read_dict(tree))
     assert Case.of(read_dict(tree), "rigid")
     assert Case.of(read_dict(tree | {"effects": ["auto", "-contact-loss"]}))
 
