@@ -29,6 +29,7 @@ from fem_impact.tables.text import plain, wrapped
 
 DRAWINGS = (".png", ".svg")
 BENDS = "plate-bending"
+CLOSE = 2.0  # factor from its threshold within which the number of an effect that is off is told
 INSIDE = "inside the measured range of speed, angle, rod, steels and surfaces"
 LONG = "--long prints every value with its source, flow stresses, and each effect with its share of run time."
 
@@ -163,12 +164,12 @@ def _short(case: Case, statement: dict[str, Any]) -> str:
     lines += ["", "Barrier and contact", *_wrapped(_contact_lines(case))]
     laws = (f"{place.removesuffix('.material')}: {law}" for place, law in statement["laws"].items())
     lines += ["", "Laws in force", *_wrapped(laws), "", "Effects"]
+    close = [one for one in case.choices if not one.on and _is_close(one)]
     lines += _wrapped(
-        rod.named(f"on  {one.name}{' (forced)' if one.forced else ''}: {_decided(one)}")
-        for one in case.choices
-        if one.on
+        rod.named(f"{'on ' if one.on else 'off'} {one.name}{' (forced)' * one.forced}: {_decided(one)}")
+        for one in (*(one for one in case.choices if one.on), *close)
     )
-    off = [f"{one.name}{' (forced)' if one.forced else ''}" for one in case.choices if not one.on]
+    off = [one.name + " (forced)" * one.forced for one in case.choices if not one.on and one not in close]
     lines += _wrapped([f"off {', '.join(off)}: not called for, or left out by the scene"])
     lines += [*_size_lines(case), *_end_lines(case, statement), ""]
     return "\n".join([*lines, *wrapped(LONG)]) + "\n"
@@ -289,6 +290,12 @@ def _effect_lines(effect: EffectChoice) -> list[str]:
         share = "under 1" if effect.share < 0.005 else f"about {100 * effect.share:.0f}"
         decision += f"; it takes {share} % of the run time"
     return [*wrapped(f"{verdict}: {effect.sentence}", "  ", " " * 4), *wrapped(decision, " " * 8, "")]
+
+
+def _is_close(effect: EffectChoice) -> bool:
+    """Return whether the number that decides on an effect is near its threshold."""
+    number, threshold = effect.number or 0.0, effect.threshold
+    return threshold / CLOSE < number < threshold * CLOSE
 
 
 def _decided(effect: EffectChoice) -> str:

@@ -50,9 +50,7 @@ class UserTable:
                 counts = f"line {line} has {len(cells)} cells, the header {len(self.names)}"
                 remedy = "Give each line one cell a column."
                 if len(cells) > len(self.names):
-                    remedy += (
-                        " Numbers with decimal commas need semicolons between the cells, from the header on."
-                    )
+                    remedy += " Numbers with decimal commas need semicolons between all cells."
                 raise ResultError(f"{self.path}: {counts}. {remedy}")
             yield line, dict(zip(self.names, cells, strict=True))
 

@@ -356,10 +356,10 @@ class LevelProgress:
         spent_s = now() - self.begun
         if spent_s + least_s <= self.limit_s:
             return
-        reason = f"It was given up after {about_s(spent_s)}, as the budget does not hold it: it takes about"
         whole_s = spent_s + left_s
         enough = enough_s(self.used_s, whole_s) if self.duration_s else for_two_s(whole_s)
-        more = f"For it give a budget of {enough} s."
+        level, more = "It", f"For it give a budget of {enough} s."
         if not self.duration_s:
-            more = f"The coarsest level gave no number. {FOR_TWO.format(enough)}"
-        raise OverBudgetError(f"{reason} {about_s(whole_s)}. {more}", enough)
+            level, more = "The coarsest level", f"It gave no number. {FOR_TWO.format(enough)}"
+        given_up = f"{level} was given up after {about_s(spent_s)}, as the budget does not hold it"
+        raise OverBudgetError(f"{given_up}: it takes about {about_s(whole_s)}. {more}", enough)

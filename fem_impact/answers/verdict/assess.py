@@ -196,10 +196,8 @@ def assess(
         except (SceneError, RunError) as refused:
             if isinstance(refused, SceneError) and (fidelity == "solid" or quick is None):
                 raise
-            solid, sentences = (
-                None,
-                [f"{NO_SOLID}, where two runs are needed, with and without vibration: {refused}"],
-            )
+            said = f"{NO_SOLID}, where two runs are needed, with and without vibration: {refused}"
+            solid, sentences = None, [said]
             more = with_budget(budget_of(refused))
         effect, used = (solid, "solid") if solid or fidelity == "solid" else (quick, "modal")
         notes += sentences
