@@ -33,6 +33,7 @@ def test_a_short_rod_turns_back_before_the_wave_has_its_full_stress():
     )
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("fidelity", ["rigid", "modal"])
 def test_models_without_a_mesh_tell_it(fidelity):
     changed = {

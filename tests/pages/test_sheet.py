@@ -40,6 +40,7 @@ def test_it_states_numbers_with_errors_sources_what_is_left_out_and_where_to_sig
     assert "____" in write_sheet(run).read_text(encoding="utf-8")
 
 
+@pytest.mark.long
 def test_it_states_the_verdict_that_lies_in_the_folder_and_the_criterion(run):
     scene = read_toml(run / "scene.toml")
     told = document(assess(scene, "modal", 0.04, of="friction"))

@@ -42,6 +42,7 @@ def scene(path, faces, friction=0.6, barrier="barrier-rigid", angle="30 deg", **
     )
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("barrier", "more"), [("barrier-rigid", {}), ("barrier-elastic", {}), ("barrier-rigid", {"mass": "5 kg"})]
 )

@@ -40,6 +40,7 @@ def test_a_shipped_scene_runs_by_its_modes(name):
     assert outcome.validity.finished and abs(outcome.energy.residual) < 1e-4
 
 
+@pytest.mark.long
 def test_the_metals_differ_in_what_yields():
     """Soft aluminium takes the plastic work itself; a tungsten alloy leaves nearly all of it to the plate."""
     soft, hard = (simulate(load(name), "modal").energy for name in ("aluminium-rod", "tungsten-rod"))

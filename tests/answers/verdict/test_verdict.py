@@ -413,6 +413,7 @@ def test_a_wider_error_of_meshes_that_agree_does_not_replace_the_reduced_models(
     assert any("bear that out less narrowly" in note for note in found.notes) == (by == "modal")
 
 
+@pytest.mark.long
 def test_the_finest_two_levels_count_and_the_change_before(monkeypatch):
     asked = meshed(monkeypatch, [-0.04, 0.0, 0.001, 0.001])
     found = assess(load("t5b"), "solid", tolerance=0.02, budget_s=1e5)

@@ -94,6 +94,7 @@ print(*sys.modules)
 """
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("effects", "imported"),
     [

@@ -185,6 +185,7 @@ def test_energy_out_of_nothing_is_seen(column, words, run, tmp_path):
     assert fault.startswith(words)
 
 
+@pytest.mark.long
 def test_the_command_prints_a_table_and_keeps_what_it_computed(cli):
     words = ("stress", "--only", "six-elements", "--out", "here", "--workers", "1")
     code, out, err = cli(*words)

@@ -55,6 +55,7 @@ def test_other_bars_and_angles(changes):
     assert found[SPRINGS].computed == pytest.approx(found[SPRINGS].reference, abs=2e-3)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("changes", [{"angle": "45 deg"}, {"angle": "60 deg", "f": 0.2}, {"angle": "80 deg"}])
 def test_steep_bars_keep_falling_and_turn(changes):
     found = rebounds(cells=4, **changes)

@@ -228,6 +228,7 @@ def test_vibration_that_falls_is_explained_by_its_later_contacts(tmp_path, drawn
     assert "largest at gamma 57" in said and "beyond it stays within the bands" in said
 
 
+@pytest.mark.long
 def test_a_failed_run_leaves_a_gap_with_its_reason(tmp_path, drawn):
     request = Request(tmp_path, quick=True)
     results = computed(request)
