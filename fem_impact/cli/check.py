@@ -164,12 +164,12 @@ def _short(case: Case, statement: dict[str, Any]) -> str:
     lines += ["", "Barrier and contact", *_wrapped(_contact_lines(case))]
     laws = (f"{place.removesuffix('.material')}: {law}" for place, law in statement["laws"].items())
     lines += ["", "Laws in force", *_wrapped(laws), "", "Effects"]
-    close = [one for one in case.choices if not one.on and _is_close(one)]
     lines += _wrapped(
-        rod.named(f"{'on ' if one.on else 'off'} {one.name}{' (forced)' * one.forced}: {_decided(one)}")
-        for one in (*(one for one in case.choices if one.on), *close)
+        rod.named(f"on  {one.name}{' (forced)' if one.forced else ''}: {_decided(one)}")
+        for one in case.choices
+        if one.on
     )
-    off = [one.name + " (forced)" * one.forced for one in case.choices if not one.on and one not in close]
+    off = [_off(one) for one in case.choices if not one.on]
     lines += _wrapped([f"off {', '.join(off)}: not called for, or left out by the scene"])
     lines += [*_size_lines(case), *_end_lines(case, statement), ""]
     return "\n".join([*lines, *wrapped(LONG)]) + "\n"
@@ -292,10 +292,12 @@ def _effect_lines(effect: EffectChoice) -> list[str]:
     return [*wrapped(f"{verdict}: {effect.sentence}", "  ", " " * 4), *wrapped(decision, " " * 8, "")]
 
 
-def _is_close(effect: EffectChoice) -> bool:
-    """Return whether the number that decides on an effect is near its threshold."""
+def _off(effect: EffectChoice) -> str:
+    """Return the name of an effect that is off, with the number that decides on it where that is close."""
     number, threshold = effect.number or 0.0, effect.threshold
-    return threshold / CLOSE < number < threshold * CLOSE
+    close = threshold / CLOSE < number < threshold * CLOSE
+    told = f" ({number:.2g}, threshold {threshold:g})" if close else ""
+    return f"{effect.name}{' (forced)' if effect.forced else ''}{told}"
 
 
 def _decided(effect: EffectChoice) -> str:

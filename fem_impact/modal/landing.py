@@ -8,7 +8,7 @@ from fem_impact.case.case import Case
 from fem_impact.modal.flat import CELLS, LAW
 from fem_impact.modal.motion import AT, SITE, ModalState, Touched
 from fem_impact.modal.rod import ModalRod
-from fem_impact.modal.sites import arc_end, skin
+from fem_impact.modal.sites import on_arc, skin
 from fem_impact.modal.touch import LAID
 from fem_impact.physics.contact import FLAT, ContactPair, impedance
 from fem_impact.physics.contact_law import FULLY_PLASTIC, REPRESENTATIVE, FlowLaw, flow_law
@@ -40,11 +40,10 @@ def lay_flat(
         It begins where the round that touches ends, which is not where a wide nose touches.
         """
         if side:
-            near = arc_end(sites, sites.begin[s + 1] - 1, sites.high)
-            far = arc_end(sites, sites.begin[other], sites.low)
+            a, b, ends, begins = sites.begin[s + 1] - 1, sites.begin[other], sites.high, sites.low
         else:
-            near = arc_end(sites, sites.begin[s], sites.low)
-            far = arc_end(sites, sites.begin[other + 1] - 1, sites.high)
+            a, b, ends, begins = sites.begin[s], sites.begin[other + 1] - 1, sites.low, sites.high
+        near, far = on_arc(sites, a, ends[a]), on_arc(sites, b, begins[b])
         heights = [raised(rod, now, k, place) for k, place in ((s, near), (other, far))]
         length = max(dist(near, far), 1e-12)  # of rounds that meet in a corner
         return (heights[1] - heights[0]) / length, heights[1], [in_body(case, *near), in_body(case, *far)]

@@ -93,14 +93,13 @@ def lowest(sites: Sites, s: int, turn: float) -> tuple[float, int]:
 def skin(sites: Sites, s: int, turn: float) -> tuple[float, float]:
     """Return the place (t, n), m, from the mass centre at first contact of a site's skin at a turn, rad."""
     turned, a = lowest(sites, s, turn)
+    return on_arc(sites, a, turned)
+
+
+def on_arc(sites: Sites, a: int, turned: float) -> tuple[float, float]:
+    """Return the place (t, n), m, as `skin` does, of an arc where it is lowest at a turn, rad, of its own."""
     r = sites.radius[a]
     return float(sites.t[a] + r * np.sin(turned)), float(sites.n[a] - r * np.cos(turned))
-
-
-def arc_end(sites: Sites, a: int, turns: Array) -> tuple[float, float]:
-    """Return the place (t, n), m, as `skin` does, where an arc ends: ``turns`` (a,), rad, are low or high."""
-    r, turn = sites.radius[a], turns[a]
-    return float(sites.t[a] + r * np.sin(turn)), float(sites.n[a] - r * np.cos(turn))
 
 
 def lowest_place(sites: Sites, turn: float, q: Array) -> tuple[float, float]:

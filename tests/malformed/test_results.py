@@ -20,7 +20,7 @@ from fem_impact.outcome.record import Outcome
 from fem_impact.scene.shipped import load
 from fem_impact.tables.table import Table
 
-COUNTS = [pytest.param(8, id="few"), pytest.param(1500, id="many", marks=pytest.mark.slow)]
+COUNTS = [pytest.param(20, id="few"), pytest.param(1500, id="many", marks=pytest.mark.slow)]
 SEED = 20
 HOSTILE = (
     *(None, True, -1, 0, 2**63, 1e308, -1e-300, "", "abc", "\x1b[31m\u202e", "../x", [], {}, [[]], [None]),
@@ -121,7 +121,7 @@ def test_forged_outcomes(place, count):
         check_answer("forged outcomes", {5}, "report", "run")
 
 
-@pytest.mark.parametrize("count", [4, pytest.param(500, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [8, pytest.param(500, marks=pytest.mark.slow)])
 def test_forged_studies(place, count):
     chance, place = np.random.default_rng(SEED), Path("study")
     whole = write_full_study(place)

@@ -9,7 +9,7 @@ import numpy as np
 from fem_impact.answers.refine.forecast import budget_of
 from fem_impact.answers.refine.level import LevelRun
 from fem_impact.answers.verdict import vibration
-from fem_impact.answers.verdict.levels import Means, Tell, by_levels, finite_elements, with_budget
+from fem_impact.answers.verdict.levels import NO_ANSWER, Means, Tell, by_levels, finite_elements, with_budget
 from fem_impact.answers.verdict.screening import Screening, screening
 from fem_impact.answers.verdict.vibration import CHANGED, inclined, twins
 from fem_impact.case.case import Case
@@ -32,7 +32,6 @@ FIDELITIES = ("auto", "modal", "solid")
 ANGLES = tuple(np.radians(np.arange(5.0, 81.0, 5.0)))
 """Inclinations among which the worst one is looked for, rad."""
 WIDER = "Finite elements bear that out less narrowly: {}."
-NO_SOLID = "Finite elements have no answer here"
 LACKING = "There is no reduced model of {}: finite elements alone answer."
 
 
@@ -108,7 +107,7 @@ class Verdict:
         margin, enough = abs(self.tolerance - size), size + band
         digits = digits_apart(margin, band)
         missing = f"an error below {plain(margin, digits)} instead of {plain(band, digits)}"
-        if not self.more and any(note.startswith(NO_SOLID) for note in self.notes):
+        if not self.more and any(note.startswith(NO_ANSWER) for note in self.notes):
             missing += ", which no model tells here"
         if enough >= 1.0:  # no change that may be neglected
             return f"{missing}."
@@ -196,7 +195,7 @@ def assess(
         except (SceneError, RunError) as refused:
             if isinstance(refused, SceneError) and (fidelity == "solid" or quick is None):
                 raise
-            said = f"{NO_SOLID}, where two runs are needed, with and without vibration: {refused}"
+            said = f"{NO_ANSWER}, where two runs are needed, with and without vibration: {refused}"
             solid, sentences = None, [said]
             more = with_budget(budget_of(refused))
         effect, used = (solid, "solid") if solid or fidelity == "solid" else (quick, "modal")

@@ -115,6 +115,7 @@ def by_levels(
     return estimated, *_open(levels, over, before_s, needed)
 
 
+NO_ANSWER = "Finite elements have no answer here"
 STOPPED = "It was stopped by hand after {} levels of finite elements; those count."
 
 
@@ -130,7 +131,7 @@ def _open(levels: LevelChain, over: float | None, before_s: float, needed: int) 
         return [note], with_budget(enough)
     ends = [one.validity for one in levels.done[-1].outcomes if not one.validity.finished]
     if ends:  # as it would on finer meshes: the rod's tail strikes, or it touches for too long
-        return [f"Finite elements have no answer here: {ends[0].stopped_because}"], {}
+        return [f"{NO_ANSWER}: {ends[0].stopped_because}"], {}
     nothing = "The last level of finite elements does not resolve the contact."
     if len(levels.done) < LEAST_LEVELS:
         nothing = "One level of finite elements alone does not tell its error."

@@ -18,7 +18,15 @@ from fem_impact.answers.refine.forecast import budget_of
 from fem_impact.answers.validate import FRICTION, Ends, at_place, interval_of
 from fem_impact.answers.verdict.assess import BUDGET, LACKING, check_means
 from fem_impact.answers.verdict.criteria import Bound, Criterion
-from fem_impact.answers.verdict.levels import Means, Tell, by_levels, finite_elements, next_step, with_budget
+from fem_impact.answers.verdict.levels import (
+    NO_ANSWER,
+    Means,
+    Tell,
+    by_levels,
+    finite_elements,
+    next_step,
+    with_budget,
+)
 from fem_impact.answers.verdict.sentences import case_sentence, never_covered
 from fem_impact.answers.verdict.vibration import Answer
 from fem_impact.case.case import Case
@@ -258,7 +266,7 @@ def _by_solids(
             told = tell, steps, before, criterion.least_levels
             bound, said, more = by_levels(pair, criterion.solid, as_text, limit, left, *told)
         except (SceneError, RunError) as refused:
-            bound, said = None, [f"Finite elements have no answer here: {refused}"]
+            bound, said = None, [f"{NO_ANSWER}: {refused}"]
             more = with_budget(budget_of(refused))
         notes += said
         solids |= {} if bound is None else {place: bound}
