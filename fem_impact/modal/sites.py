@@ -39,7 +39,8 @@ def sites_of(
     along_t, along_n : (s, k) displacement of each curve by each mode, kg^-1/2, in the frame of that rod
     """
     side, alpha = -1.0 if angle < 0 else 1.0, abs(angle)
-    x, z, radius, low, high, curve = np.array(rounds).T
+    # each contiguous: the kernels would be compiled once more for strided ones
+    x, z, radius, low, high, curve = np.ascontiguousarray(np.array(rounds).T)
     t, n = rotated(alpha, x - centre[0] * side, z - centre[1])
     if side > 0:
         low, high = low - alpha, high - alpha

@@ -8,6 +8,7 @@ import pytest
 
 from fem_impact.case.case import Case
 from fem_impact.modal.impact import Arrival, solve
+from fem_impact.modal.march import march
 from fem_impact.modal.rod import modal_rod
 from fem_impact.modal.sites import lowest_place
 from fem_impact.run.modal import closed
@@ -156,3 +157,10 @@ def test_the_lowest_place_of_a_rod_moves_with_its_modes():
     bent = lowest_place(rod.sites, 0.0, np.eye(len(rod.omega))[0] * 1e-6)
     assert still == pytest.approx(rod.arm)
     assert bent[1] - still[1] == pytest.approx(1e-6 * rod.sites.along_n[rod.first, 0])
+
+
+def test_one_compiled_march_serves_rods_inclined_either_way():
+    """It takes half a minute to compile, so that arrays of another layout would cost a first run as much."""
+    for angle in ("45 deg", "-45 deg"):
+        follow({"impact.angle": angle}, ELASTIC)
+    assert len(march.signatures) == 1
