@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from fem_impact.answers.refine.level_meshes import LevelMeshes
-from fem_impact.answers.simulate import compiled
+from fem_impact.answers.simulate import compiled, refused_by
 from fem_impact.answers.verdict.screening import screening
 from fem_impact.case.case import Case
 from fem_impact.case.cells import ADVISED, ERROR, advice, contact_radius, expected_cells, kind
@@ -16,7 +16,7 @@ from fem_impact.cli.paths import shown_path
 from fem_impact.cli.scene_options import asked_scene, say_kept
 from fem_impact.cli.statement import statement_of
 from fem_impact.cli.terminal import headed, limitation_lines, print_json, size_text
-from fem_impact.errors import UsageError
+from fem_impact.errors import SceneError, UsageError
 from fem_impact.figures.outline import drawn
 from fem_impact.outcome.groups import EffectChoice, texts
 from fem_impact.pages.drawing import draw_projectile
@@ -53,7 +53,7 @@ def check(options: Options) -> int:
     if drawing is not None and drawing.suffix not in DRAWINGS:
         problem, remedy = "is no picture that can be drawn.", "Name a file such as projectile.svg or .png."
         raise UsageError(problem, key="--drawing", value=str(drawing), remedy=remedy)
-    case = compiled(asked_scene(options), "solid")
+    case = _meshed(asked_scene(options))
     tests = _tests_lines(case.scene)  # before the rest: a file of tests that cannot be read is refused
     say_kept(case.scene, options)
     if drawing:
@@ -67,6 +67,19 @@ def check(options: Options) -> int:
         sys.stdout.write("".join(f"{line}\n" for line in tests))
         sys.stdout.write(f"drawing: {drawing}\n" if drawing else "")
     return 0
+
+
+def _meshed(scene: Scene) -> Case:
+    """Return the case for finite elements (SceneError: it is refused; the models that take it are named)."""
+    try:
+        return compiled(scene, "solid")
+    except SceneError as error:
+        able = [f"--fidelity {name}" for name in ("modal", "rigid") if not refused_by(scene, name)]
+        if not able:
+            raise
+        others = f"{' and '.join(able)} take{'s' * (len(able) == 1)} the scene as it is."
+        remedy, key, value = f"{error.remedy} {others}".strip(), error.key, error.value
+        raise SceneError(error.problem, key=key, value=value, remedy=remedy, source=error.source) from None
 
 
 def _tests_lines(scene: Scene) -> list[str]:

@@ -136,6 +136,12 @@ def test_check_tells_which_fidelities_answer(cli):
     assert "valid for --fidelity solid; its digest:" in said
 
 
+def test_a_scene_that_has_no_mesh_is_refused_with_the_fidelities_that_take_it(cli):
+    code, _, err = cli("check", "t5b", "--set", "accuracy.tip_size=0.0005 mm")
+    assert code == 3
+    assert err.rstrip().endswith("--fidelity modal and --fidelity rigid take the scene as it is.")
+
+
 def test_check_refuses_a_bad_file_by_name(cli, tmp_path):
     (tmp_path / "mine.toml").write_text("id = 3")
     code, out, err = cli("check", "mine.toml")
