@@ -88,7 +88,7 @@ class Parameter:
         if self.even and number % 2:
             raise SceneError(f"({self.meaning}) must be an even number.", key=self.key, value=value)
         if not self.allows(number):
-            shown = value if self.whole else _Shown(self._refused(number))
+            shown = value if self.whole else Shown(self._refused(number))
             problem = f"({self.meaning}) must be {self.bounds}."
             raise SceneError(problem, key=self.key, value=shown, remedy=self.remedy)
         return int(number) if self.whole else number + 0.0
@@ -111,7 +111,7 @@ class Parameter:
         return float(self.checked(number))
 
 
-class _Shown:
+class Shown:
     """A value shown in a message without quotes, unit and all."""
 
     def __init__(self, text: object) -> None:

@@ -100,6 +100,9 @@ def within(data: Table, key: str, read: Callable[[Any], T], default: Table | Non
     try:
         return read(table)
     except SceneError as error:
+        stated = table.get(error.key) if isinstance(table, Mapping) else None
+        if isinstance(error.value, fields.Shown) and isinstance(stated, str):
+            error.value = fields.Shown(stated)  # as it was written, not in the unit of its bounds
         raise error.under(key) from None
 
 

@@ -24,6 +24,7 @@ MISTAKES = [
     ("impact.v_n", "0 m/s", ["has v_n below 0"]),
     ("impact.v_t", "501 m/s", ["impact.v_t", "at most 500 m/s"]),
     ("impact.angle", "95 deg", ["impact.angle = 95 deg", "at most 90 deg"]),
+    ("impact.angle", "30 rad", ["impact.angle = 30 rad", "at most 90 deg"]),
     ("impact.angle", "-91 deg", ["at least -90 deg"]),
     ("impact.angle", "20 +- 10 deg", ["states an interval", "--uncertain impact.angle=30,50deg"]),
     ("impact.angle", 45, ["impact.angle = 45", "bare number", '"45 deg"', "angle_rad"]),
