@@ -107,7 +107,7 @@ class Verdict:
         margin, enough = abs(self.tolerance - size), size + band
         digits = digits_apart(margin, band)
         missing = f"an error below {plain(margin, digits)} instead of {plain(band, digits)}"
-        if not self.more and any(note.startswith(NO_ANSWER) for note in self.notes):
+        if not self.more:
             missing += ", which no model tells here"
         if enough >= 1.0:  # no change that may be neglected
             return f"{missing}."

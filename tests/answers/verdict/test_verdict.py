@@ -32,6 +32,7 @@ from fem_impact.answers.verdict.vibration import (
     modal_effect,
     modal_pair,
     off_sentence,
+    solid_effect,
     stored,
     twins,
 )
@@ -361,6 +362,22 @@ def test_auto_takes_levels_until_the_answer_is_clear(monkeypatch):
     assert (found.fidelity, found.answer, len(asked)) == ("solid", "yes", 2)
     assert asked[0] > asked[1]
     assert found.here.band < 0.005
+
+
+def test_a_change_is_not_known_better_than_e_itself_because_levels_agree_in_it(short):
+    """A tapered rod told +0.028 +- 0.005 on two levels and +0.006 +- 0.028 on three."""
+
+    def moved(run, shift):
+        edge = replace(run.restitution.edge, e=run.restitution.edge.e + shift)
+        return replace(run, restitution=replace(run.restitution, edge=edge))
+
+    pair = short.here.free, short.here.stiff
+    levels = [
+        extrapolate.MeshRuns(size, [moved(run, shift) for run in pair])
+        for size, shift in ((2e-3, 0.0), (1e-3, 0.1))
+    ]
+    told = extrapolate.level_limits([replace(level, runs=level.runs[:1]) for level in levels])[1]["e_edge"]
+    assert told > 0.1 and solid_effect(levels).band == pytest.approx(vibration.SHARE * told)
 
 
 def test_each_step_says_what_it_found(monkeypatch):
@@ -873,10 +890,12 @@ def test_a_height_with_a_slope_is_known_at_other_inclinations():
 
 
 def test_an_undecided_verdict_says_what_is_missing(short):
-    open_ = replace(short, tolerance=0.02, here=replace(short.here, value=0.01, band=0.03))
+    more = {"budget_s": 90}
+    open_ = replace(short, tolerance=0.02, here=replace(short.here, value=0.01, band=0.03), more=more)
     assert open_.missing.startswith("an error below 0.01 instead of 0.03; or a change of 0.04")
     assert document(open_)["missing"] == open_.missing and document(short)["missing"] is None
-    close = replace(short, tolerance=0.05, here=replace(short.here, value=0.02746, band=0.02323))
+    assert "0.03, which no model tells here; or" in replace(open_, more={}).missing
+    close = replace(open_, tolerance=0.05, here=replace(short.here, value=0.02746, band=0.02323))
     assert "an error below 0.0225 instead of 0.0232; or a change of 0.051" in close.missing
 
 
