@@ -136,8 +136,8 @@ COUNTS = (
     "vibration (by modes and without them) or the energy balance of the finer mesh are off."
 )
 
-# of a number's own half-width, that of its change by vibration on levels has at least: two levels may agree by
-# chance in the change alone. Of 156 changes (e, energy, friction) on 52 levels of 37 drawn scenes (seeds
+# of a number's own half-width, that of its change by vibration on levels has at least: two levels may agree
+# by chance in the change alone. Of 156 changes (e, energy, friction) on 52 levels of 37 drawn scenes (seeds
 # 20262801 and 20262802; one to three levels more) 142 lay within what the changes tell, 152 within this
 SHARE = 0.1
 

@@ -7,6 +7,7 @@ decided runs again with a twin that cannot vibrate, on two levels of meshes more
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from itertools import chain, zip_longest
+from typing import Any
 
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.answers.verdict.assess import BUDGET, TOLERANCE
@@ -71,6 +72,8 @@ def conclude(request: Request, results: Results) -> StudyReport:
         "of the finer run leaves the answer open, and its value counts.",
         f"{judged['not checked']} were decided and not checked: the finer run takes more than "
         f"{MOST[CHECK]:g} s or tells no number.",
+        f"Its change lies within the half-width that was told of {_held(decided, 'modal')} by the reduced "
+        f"model and of {_held(decided, 'solid')} by finite elements.",
     ]
     counted = [(*at, n) for at, n in Counter(tuple(row[name] for name in BY) for row in decided).items()]
     shown, words = [*COLUMNS[:-3]], ["scene", "answer", *COLUMNS[-3:]]
@@ -114,6 +117,12 @@ def _row(scene: DrawnScene, results: Results) -> tuple[Cell, ...]:
     change = run.changes.get("e", (None, None))
     told = v["answer"], v["model"], v["levels"], *change, run.wall_s, run.cpu_s
     return *place, *told, *truth, v["tried"], v["missing"], v["next"]
+
+
+def _held(rows: Sequence[Mapping[str, Any]], by: str) -> str:
+    """Return of how many changes by a model the half-width holds that of the finer run."""
+    told = [row for row in rows if row["by"] == by and row["truth"] is not None]
+    return _share(sum(abs(row["truth"] - row["change"]) <= row["half-width"] for row in told), len(told))
 
 
 def _share(count: int, of: int) -> str:

@@ -1,5 +1,6 @@
 """The study of verdicts: its scenes, which checks follow, what counts as decided and as right."""
 
+import re
 from collections import Counter
 
 from study_fakes import published
@@ -56,3 +57,5 @@ def test_right_is_what_the_finer_run_says_by_its_value(tmp_path):
     assert "decided 4 of 12 (14 to 61 %): 7 undecided, 3 yes, 1 no, 1 no answer" in text
     assert "say the same of 2 of 3 (" in text and "in 1 the half-width of the finer run" in text
     assert "1 were decided and not checked" in text and "no model gives e." in text
+    held = r"told of 1 of 2 \([^)]*\) by the reduced model and of 0 of 1 \([^)]*\) by finite elements"
+    assert re.search(held, text)
