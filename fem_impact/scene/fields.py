@@ -114,11 +114,11 @@ class Parameter:
 class Shown:
     """A value shown in a message without quotes, unit and all."""
 
-    def __init__(self, text: object) -> None:
+    def __init__(self, text: str) -> None:
         self.text = text
 
     def __repr__(self) -> str:
-        return str(self.text)
+        return self.text
 
 
 _STATED = tomllib.loads(files("fem_impact.scene").joinpath("data/numbers.toml").read_text(encoding="utf-8"))

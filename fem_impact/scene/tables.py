@@ -102,7 +102,9 @@ def within(data: Table, key: str, read: Callable[[Any], T], default: Table | Non
     except SceneError as error:
         stated = table.get(error.key) if isinstance(table, Mapping) else None
         if isinstance(error.value, fields.Shown) and isinstance(stated, str):
-            error.value = fields.Shown(stated)  # as it was written, not in the unit of its bounds
+            unit = stated.split()[-1]
+            if unit != error.value.text.split()[-1]:  # as it was written, not in the unit of its bounds
+                error.value = fields.Shown(stated)
         raise error.under(key) from None
 
 

@@ -371,16 +371,16 @@ def test_the_yielding_rods_are_those_that_were_promised():
 BESIDE = RodRun(DroppedRod(length_of(10.0), 5.0, STATES["machined"], yields=True), "pair")
 
 
-def test_levels_that_shift_both_rods_alike_leave_no_band():
+def test_levels_that_shift_both_rods_alike_leave_a_tenth_of_the_band_of_e():
     def row_of(**levels):
         table = table_of({BY_MESHES["machined"]: [BESIDE]}, {BESIDE.name: levels_of(**levels)})
         return (*rods_of(table).itertuples(), table.iloc[0])
 
     rod, row = row_of(e=(0.38, 0.40), e_rigid=(0.28, 0.30))
-    assert rod.error_of_e == pytest.approx(0.10) and rod.error_high == pytest.approx(rod.error_low)
+    half = 0.5 * 0.02 / (2**0.75 - 1)  # three times as wide, as each level runs once, and widened
+    assert rod.error_of_e == pytest.approx(0.10) and 0.6 * half < rod.error_high - rod.error_low < 0.8 * half
     assert row.e_edge == 0.40 and rod.T1_over_tau == pytest.approx(BESIDE.rod.first_period / 1e-4)
     rod, _ = row_of(e=(0.38, 0.40), e_rigid=(0.30, 0.30))
-    half = 0.5 * 0.02 / (2**0.75 - 1)  # three times as wide, as each level runs once
     assert (rod.error_of_e, rod.error_high) == pytest.approx((0.10 + half, 0.10 + 4 * half))
 
 
