@@ -113,6 +113,7 @@ OWN = [
 ]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("cells", "measured"), OWN)
 def test_memory_of_the_modes_of_a_users_mesh(cells, measured, tmp_path):
     planned = Case.of(half_box(tmp_path, *cells))

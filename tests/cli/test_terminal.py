@@ -49,6 +49,7 @@ def test_a_table_on_a_terminal_is_set_by_rich():
     assert "\x1b[1m" in shown
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("asked", [{"NO_COLOR": "1"}, {"TERM": "dumb"}])
 def test_a_terminal_that_asks_for_plain_text_gets_it(asked):
     shown = on_terminal("verify", "modes", "--parameters", **asked)

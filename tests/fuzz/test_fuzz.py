@@ -55,6 +55,7 @@ def test_modal(numbers, cases):
     check_rules(cases, [run(random_scene(SEED, number, choice), "modal") for number in numbers])
 
 
+@pytest.mark.long
 def test_solid_of_cheap_scenes(cases):
     """The first two that take less than a second and a half of computing with three cells over the radius."""
     cheap = []

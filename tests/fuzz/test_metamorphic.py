@@ -69,6 +69,7 @@ def plain(request):
     return request.param, simulate(scene(), request.param)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("changes", "time", "force"),
     [

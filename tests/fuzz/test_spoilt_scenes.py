@@ -35,6 +35,7 @@ def refusal(tree, fidelity):
     return None
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("numbers", PARTS)
 def test_each_remedy_works_and_what_is_taken_keeps_the_rules(numbers, cases):
     refused, tried = 0, 0

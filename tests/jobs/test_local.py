@@ -122,6 +122,7 @@ def wait_until(true, seconds=30.0):
         time.sleep(0.02)
 
 
+@pytest.mark.long
 def test_a_study_killed_at_once_loses_and_repeats_nothing(tmp_path):
     script, log, store = tmp_path / "study.py", tmp_path / "log", tmp_path / "store.sqlite"
     script.write_text(STUDY)

@@ -208,6 +208,7 @@ def test_clearance_is_the_height_between_the_surfaces():
     assert model.contact.clearance(model.start[0]) == pytest.approx(START_GAP, abs=1e-9)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("barrier", ["barrier-elastic", "barrier-elastoplastic"])
 @pytest.mark.parametrize(
     ("V_n", "V_t", "swing", "over"),

@@ -44,6 +44,7 @@ def _outcome(result):
     return reduce(result)
 
 
+@pytest.mark.long
 def test_elastic_frictionless_long_rod_touches_twice_and_grazes_between(elastic):
     """Reference: e .826, .0134 N s in the graze (modes, Hertz); without it e .851, E_vib .060 (CalculiX)."""
     found = _outcome(elastic)

@@ -222,6 +222,7 @@ def test_confined_compression_before_yield():
     assert rig.flat("strain").max() == 0.0
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("rate", FACTORS)
 @pytest.mark.parametrize("modulus", [0.0, 5e9])
 def test_confined_compression_at_a_constant_rate(modulus, rate):

@@ -25,6 +25,7 @@ def made(n, change):
     return ChartPoints("made", ratio, mu, change(ratio, mu, rng), ratio, np.ones(n, dtype=bool))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("row", [5, 101, 401, 702])  # without friction a tip follows round-off
 def test_a_stored_point_is_what_the_program_computes(row):
     cases = runpy.run_path(str(SCRIPT))["cases"]()

@@ -9,6 +9,7 @@ from fem_impact.evidence.problems.problem import verify
 COARSE = {"cells": 2.3, "across": 8}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("change", [{}, {"block": 0, "f": 0.05}])
 def test_a_sphere_that_slides_throughout_has_the_ratio_of_its_friction(change):
     """Held to half a per cent: facets' own normals are 0.0034 off, half a per cent of friction is noticed."""

@@ -11,6 +11,7 @@ from fem_impact.evidence.references.rod_end import sears
 SHORT = {"length": 0.08, "speed": 4.0, "cells": 2}
 
 
+@pytest.mark.long
 def test_a_short_rod():
     assert verify("sears", SHORT).passed
 

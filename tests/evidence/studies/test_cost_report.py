@@ -56,6 +56,7 @@ def shown(axis):
     return [label.get_text() for at, label in both if low <= at <= high]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("errors", [(0.275, 0.115), (0.27, 0.085), (2.1, 0.8), (0.5, 0.004), (0.9, 0.00002)])
 def test_ticks_are_at_least_two_plain_numbers(drawn, errors):
     (axes,) = drawn(*errors)

@@ -398,6 +398,7 @@ def test_a_run_that_takes_too_long_is_broken_off(monkeypatch):
     assert kept.end == "too dear" and "level 2 of 3" in kept.why and 0.05 < kept.cpu_s < 5
 
 
+@pytest.mark.long
 def test_misses_stand_the_worst_first(tmp_path):
     request, results = Request(tmp_path, quick=True), {}
     for job in study.plan(request, {}):
