@@ -230,6 +230,7 @@ def test_a_body_that_does_not_yield_has_no_residual_stress(cli, stand):
     assert f"energy locked in barrier{'1 %':>28}" in out
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("fidelity", "levels", "cases"), [("rigid", 3, 3), ("solid", 1, 1), ("solid", 3, 5)])
 def test_the_command_compiles_its_scene_once(cli, monkeypatch, fidelity, levels, cases):
     """For its expected time, run and screening; each level has its own, the first one for its budget too.

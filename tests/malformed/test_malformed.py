@@ -208,6 +208,7 @@ def test_no_file_is_ever_unpickled():
 BANNED = {"pickle", "cPickle", "dill", "marshal", "shelve", "joblib"}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("package", [fem_impact, meshes, rigid])
 def test_no_source_can_run_code_out_of_a_file(package):
     for path in Path(package.__file__).parent.rglob("*.py"):

@@ -135,6 +135,7 @@ def test_forged_studies(place, count):
 DRAWN = ("outcome.json", "history.csv", "fields.vtkhdf", "waves.h5")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("count", COUNTS)
 def test_spoiled_files_of_a_run(place, count):
     """Bytes of one file are changed; a page or film that does not use it says why."""

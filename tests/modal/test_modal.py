@@ -76,6 +76,7 @@ DROPS = [
 ]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("length", "speed", "f", "e", "contacts"), DROPS)
 def test_oblique_drops(length, speed, f, e, contacts):
     """Printed e, whose contact is a fixed sharp corner, to .052; the reference's to .001."""

@@ -234,6 +234,7 @@ def test_flown_nodes_are_at_the_heights_of_the_flight():
     assert np.array_equal(moved[others], x[others])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("effects", [("vibration", "friction", "barrier-elastic"), ("barrier-rigid",)])
 def test_a_tail_that_strikes_first_ends_the_run(effects):
     """At 89 degrees the other end comes down within a bending period; no contact of the model holds it."""

@@ -126,6 +126,7 @@ def test_a_sharp_edge_sinks_no_deeper_than_the_play():
     assert 0.3 * contact.play < deepest < contact.play + 2 * speed * model.step
 
 
+@pytest.mark.long
 def test_a_rod_that_slides_through_its_crater_loses_nothing_but_friction():
     """Along the barrier's own normals, which lag behind the round tip, closing takes 5e-4 of E_0."""
     result = scenes.run(*FLOWS, length=0.12, v_n=-2.0, v_t=-8.0, f=0.16)

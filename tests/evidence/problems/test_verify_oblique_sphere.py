@@ -31,6 +31,7 @@ def test_the_interface_of_a_hard_blow_leans_under_friction():
     assert abs(ratio.error) < 0.004
 
 
+@pytest.mark.long
 def test_a_sphere_that_sticks_gives_its_tangential_energy_back():
     """On a rigid plane nothing couples pressing and shifting only where nu is near 0.5."""
     found = verify("oblique-sphere", {**COARSE, "across": 16, "angle": "5 deg", "nu": 0.49, "block": 0})

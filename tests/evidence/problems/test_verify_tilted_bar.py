@@ -31,6 +31,7 @@ def test_hard_contact_is_the_limit_of_stiff_springs():
     assert found[HARD].computed != pytest.approx(found[SPRINGS].computed, rel=0.05)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("f", [0.0, 0.2])
 def test_the_contact_springs_of_public_codes_give_their_rebound(f):
     found = rebounds(cells=4, f=f)
