@@ -177,11 +177,7 @@ def _short(case: Case, statement: dict[str, Any]) -> str:
     lines += ["", "Barrier and contact", *_wrapped(_contact_lines(case))]
     laws = (f"{place.removesuffix('.material')}: {law}" for place, law in statement["laws"].items())
     lines += ["", "Laws in force", *_wrapped(laws), "", "Effects"]
-    lines += _wrapped(
-        rod.named(f"on  {one.name}{' (forced)' if one.forced else ''}: {_decided(one)}")
-        for one in case.choices
-        if one.on
-    )
+    lines += _wrapped(rod.named(f"on  {_named(one)}: {_decided(one)}") for one in case.choices if one.on)
     off = [_off(one) for one in case.choices if not one.on]
     lines += _wrapped([f"off {', '.join(off)}: not called for, or left out by the scene"])
     lines += [*_size_lines(case), *_end_lines(case, statement), ""]
@@ -296,8 +292,13 @@ def _wrapped(sentences: Iterable[str]) -> list[str]:
     return [line for sentence in sentences for line in wrapped(sentence, "  ")]
 
 
+def _named(effect: EffectChoice) -> str:
+    """Return the name of an effect, and that the scene forced it where it did."""
+    return f"{effect.name}{' (forced)' if effect.forced else ''}"
+
+
 def _effect_lines(effect: EffectChoice) -> list[str]:
-    verdict = f"{'on ' if effect.on else 'off'} {effect.name}{' (forced)' if effect.forced else ''}"
+    verdict = f"{'on ' if effect.on else 'off'} {_named(effect)}"
     decision = _decided(effect)
     if effect.share is not None:
         share = "under 1" if effect.share < 0.005 else f"about {100 * effect.share:.0f}"
@@ -310,7 +311,7 @@ def _off(effect: EffectChoice) -> str:
     number, threshold = effect.number or 0.0, effect.threshold
     close = threshold / CLOSE < number < threshold * CLOSE
     told = f" ({number:.2g}, threshold {threshold:g})" if close else ""
-    return f"{effect.name}{' (forced)' if effect.forced else ''}{told}"
+    return f"{_named(effect)}{told}"
 
 
 def _decided(effect: EffectChoice) -> str:
