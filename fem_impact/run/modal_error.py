@@ -239,7 +239,7 @@ def half_widths(place: Place, outcome: Outcome, approach: float) -> dict[str, fl
             if key in halves:
                 halves[key] = hypot(halves[key], change)  # beside what is open at a known impulse
     mass, base = outcome.motion.mass, or_none(outcome.barrier.mass)
-    if base and or_none(outcome.barrier.Omega_b) is None:
+    if base and "V_n_m_per_s" in halves and or_none(outcome.barrier.Omega_b) is None:
         # the stored scenes are of heavy barriers: what is open between both bodies they share by momentum
         for way in ("n", "t"):
             of_both = halves[f"V_{way}_m_per_s"] / (mass + base)

@@ -171,6 +171,14 @@ def test_a_light_barrier_shares_the_doubt_by_momentum_and_one_too_light_has_no_e
     assert "of metal that deforms" in tiny.half_widths.reason
 
 
+def test_a_free_barrier_that_is_grazed_too_slowly_tells_no_speed_and_no_error_of_one():
+    """It ended `assess` of a drawn scene, which looks at other inclinations, with a fault."""
+    slow = {"barrier.mass": "5 kg", "impact.v_n": "-1 mm/s", "impact.v_t": "-1 m/s", "impact.angle": "25 deg"}
+    outcome = simulate(replace_all(load("t5b"), slow), "modal")
+    assert isinstance(outcome.motion.V_n, Unknown) and "Gravity" in outcome.motion.V_n.reason
+    assert "W_friction_over_E_0" in outcome.half_widths and "V_n_m_per_s" not in outcome.half_widths
+
+
 def test_what_nothing_rubs_keeps_its_speed_along_the_barrier_and_turns_by_the_normal_impulse_alone():
     """A sphere that fell straight down had a spin of 0 +- 9.5 rad/s."""
     scene = load("elastic-frictionless")

@@ -32,6 +32,8 @@ FIDELITIES = ("auto", "modal", "solid")
 ANGLES = tuple(np.radians(np.arange(5.0, 81.0, 5.0)))
 """Inclinations among which the worst one is looked for, rad."""
 WIDER = "Finite elements bear that out less narrowly: {}."
+SURE = ("yes", "no")
+WORST_FIRST: tuple[vibration.GradedAnswer, ...] = ("no", "probably no", "undecided", "probably yes", "yes")
 LACKING = "There is no reduced model of {}: finite elements alone answer."
 
 
@@ -92,14 +94,14 @@ class Verdict:
         return Table.of(columns, rows, left=(0, 1, 2)).html(repr(self))
 
     @property
-    def answer(self) -> vibration.Answer:
+    def answer(self) -> vibration.GradedAnswer:
         """May rigid theory be used at the scene's inclination."""
-        return "undecided" if self.here is None else self.here.answer(self.tolerance)
+        return "undecided" if self.here is None else self.here.graded(self.tolerance)
 
     @property
     def missing(self) -> str:
-        """What an undecided answer lacks, empty of a decided one."""
-        if self.answer != "undecided":
+        """What an undecided or probable answer lacks, empty of a sure one."""
+        if self.answer in SURE:
             return ""
         if self.here is None:
             return f"a model that tells how {self.of} changes: the notes say what was tried."
@@ -121,12 +123,11 @@ class Verdict:
         return self.elsewhere and vibration.largest([*here, self.elsewhere])
 
     @property
-    def worst_answer(self) -> vibration.Answer:
-        """May it be used at any inclination: no where it may not at this one."""
-        both = {self.answer, self.elsewhere.answer(self.tolerance) if self.elsewhere else "undecided"}
-        if "no" in both:
-            return "no"
-        return "yes" if both == {"yes"} and not self.not_known[0] else "undecided"
+    def worst_answer(self) -> vibration.GradedAnswer:
+        """May it be used at any inclination: the worst of the answers here and elsewhere."""
+        both = {self.answer, self.elsewhere.graded(self.tolerance) if self.elsewhere else "undecided"}
+        both |= {"undecided"} if self.not_known[0] else set()
+        return next(answer for answer in WORST_FIRST if answer in both)
 
 
 def assess(

@@ -8,7 +8,7 @@ from fem_impact.answers.simulate import refused_by
 from fem_impact.answers.verdict.assess import Verdict
 from fem_impact.answers.verdict.levels import next_step
 from fem_impact.answers.verdict.screening import Screening
-from fem_impact.answers.verdict.vibration import CALLED, MESHES, Answer, VibrationEffect, untargeted
+from fem_impact.answers.verdict.vibration import CALLED, MESHES, GradedAnswer, VibrationEffect, untargeted
 from fem_impact.case.case import Case
 from fem_impact.outcome.groups import texts
 from fem_impact.outcome.keys import Unknown, or_none
@@ -36,9 +36,11 @@ FIRST_ONLY = (
     "Supports and other bodies that the rod or the barrier may touch.",
 )
 
-THERE: Mapping[Answer, str] = {
+THERE: Mapping[GradedAnswer, str] = {
     "yes": "rigid theory may be used there",
     "no": "rigid theory may not be used there",
+    "probably yes": "rigid theory may probably be used there",
+    "probably no": "rigid theory may probably not be used there",
     "undecided": "whether rigid theory may be used there is undecided",
 }
 Line = tuple[str, str]
@@ -60,10 +62,13 @@ def _may(v: Verdict) -> str:
         told = f"vibration changes {number} by {here.told}{doubt(here)}, by {here.model}"
     at = f"at this inclination, {degrees(v.scene.impact.angle):.4g} degrees"
     said = f"{at}, {told} (allowed: {v.tolerance:g}).{_beyond(v)} {_anywhere(v)}"
-    refused = _refused(v) if v.answer == "yes" else ""
+    answer = v.answer.upper()
+    if v.answer.startswith("probably"):
+        answer += " (four of five such answers are right)"
+    refused = _refused(v) if v.answer.endswith("yes") else ""
     if refused:
-        return f"YES as to vibration: {said} But --fidelity rigid has no answer here: {refused}"
-    return f"{v.answer.upper()}: {said}"
+        return f"{answer} as to vibration: {said} But --fidelity rigid has no answer here: {refused}"
+    return f"{answer}: {said}"
 
 
 def _refused(v: Verdict) -> str:
@@ -74,7 +79,7 @@ def _refused(v: Verdict) -> str:
 def _beyond(v: Verdict) -> str:
     """Say where a yes holds for the stated friction alone, not over its interval."""
     most, surface = max(v.over_friction or (0.0,), key=abs), v.scene.surface
-    if v.answer != "yes" or abs(most) <= v.tolerance:
+    if not v.answer.endswith("yes") or abs(most) <= v.tolerance:
         return ""
     ends = f"{surface.friction_low:g},{surface.friction_high:g}"
     return (
@@ -103,7 +108,7 @@ def _anywhere(v: Verdict) -> str:
     return (
         f"At the worst inclination{known}, {degrees(v.worst.angle):.0f} degrees, it changes {v.of} by "
         f"{v.worst.told}"
-        f"{doubt(v.worst)}{by}{everywhere or f'; {THERE[v.worst.answer(v.tolerance)]}'}."
+        f"{doubt(v.worst)}{by}{everywhere or f'; {THERE[v.worst.graded(v.tolerance)]}'}."
     )
 
 

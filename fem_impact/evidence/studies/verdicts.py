@@ -1,7 +1,8 @@
 """Verdicts: how often ``assess`` decides within its budget, and is right by finer meshes, over drawn scenes.
 
 The scenes are those of the study of coverage, as many of each family as of every other. A scene that was
-decided runs again with a twin that cannot vibrate, on two levels of meshes more than the verdict had.
+decided, surely or probably, runs again with a twin that cannot vibrate, on two levels of meshes more than the
+verdict had.
 """
 
 from collections import Counter
@@ -10,7 +11,7 @@ from itertools import chain, zip_longest
 from typing import Any
 
 from fem_impact.answers.report import Request, Sheet, StudyReport
-from fem_impact.answers.verdict.assess import BUDGET, TOLERANCE
+from fem_impact.answers.verdict.assess import BUDGET, SURE, TOLERANCE
 from fem_impact.evidence.studies.coverage.families import FAMILIES
 from fem_impact.evidence.studies.coverage.run import ASSESS, CHECK, MOST, CoverageResult, CoverageRun
 from fem_impact.evidence.studies.coverage.scenes import DrawnScene, drawn
@@ -23,7 +24,7 @@ GROUPS = len(FAMILIES) + 2
 """Families, with the twelve bodies and the scenes that hardly yield."""
 FINER = 2
 """Levels that a check has more than its verdict; one by the reduced model counts as of one level."""
-DECIDED, JUDGED = ("yes", "no"), ("right", "wrong")
+PROBABLY, JUDGED = "probably ", ("right", "wrong")
 BY = ("by", "answer", "judged")
 COLUMNS = (
     *("scene", "family", "barrier", "answer", "by", "levels", "change", "half-width", "wall_s", "cpu_s"),
@@ -50,27 +51,35 @@ def plan(request: Request, results: Results) -> list[CoverageRun]:
 
 def _check(scene: DrawnScene, results: Results) -> CoverageRun | None:
     result = results.get(CoverageRun(scene, ASSESS).name)
-    if not isinstance(result, CoverageResult) or result.verdict.get("answer") not in DECIDED:
+    if not isinstance(result, CoverageResult) or not _side(result.verdict.get("answer", "")):
         return None
     return CoverageRun(scene, CHECK, max(result.verdict["levels"], 1) + FINER)
+
+
+def _side(answer: str) -> str:
+    """Return the answer that a sure or a probable one gives, empty of any other."""
+    side = answer.removeprefix(PROBABLY)
+    return side if side in SURE else ""
 
 
 def conclude(request: Request, results: Results) -> StudyReport:
     """Return how many were decided, how many of these finer meshes confirm, and every scene."""
     rows = [dict(zip(COLUMNS, _row(scene, results), strict=True)) for scene in scenes(request)]
-    decided, lacking = (
-        [row for row in rows if (row["answer"] in DECIDED) == known] for known in (True, False)
-    )
-    judged, clear = (Counter(str(row[name]) for row in decided) for name in ("judged", "clear"))
+    sure = [row for row in rows if row["answer"] in SURE]
+    lacking = [row for row in rows if row not in sure]
+    probable = [row for row in lacking if _side(str(row["answer"]))]
+    decided = [*sure, *probable]
+    unchecked, clear = (Counter(str(row[name]) for row in decided) for name in ("judged", "clear"))
     counts = ", ".join(
         f"{count} {name}" for name, count in Counter(row["answer"] for row in rows).most_common()
     )
     sentences = [
-        f"Within its {BUDGET:g} s, assess decided {_share(len(decided), len(rows))}: {counts}.",
-        f"Of those decided, {FINER} levels more say the same of "
-        f"{_share(judged['right'], sum(judged[name] for name in JUDGED))}; in {clear['no']} the half-width "
-        "of the finer run leaves the answer open, and its value counts.",
-        f"{judged['not checked']} were decided and not checked: the finer run takes more than "
+        f"Within its {BUDGET:g} s, assess decided {_share(len(decided), len(rows))}, of these {len(sure)} "
+        f"surely and {len(probable)} probably: {counts}.",
+        f"{FINER} levels more say the same of {_confirmed(decided)} of the decided, {_confirmed(sure)} of "
+        f"the sure and {_confirmed(probable)} of the probable ones; in {clear['no']} the half-width of the "
+        "finer run leaves the answer open, and its value counts.",
+        f"{unchecked['not checked']} were decided and not checked: the finer run takes more than "
         f"{MOST[CHECK]:g} s or tells no number.",
         f"Its change lies within the half-width that was told of {_held(decided, 'modal')} by the reduced "
         f"model and of {_held(decided, 'solid')} by finite elements.",
@@ -83,7 +92,7 @@ def conclude(request: Request, results: Results) -> StudyReport:
         sentences,
         sheets=[
             Sheet("by", "What was decided", Table.of((*BY, "scenes"), counted, left=(0, 1, 2))),
-            Sheet("undecided", "What was not decided", _table(words, lacking)),
+            Sheet("undecided", "What was not decided, or not surely", _table(words, lacking)),
             Sheet("scenes", "Every scene", _table(shown, rows)),
         ],
         assumptions=[
@@ -112,11 +121,17 @@ def _row(scene: DrawnScene, results: Results) -> tuple[Cell, ...]:
         truth = None, None, "not checked", ""
         if isinstance(found, CoverageResult) and "e" in found.changes:
             value, half = found.changes["e"]
-            judged = JUDGED[DECIDED[abs(value) > TOLERANCE] != v["answer"]]
-            truth = value, half, judged, DECIDED[abs(abs(value) - TOLERANCE) <= half]
+            judged = JUDGED[SURE[abs(value) > TOLERANCE] != _side(v["answer"])]
+            truth = value, half, judged, SURE[abs(abs(value) - TOLERANCE) <= half]
     change = run.changes.get("e", (None, None))
     told = v["answer"], v["model"], v["levels"], *change, run.wall_s, run.cpu_s
     return *place, *told, *truth, v["tried"], v["missing"], v["next"]
+
+
+def _confirmed(rows: Sequence[Mapping[str, Any]]) -> str:
+    """Return of how many of those checked the finer run says the same."""
+    right, wrong = (sum(row["judged"] == judged for row in rows) for judged in JUDGED)
+    return _share(right, right + wrong)
 
 
 def _held(rows: Sequence[Mapping[str, Any]], by: str) -> str:

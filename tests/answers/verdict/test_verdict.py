@@ -220,15 +220,23 @@ def test_an_inclined_scene_turns_rod_and_velocity_together():
     [
         (0.01, 0.02, "yes"),
         (-0.01, 0.02, "yes"),
-        (0.04, 0.02, "undecided"),
+        (0.04, 0.019, "probably yes"),
+        (0.04, 0.021, "undecided"),
         (-0.2, 0.1, "no"),
-        (0.06, 0.02, "undecided"),
-        (0.5, 0.6, "undecided"),
+        (-0.06, 0.019, "probably no"),
+        (0.06, 0.021, "undecided"),
+        (0.5, 0.6, "probably no"),
     ],
 )
-def test_the_answer_is_open_where_the_band_straddles_the_tolerance(value, band, said):
+def test_the_answer_is_probable_where_the_band_straddles_the_tolerance_and_half_of_it_does_not(
+    value, band, said
+):
     change = VibrationEffect("e", 0.0, value, band, 0.0, 0.0, None, None, "", "", {})
-    assert change.answer(0.05) == said
+    assert change.graded(0.05) == said
+    assert change.answer(0.05) == ("undecided" if said.startswith("probably") else said)
+    unknown = VibrationEffect("e", 0.0, 5 * value, 1.0, 0.0, 0.0, None, None, "", "", {})
+    for other in (replace(change, alike=False), unknown):
+        assert other.graded(0.05) == other.answer(0.05)
 
 
 def test_the_change_of_e_is_that_of_two_runs(short):
@@ -491,7 +499,7 @@ def test_a_level_that_folds_leaves_those_before_it(monkeypatch):
 
     monkeypatch.setattr(level_module, "simulate_recorded", folded)
     found = assess(load("t5b"), "solid", tolerance=0.02, budget_s=1e5)
-    assert (found.fidelity, found.answer) == ("solid", "undecided")
+    assert (found.fidelity, found.answer) == ("solid", "probably no")
     assert any(
         "Level 3, finer, gave no result" in note and "cell 7 is folded" in note for note in found.notes
     )

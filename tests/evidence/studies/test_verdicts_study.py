@@ -32,30 +32,37 @@ def test_a_decided_scene_is_checked_on_two_levels_more(tmp_path):
     request = Request(tmp_path, first=1)
     verdicts = study.plan(request, {})
     answers = [verdict(), verdict("no", 3), verdict("undecided", 4), CoverageResult(None, "stopped", "why")]
+    answers += [verdict("probably no", 4)]
     results = dict(zip((run.name for run in verdicts), answers, strict=False))
-    results[verdicts[4].name] = Failure("lost", "killed")
+    results[verdicts[5].name] = Failure("lost", "killed")
     checks = [run for run in study.plan(request, results) if run.model == CHECK]
     assert [(run.drawn.name, run.levels) for run in checks] == [
         (verdicts[0].drawn.name, 3),
         (verdicts[1].drawn.name, 5),
+        (verdicts[4].drawn.name, 6),
     ]
     assert {run.model for run in study.plan(Request(tmp_path, quick=True), results)} == {ASSESS}
 
 
 def test_right_is_what_the_finer_run_says_by_its_value(tmp_path):
     request = Request(tmp_path, first=1)
-    answers = [*[verdict()] * 3, verdict("no", 2, 0.1), *[verdict("undecided", 3)] * 7]
+    answers = [*[verdict()] * 3, verdict("no", 2, 0.1), *[verdict("probably no", 3, 0.06)] * 2]
+    answers += [verdict("undecided", 3)] * 5
     runs = study.plan(request, {})
     results = {run.name: answer for run, answer in zip(runs, answers, strict=False)}
     results[runs[-1].name] = CoverageResult(None, "stopped", "no model gives e.")
-    found = {0: (0.01, 0.01), 1: (0.06, 0.02), 3: (-0.09, 0.01)}
+    found = {0: (0.01, 0.01), 1: (0.06, 0.02), 3: (-0.09, 0.01), 4: (0.04, 0.02), 5: (0.07, 0.01)}
     for number, change in found.items():
         results[study.plan(request, results)[len(runs) + number].name] = CoverageResult(
             None, changes={"e": change}
         )
     text = published(study.conclude, request, results).text
-    assert "decided 4 of 12 (14 to 61 %): 7 undecided, 3 yes, 1 no, 1 no answer" in text
-    assert "say the same of 2 of 3 (" in text and "in 1 the half-width of the finer run" in text
+    assert "decided 6 of 12 (25 to 75 %), of these 4 surely and 2 probably: 5 undecided, 3 yes" in text
+    same = (
+        "say the same of 3 of 5 ({}) of the decided, 2 of 3 ({}) of the sure and 1 of 2 ({}) of the probable"
+    )
+    assert re.search(re.escape(same).replace(r"\{\}", "[^)]*"), text)
+    assert "in 2 the half-width of the finer run" in text
     assert "1 were decided and not checked" in text and "no model gives e." in text
-    held = r"told of 1 of 2 \([^)]*\) by the reduced model and of 0 of 1 \([^)]*\) by finite elements"
+    held = r"told of 1 of 2 \([^)]*\) by the reduced model and of 2 of 3 \([^)]*\) by finite elements"
     assert re.search(held, text)
