@@ -100,12 +100,17 @@ def within(data: Table, key: str, read: Callable[[Any], T], default: Table | Non
     try:
         return read(table)
     except SceneError as error:
-        stated = table.get(error.key) if isinstance(table, Mapping) else None
-        if isinstance(error.value, fields.Shown) and isinstance(stated, str):
-            unit = stated.split()[-1]
-            if unit != error.value.text.split()[-1]:  # as it was written, not in the unit of its bounds
-                error.value = fields.Shown(stated)
-        raise error.under(key) from None
+        raise _under(error, table, key) from None
+
+
+def _under(error: SceneError, table: Any, place: str) -> SceneError:
+    """Return a table's complaint below its place, with the value in the unit in which it was written."""
+    stated = table.get(error.key) if isinstance(table, Mapping) else None
+    if isinstance(error.value, fields.Shown) and isinstance(stated, str):
+        unit = stated.split()[-1]
+        if unit != error.value.text.split()[-1]:  # that of its bounds
+            error.value = fields.Shown(stated)
+    return error.under(place)
 
 
 def listed(tables: Any, key: str, read: Callable[[Table], T], example: str) -> tuple[T, ...]:
@@ -117,7 +122,7 @@ def listed(tables: Any, key: str, read: Callable[[Table], T], example: str) -> t
         try:
             return read(table)
         except SceneError as error:
-            raise error.under(f"{key}[{number}]") from None
+            raise _under(error, table, f"{key}[{number}]") from None
 
     return tuple(one(number, table) for number, table in enumerate(tables, 1))
 

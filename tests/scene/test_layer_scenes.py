@@ -50,6 +50,11 @@ def test_a_written_scene_reads_back_equal_and_layers_are_part_of_it():
         ([], {}, "must be a list of layers"),
         ([{"material": "steel-4340"}], {}, r"barrier.layers\[1\].thickness"),
         ([PLATE, {**PLATE, "thickness": "-1 mm"}], {}, r"barrier.layers\[2\].thickness = .*at least"),
+        (
+            [{**PLATE, "thickness": "2000 cm"}],
+            {},
+            r"barrier.layers\[1\].thickness = 2000 cm: .*at most 1000 mm",
+        ),
         ([{**PLATE, "thickness": 2}], {}, r"barrier.layers\[1\].thickness"),
         ([{**PLATE, "hardness": 3}], {}, r"barrier.layers\[1\].hardness: is not a known key"),
         ([{**PLATE, "material": "unobtainium"}], {}, r"barrier.layers\[1\].material"),

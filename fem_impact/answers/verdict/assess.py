@@ -109,6 +109,8 @@ class Verdict:
         margin, enough = abs(self.tolerance - size), size + band
         digits = digits_apart(margin, band)
         missing = f"an error below {plain(margin, digits)} instead of {plain(band, digits)}"
+        if self.answer != "undecided":
+            missing = f"for a sure answer {missing}"
         if not self.more:
             missing += ", which no model tells here"
         if enough >= 1.0:  # no change that may be neglected
