@@ -54,6 +54,7 @@ def stepped(v_n, v_t, *, e, f, d_c, d_d, k2, omega=0.0, steps=40_000):
     return v_n + p, v_t + q, omega + (d_c * p - d_d * q) / k2
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("omega", [0.0, 12.0])
 @pytest.mark.parametrize("f", [0.1, 0.57, 3.0])
 @pytest.mark.parametrize("d_c", [0.03, 0.0226, 0.004, -0.02])

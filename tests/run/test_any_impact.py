@@ -79,6 +79,7 @@ def numbers(group):
 SCENES = ("t5b", "t3-machined-tip-a", "ogive", "tube", "spinning-rod", "free-barrier-5kg", "moving-barrier")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("fidelity", ["rigid", "modal"])
 @pytest.mark.parametrize("name", SCENES)
 def test_the_mirror_image_of_a_scene_has_the_mirror_image_as_its_outcome(name, fidelity):

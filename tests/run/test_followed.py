@@ -250,6 +250,7 @@ def test_strikes_in_an_earlier_dent_are_counted():
     assert "land in the dent" not in told["-1 m/s"]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("material", ["rod-steel", "aluminium-6061-t6"])
 def test_a_ball_on_its_dent_rebounds_nearly_elastically_by_modes_as_by_finite_elements(material):
     """In barrier and ball; finite elements of the steel ball have e = 0.96 and 0.95 of the first force."""

@@ -147,6 +147,7 @@ def test_a_vibrating_rod_touches_where_its_lowest_place_meets_the_barrier():
     assert min(course._gap(float(t)) for t in look) > -1e-9
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("effects", [["auto", "-vibration"], ["auto", "-friction"], ["auto", "-gravity"]])
 def test_effects_that_are_left_out_leave_a_sequence(effects):
     s = simulate(replace_all(load("quick"), FLOOR | {"effects": effects}), "modal").strikes

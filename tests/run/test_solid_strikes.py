@@ -51,6 +51,7 @@ def elastic():
     return simulate(capsule(), "solid")
 
 
+@pytest.mark.long
 def test_the_vibration_of_a_strike_meets_the_next(elastic):
     first, second, third = elastic.strikes.each
     assert [one.fidelity for one in elastic.strikes.each] == ["solid", "solid", "modal"]

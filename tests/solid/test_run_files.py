@@ -39,6 +39,7 @@ def run(tmp_path_factory):
     return out, outcome, told
 
 
+@pytest.mark.long
 def test_the_run_says_that_it_was_cut_off(run):
     _, outcome, told = run
     assert outcome.validity.finished is False

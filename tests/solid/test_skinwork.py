@@ -92,6 +92,7 @@ def test_a_run_tells_friction_and_skin_together():
     assert energy.skin == pytest.approx(energy.friction + energy.skin_rod + energy.skin_barrier)
 
 
+@pytest.mark.long
 def test_the_work_of_a_projectile_that_is_softer_than_the_barrier_counts():
     scene = replace_all(load("quick"), {"projectile.material": "brass", "save.frames": 0})
     energy = simulate(scene, "solid").energy

@@ -47,6 +47,7 @@ def quick():
     return levels, levels.run()
 
 
+@pytest.mark.long
 def test_a_pilot_and_two_finer_levels_end_on_the_stated_size(quick):
     levels, outcome = quick
     assert [level.splits for level in levels.done] == [0, 1, 2]

@@ -209,6 +209,7 @@ def test_heat_says_that_friction_alone_counts_and_what_bounds_it(scene):
     assert "It counts" not in dict(limit_document(force, "fem-impact assess t5b")["box"])
 
 
+@pytest.mark.long
 def test_the_command_says_question_place_and_margin(capsys):
     line = ["assess", "t5b", "--fidelity", "modal", "--for", "force", "--limit"]
     assert main([*line, "3.2 kN", "--uncertain", "impact.angle=44,46deg"]) == 0

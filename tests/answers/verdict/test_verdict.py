@@ -565,6 +565,7 @@ def test_a_level_given_up_for_its_budget_names_the_one_that_holds_it(monkeypatch
     assert "give a budget of 130 s" in found.notes[0]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("ran", [0, 2])
 def test_an_assessment_that_is_stopped_keeps_what_ran(monkeypatch, ran):
     asked = meshed(monkeypatch, [-0.02, 0.0])
@@ -582,6 +583,7 @@ def test_an_assessment_that_is_stopped_keeps_what_ran(monkeypatch, ran):
     assert sum(step.startswith("finite elements") for step in found.steps) == ran
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("growth", [3.0, 40.0])
 def test_an_assessment_keeps_its_budget_within_1_3_times_and_says_what_it_does(monkeypatch, growth):
     """Levels take three or forty times as long as those before, where their forecast says next to nothing."""

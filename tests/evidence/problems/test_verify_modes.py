@@ -17,6 +17,7 @@ def test_modes_of_a_short_bar():
     assert allowed["torsion 1"] < 7e-4
 
 
+@pytest.mark.long
 def test_modes_of_the_short_rod():
     """Row sums at the nodes leave the second bending mode 0.6 % and torsion 2.4 % low."""
     found = verify("modes", {"length": 0.08})
