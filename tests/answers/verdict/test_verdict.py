@@ -220,15 +220,15 @@ def test_an_inclined_scene_turns_rod_and_velocity_together():
     [
         (0.01, 0.02, "yes"),
         (-0.01, 0.02, "yes"),
-        (0.04, 0.019, "probably yes"),
-        (0.04, 0.021, "undecided"),
+        (0.04, 0.022, "probably yes"),
+        (0.04, 0.023, "undecided"),
         (-0.2, 0.1, "no"),
-        (-0.06, 0.019, "probably no"),
-        (0.06, 0.021, "undecided"),
+        (-0.06, 0.022, "probably no"),
+        (0.06, 0.023, "undecided"),
         (0.5, 0.6, "probably no"),
     ],
 )
-def test_the_answer_is_probable_where_the_band_straddles_the_tolerance_and_half_of_it_does_not(
+def test_the_answer_is_probable_where_the_band_straddles_the_tolerance_and_part_of_it_does_not(
     value, band, said
 ):
     change = VibrationEffect("e", 0.0, value, band, 0.0, 0.0, None, None, "", "", {})
