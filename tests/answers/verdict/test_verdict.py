@@ -384,8 +384,20 @@ def test_a_change_is_not_known_better_than_e_itself_because_levels_agree_in_it(s
         extrapolate.MeshRuns(size, [moved(run, shift) for run in pair])
         for size, shift in ((2e-3, 0.0), (1e-3, 0.1))
     ]
-    told = extrapolate.level_limits([replace(level, runs=level.runs[:1]) for level in levels])[1]["e_edge"]
+
+    def of_e(levels):
+        return extrapolate.level_limits([replace(level, runs=level.runs[:1]) for level in levels])[1][
+            "e_edge"
+        ]
+
+    told = of_e(levels)
     assert told > 0.1 and solid_effect(levels).band == pytest.approx(vibration.SHARE * told)
+    # an own mesh told -0.029 +- 0.012 on two levels, the coarser of three nodes across, and -0.116 on four
+    narrow = [replace(levels[0], wide=False), levels[1]]
+    wider = solid_effect(narrow)
+    assert wider.band == pytest.approx(2 * vibration.SHARE * of_e(narrow)) and "all 2 times" in wider.source
+    third = [narrow[0], levels[1], replace(levels[1], size=0.5e-3)]
+    assert solid_effect(third).band == pytest.approx(vibration.SHARE * of_e(third))
 
 
 def test_each_step_says_what_it_found(monkeypatch):
