@@ -164,9 +164,9 @@ CALLED: Mapping[str, str] = {
 Answer = Literal["yes", "no", "undecided"]
 GradedAnswer = Literal["yes", "no", "probably yes", "probably no", "undecided"]
 # of the half-width of a change, that which is taken for a probable answer. A fifth of the changes of e by the
-# reduced model lie further off on one side (.447 by 101 stored ones, each told by the others); fewer do of its
-# other numbers and on levels (.14 to .29). On levels of 44 drawn scenes (seeds 20262801 to 20262803), with
-# limits of .01 to .1, one to three levels more confirmed 150 of 158 probable answers and all 350 sure ones
+# reduced model lie further off on one side (.447 by 101 stored ones, each told by the others); fewer do of
+# its other numbers and on levels (.14 to .29). On levels of 44 drawn scenes (seeds 20262801 to 20262803),
+# with limits of .01 to .1, one to three levels more confirm 150 of 158 probable answers and all 350 sure ones
 PROBABLE = 0.45
 Pair = tuple[Outcome, Outcome]
 """With vibration and without it, on the same mesh."""
