@@ -23,7 +23,7 @@ from fem_impact.case.measured import CONFIDENCE, reduced_pairs, tolerance_rank
 from fem_impact.outcome.keys import known, or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.physics.contact import ContactPair
-from fem_impact.physics.contact_law import contact_law
+from fem_impact.physics.contact_law import BEGINS, FULLY_PLASTIC, contact_law
 
 HELD = 0.9
 """Share of differences from finite elements that a half-width holds."""
@@ -204,12 +204,28 @@ def scale_of(key: str, outcome: Outcome) -> float:
     return max(or_none(outcome.energy.vibration) or 0.0, LEAST_VIBRATION)
 
 
-def half_widths(place: Place, outcome: Outcome, approach: float) -> dict[str, float]:
+def part_of_harder(pair: ContactPair) -> float:
+    """Return the largest part, 0 to 1/2, of the plastic work that the harder body takes.
+
+    The contact law gives all to the softer one. Two bodies as strong as each other share it, and one that
+    the mean pressure of full flow in the softer does not make yield takes none. In between the third power of
+    the distance from that ratio of yield stresses is an envelope: of 18 runs by finite elements of t5b, at 45
+    degrees and with a round nose at 10, the harder body took .49 of the work at a ratio of 1.03, .41 at 1.1,
+    .27 at 1.25, .14 at 1.5 and .03 at 2 at most.
+    """
+    strengths = sorted(metal.yield_stress for metal in pair.yielding)
+    if len(strengths) < 2:
+        return 0.0
+    most = FULLY_PLASTIC / BEGINS
+    return 0.5 * max((most - strengths[1] / strengths[0]) / (most - 1.0), 0.0) ** 3
+
+
+def half_widths(place: Place, outcome: Outcome, approach: float, harder: float = 0.0) -> dict[str, float]:
     """Return half-widths, by key, of those numbers that an outcome of the reduced model knows.
 
     Where the form of a dent gives more impulse along the barrier than any stored scene shows, all that is
     beyond friction may be wrong, and with it what that impulse gives the motion. ``approach``, m/s, is
-    that of the contact point.
+    that of the contact point; ``harder`` the part of the plastic work that the harder body may take.
     """
     at, table, far = np.array(place), stored(), farness(place, outcome)
     halves = {
@@ -227,7 +243,8 @@ def half_widths(place: Place, outcome: Outcome, approach: float) -> dict[str, fl
             arm = abs(known(outcome.restitution.edge.d_c)) / outcome.motion.k_squared
             turned = halves["V_n_m_per_s"] * arm
             halves |= {"mu": 0.0, "V_t_m_per_s": 0.0, "Omega_rad_per_s": turned}
-    halves |= dict.fromkeys(plastic, sum(halves.get(key, 0.0) for key in TOLD[-3:]))
+    others = sum(halves.get(key, 0.0) for key in TOLD[-3:])
+    halves |= {key: others + harder * known(KEY_TABLE[key].of(outcome)) for key in plastic}
     for key in (*TOLD[-3:], *plastic):  # shares lie between 0 and 1
         if key in halves:
             share = known(KEY_TABLE[key].of(outcome))

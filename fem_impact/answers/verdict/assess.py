@@ -105,6 +105,8 @@ class Verdict:
             return ""
         if self.here is None:
             return f"a model that tells how {self.of} changes: the notes say what was tried."
+        if not self.here.is_known:
+            return f"a change of {self.of} that is known: the half-width told is as large as it can be."
         size, band = abs(self.here.value), self.here.band
         margin, enough = abs(self.tolerance - size), size + band
         digits = digits_apart(margin, band)
@@ -181,7 +183,7 @@ def assess(
     quick, notes = _quick(scene, of, tell) if reduced else (None, [LACKING.format(lacking)])
     screened = screening(bodies)
     steps = [f"rigid theory: T1/tau = {screened.ratio:.2f}, {screened.published}"]
-    steps += [f"the reduced model: {_told(quick)}: {quick.answer(tolerance)}"] if quick else []
+    steps += [f"the reduced model: {_told(quick)}: {quick.graded(tolerance)}"] if quick else []
     for step in steps:
         tell(step)
     effect, used = quick, "modal"

@@ -23,7 +23,7 @@ from fem_impact.physics.contact_law import contact_law
 from fem_impact.physics.flash import flash
 from fem_impact.run.common import MELTS
 from fem_impact.run.modal import closed, reduce
-from fem_impact.run.modal_error import factor_of, farness, place_of
+from fem_impact.run.modal_error import factor_of, farness, part_of_harder, place_of
 from fem_impact.scene.fields import LEVELS
 from fem_impact.scene.inputs import first_melting
 from fem_impact.scene.types import Scene
@@ -51,6 +51,10 @@ class Bound:
         if self.low > limit:
             return "no"
         return "yes" if self.high <= limit else "undecided"
+
+    def graded(self, limit: float) -> vibration.Answer:
+        """Return the answer: of a limit none is probable."""
+        return self.answer(limit)
 
     def holds_against(self, meshes: "Bound", limit: float) -> bool:
         """Say whether it stands beside finite elements that do not decide: they agree, and know less."""
@@ -301,11 +305,30 @@ class ForceCriterion(Limited):
         return outcome.contact.peak_force
 
 
+HARDER_BARRIER = Unknown(
+    "the barrier is the stronger body and yields as well: the reduced model, in which the softer one alone "
+    "yields, tells no dent"
+)
+
+
 class DentCriterion(Limited):
     """The largest indentation of the barrier."""
 
     called, column = "the deepest indentation of the barrier", "dent_m"
     dimension, unit, per_unit = "length", "mm", 1e-3
+
+    def reduced(self, scene: Scene) -> Bound | Unknown:
+        """Return the depth, which is not known where the barrier is the harder body and yields as well.
+
+        Of a softer one the least is lower by the part that the harder projectile takes.
+        """
+        bound, pair = super().reduced(scene), Case(scene, "modal").contact
+        harder = part_of_harder(pair)
+        if isinstance(bound, Unknown) or not harder:
+            return bound
+        if pair.softer == pair.rod:
+            return HARDER_BARRIER
+        return replace(bound, low=bound.low * (1.0 - harder))
 
     def of_reduced(self, case: Case, result: ModalResult) -> float:
         """Return the depth, m, at the place that is pressed deepest."""

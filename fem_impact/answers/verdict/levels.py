@@ -10,7 +10,7 @@ from fem_impact.answers.refine.forecast import about_s, for_two_s, turns
 from fem_impact.answers.refine.level import LevelRun
 from fem_impact.answers.refine.level_meshes import LevelMeshes
 from fem_impact.answers.refine.places import run_elsewhere
-from fem_impact.answers.verdict.vibration import Answer
+from fem_impact.answers.verdict.vibration import Answer, GradedAnswer
 from fem_impact.case.case import Case
 from fem_impact.errors import SceneError
 from fem_impact.jobs.executors import cores
@@ -33,6 +33,10 @@ class Found(Protocol):
 
     def answer(self, limit: float) -> Answer:
         """Say whether the number stays below a limit."""
+        ...
+
+    def graded(self, limit: float) -> GradedAnswer:
+        """Return the answer, or a probable one where there is one."""
         ...
 
     def over(self, limit: float) -> float:
@@ -80,7 +84,7 @@ def by_levels(
         for number, level in enumerate(ran[len(told) :], len(told) + 1):
             told.append(estimate(ran[:number]))
             found = told[-1]
-            said = "no band yet" if found is None else f"{as_text(found)}: {found.answer(limit)}"
+            said = "no band yet" if found is None else f"{as_text(found)}: {found.graded(limit)}"
             took = f"cells of {plain(1e3 * level.size, 2)} mm in {about_s(level.wall_s)}"
             steps.append(f"finite elements, level {number}, {took}: {said}")
             tell(steps[-1])
@@ -102,7 +106,7 @@ def by_levels(
         levels.refine()
         if not decides(levels.done) and twin and told[-1] and run_elsewhere(levels):
             told[-1] = found = estimate(levels.done)
-            last, said = len(told), "no band" if found is None else f"{as_text(found)}: {found.answer(limit)}"
+            last, said = len(told), "no band" if found is None else f"{as_text(found)}: {found.graded(limit)}"
             two = f"levels {last - 1} and {last} at another place of the grid, too"
             steps.append(f"finite elements, {two}: {said}")
             tell(steps[-1])

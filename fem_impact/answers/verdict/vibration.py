@@ -23,7 +23,7 @@ from fem_impact.errors import SceneError
 from fem_impact.outcome.keys import Key, Unknown, known, or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.outcome.shares import SHARES
-from fem_impact.run.modal_error import Stored, digs_in, farness, place_of, unlike
+from fem_impact.run.modal_error import Stored, digs_in, farness, place_of, unit_of, unlike, widened_by
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.types import Scene
 from fem_impact.scene.units import format_quantity
@@ -59,6 +59,8 @@ def known_error(case: Case, whole: Outcome, of: str, change: float) -> tuple[flo
     half = inf
     if not digs_in(whole):
         half = table.half_width(np.array(at), [*CHANGED].index(of), farness(at, whole, table))
+        if of == "e":
+            half *= widened_by(unit_of("V_n_m_per_s", whole), case.contact.approach)
     widest = 1 + abs(change)  # of numbers that lie between 0 and 1, and so their change between -1 and 1
     return min(half * scale_of_change(change), widest), unlike(at, whole, table)
 

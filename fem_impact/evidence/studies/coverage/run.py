@@ -263,6 +263,10 @@ class _Effects:
         """Say undecided until the levels are enough."""
         return "yes" if self.enough else "undecided"
 
+    def graded(self, limit: float) -> Answer:
+        """Return the answer."""
+        return self.answer(limit)
+
     def over(self, limit: float) -> float:
         """Return 1: another level is asked for."""
         return 1.0
