@@ -2,7 +2,7 @@
 Scaffold tube: does it dent the vessel?
 =======================================
 
-An offcut of scaffold tube, 0.5 m long, falls 1 m onto the wall of a vessel: steel of 25 mm. How deep is the
+An offcut of scaffold tube of S355, 0.5 m long, falls 1 m onto the wall of a vessel: 25 mm of S235. How deep is the
 dent, at the angles at which a tube may come down? The allowance is that of the vessel's owner.
 """
 
@@ -20,9 +20,9 @@ scene = fem_impact.load(
             "inner_diameter": "41.9 mm",
             "tip": "B",
             "tip_radius": "1 mm",
-            "material": "s235",
+            "material": "s355",
         },
-        "barrier": {"material": "s355", "thickness": "25 mm", "support": "infinite"},
+        "barrier": {"material": "s235", "thickness": "25 mm", "support": "infinite"},
         "surface": {"state": "custom", "friction": 0.3, "source": "assumed: painted steel on steel"},
         "impact": {"angle": "20 deg", "height": "1 m"},
     }
