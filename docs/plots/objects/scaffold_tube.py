@@ -2,8 +2,8 @@
 Scaffold tube: does it dent the vessel?
 =======================================
 
-An offcut of scaffold tube of S355, 0.5 m long, falls 1 m onto the wall of a vessel: 25 mm of S235. How deep is
-the dent, at the angles at which a tube may come down? The allowance is that of the vessel's owner.
+An offcut of scaffold tube of S355, 0.5 m long, falls 1 m onto the wall of a vessel: 25 mm of S235. How deep
+is the dent, at the angles at which a tube may come down? The allowance is that of the vessel's owner.
 """
 
 import matplotlib.pyplot as plt
