@@ -32,7 +32,7 @@ FIDELITIES = ("auto", "modal", "solid")
 ANGLES = tuple(np.radians(np.arange(5.0, 81.0, 5.0)))
 """Inclinations among which the worst one is looked for, rad."""
 WIDER = "Finite elements bear that out less narrowly: {}."
-SURE = ("yes", "no")
+SURE: tuple[vibration.Answer, ...] = ("yes", "no")
 WORST_FIRST: tuple[vibration.GradedAnswer, ...] = ("no", "probably no", "undecided", "probably yes", "yes")
 LACKING = "There is no reduced model of {}: finite elements alone answer."
 

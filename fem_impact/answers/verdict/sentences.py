@@ -8,7 +8,14 @@ from fem_impact.answers.simulate import refused_by
 from fem_impact.answers.verdict.assess import Verdict
 from fem_impact.answers.verdict.levels import next_step
 from fem_impact.answers.verdict.screening import Screening
-from fem_impact.answers.verdict.vibration import CALLED, MESHES, GradedAnswer, VibrationEffect, untargeted
+from fem_impact.answers.verdict.vibration import (
+    CALLED,
+    MESHES,
+    PROBABLY,
+    GradedAnswer,
+    VibrationEffect,
+    untargeted,
+)
 from fem_impact.case.case import Case
 from fem_impact.outcome.groups import texts
 from fem_impact.outcome.keys import Unknown, or_none
@@ -63,7 +70,7 @@ def _may(v: Verdict) -> str:
     at = f"at this inclination, {degrees(v.scene.impact.angle):.4g} degrees"
     said = f"{at}, {told} (allowed: {v.tolerance:g}).{_beyond(v)} {_anywhere(v)}"
     answer = v.answer.upper()
-    if v.answer.startswith("probably"):
+    if v.answer in PROBABLY.values():
         answer += " (four of five such answers are right)"
     refused = _refused(v) if v.answer.endswith("yes") else ""
     if refused:

@@ -170,6 +170,8 @@ GradedAnswer = Literal["yes", "no", "probably yes", "probably no", "undecided"]
 # its other numbers and on levels (.14 to .29). On levels of 44 drawn scenes (seeds 20262801 to 20262803),
 # with limits of .01 to .1, one to three levels more confirm 150 of 158 probable answers and all 350 sure ones
 PROBABLE = 0.45
+PROBABLY: Mapping[Answer, GradedAnswer] = {"yes": "probably yes", "no": "probably no"}
+"""Probable answers, by the sure one that the smaller half-width would give."""
 Pair = tuple[Outcome, Outcome]
 """With vibration and without it, on the same mesh."""
 
@@ -239,12 +241,7 @@ class VibrationEffect:
         sure = self.answer(tolerance)
         if sure != "undecided" or not (self.alike and self.is_known):
             return sure
-        match replace(self, band=PROBABLE * self.band).answer(tolerance):
-            case "yes":
-                return "probably yes"
-            case "no":
-                return "probably no"
-        return sure
+        return PROBABLY.get(replace(self, band=PROBABLE * self.band).answer(tolerance), sure)
 
     def holds_against(self, meshes: "VibrationEffect", tolerance: float) -> bool:
         """Say whether this stands beside finite elements that do not decide: they agree, and know less well.

@@ -12,6 +12,7 @@ from typing import Any
 
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.answers.verdict.assess import BUDGET, SURE, TOLERANCE
+from fem_impact.answers.verdict.vibration import PROBABLY
 from fem_impact.evidence.studies.coverage.families import FAMILIES
 from fem_impact.evidence.studies.coverage.run import ASSESS, CHECK, MOST, CoverageResult, CoverageRun
 from fem_impact.evidence.studies.coverage.scenes import DrawnScene, drawn
@@ -24,7 +25,7 @@ GROUPS = len(FAMILIES) + 2
 """Families, with the twelve bodies and the scenes that hardly yield."""
 FINER = 2
 """Levels that a check has more than its verdict; one by the reduced model counts as of one level."""
-PROBABLY, JUDGED = "probably ", ("right", "wrong")
+JUDGED = ("right", "wrong")
 BY = ("by", "answer", "judged")
 COLUMNS = (
     *("scene", "family", "barrier", "answer", "by", "levels", "change", "half-width", "wall_s", "cpu_s"),
@@ -58,8 +59,7 @@ def _check(scene: DrawnScene, results: Results) -> CoverageRun | None:
 
 def _side(answer: str) -> str:
     """Return the answer that a sure or a probable one gives, empty of any other."""
-    side = answer.removeprefix(PROBABLY)
-    return side if side in SURE else ""
+    return next((side for side in SURE if answer in (side, PROBABLY[side])), "")
 
 
 def conclude(request: Request, results: Results) -> StudyReport:
