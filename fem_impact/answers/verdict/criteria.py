@@ -322,13 +322,12 @@ class DentCriterion(Limited):
 
         Of a softer one the least is lower by the part that the harder projectile takes.
         """
-        bound, pair = super().reduced(scene), Case(scene, "modal").contact
+        pair = Case.of(scene, "modal").contact
         harder = part_of_harder(pair)
-        if isinstance(bound, Unknown) or not harder:
-            return bound
-        if pair.softer == pair.rod:
+        if harder and pair.softer == pair.rod:
             return HARDER_BARRIER
-        return replace(bound, low=bound.low * (1.0 - harder))
+        bound = super().reduced(scene)
+        return bound if isinstance(bound, Unknown) else replace(bound, low=bound.low * (1.0 - harder))
 
     def of_reduced(self, case: Case, result: ModalResult) -> float:
         """Return the depth, m, at the place that is pressed deepest."""
