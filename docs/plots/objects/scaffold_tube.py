@@ -33,6 +33,6 @@ depth = [1e3 * dent.value for dent in dents]
 errors = [[1e3 * (d.value - d.low) for d in dents], [1e3 * (d.high - d.value) for d in dents]]
 plt.errorbar(angles, depth, errors, fmt="o", capsize=4)
 plt.axhline(1.0, color="grey", linestyle="--")
-plt.gca().set(xlabel="angle between axis and normal, degrees", ylabel="depth, mm", ylim=(0, None))
+plt.gca().set(xlabel="angle between axis and normal, degrees", ylabel="depth, mm", yscale="log")
 plt.gca().set(title="deepest indentation of the plate; dashed: allowed")
 plt.show()
