@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from fem_impact.answers.sweep_results import Results
     from fem_impact.answers.validate import Validation, validate
     from fem_impact.answers.verdict.assess import Verdict, assess
+    from fem_impact.answers.verdict.limit import LimitVerdict, judge
     from fem_impact.case.case import Case
     from fem_impact.fem.exchange import to_meshio, to_pyvista, to_skfem
     from fem_impact.figures.runs import draw_waves
@@ -45,6 +46,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Case",
+    "LimitVerdict",
     "Outcome",
     "Results",
     "RunOptions",
@@ -55,6 +57,7 @@ __all__ = [
     "assess",
     "draw_waves",
     "format_quantity",
+    "judge",
     "known",
     "load",
     "modes",
@@ -78,6 +81,7 @@ __all__ = [
 
 _PLACES = {
     "Case": "case.case:Case",
+    "LimitVerdict": "answers.verdict.limit:LimitVerdict",
     "Outcome": "outcome.record:Outcome",
     "Results": "answers.sweep_results:Results",
     "RunOptions": "options:RunOptions",
@@ -88,6 +92,7 @@ _PLACES = {
     "assess": "answers.verdict.assess:assess",
     "draw_waves": "figures.runs:draw_waves",
     "format_quantity": "scene.units:format_quantity",
+    "judge": "answers.verdict.limit:judge",
     "known": "outcome.keys:known",
     "load": "scene.shipped:load",
     "modes": "modal.rod:modes",

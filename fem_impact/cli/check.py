@@ -207,8 +207,9 @@ def _contact_lines(case: Case) -> Iterator[str]:
     speed2 = seen.v_n**2 + seen.v_t**2
     energy = 0.5 * body.mass * (speed2 + body.k2 * seen.omega**2)
     motion = ", ".join(_stated(key, value) for key, value in tables["impact"].items())
-    by = "" if seen == scene.impact else ", both as seen from the barrier"
-    yield f"{motion}: {speed2**0.5:.4g} m/s, E_0 = {energy:.4g} J{by}"
+    by = "" if seen == scene.impact else ", as seen from the barrier"
+    parts = f" (v_n {seen.v_n:.4g}, v_t {seen.v_t:.4g})"
+    yield f"{motion}: {speed2**0.5:.4g} m/s{parts}, E_0 = {energy:.4g} J{by}"
     surface = scene.surface
     low, high = surface.friction_low, surface.friction_high
     sure = f"{low:g} to {high:g}" if low < high else "no interval stated: it counts as exact"

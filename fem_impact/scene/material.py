@@ -5,7 +5,7 @@ import tomllib
 from dataclasses import dataclass
 from importlib.resources import files
 from itertools import pairwise
-from math import inf
+from math import inf, sqrt
 from typing import ClassVar, Literal, NamedTuple, get_args
 
 from fem_impact.errors import SceneError
@@ -127,6 +127,9 @@ FLOWS: dict[str, type[Flow]] = {kind.law: kind for kind in (JohnsonCookFlow, Ram
 MOST_STRAIN = 0.1
 """Elastic strain that no metal bears: a perfect crystal shears at G/(2 pi) (Frenkel 1926), in tension it
 yields at sqrt(3) G/(2 pi), a tenth of E."""
+MOST_SPEED, STIFFEST = 14e3, 7e11
+"""Speed sqrt(E/rho) of waves along a rod, m/s, that no metal has: beryllium has 12.8 km/s. E, Pa, of hard metal:
+beyond it a body stands for a rigid one, of any density."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -262,7 +265,7 @@ CURVES = ("hardening", "tangent_modulus", "flow")
 
 
 def _check_strengths(metal: Material) -> None:
-    """Refuse a yield stress alone, and what only a body that yields has, without it."""
+    """Refuse a yield stress alone, what only a body that yields has without it, and what no metal has."""
     if metal.yields and metal.ultimate_stress == inf and metal.law == "tensile" and not metal.curves:
         remedy = (
             'Give it, or tangent_modulus or hardening ("0 MPa": perfectly plastic), or a table flow; or '
@@ -279,6 +282,14 @@ def _check_strengths(metal: Material) -> None:
             key="E",
             value=f"{metal.E / 1e9:.4g} GPa",
             remedy="Is its unit right? Metals have 10 to 400 GPa.",
+        )
+    if metal.yields and metal.E <= STIFFEST and (speed := sqrt(metal.E / metal.rho)) > MOST_SPEED:
+        raise SceneError(
+            f"is too light for E = {metal.E / 1e9:.4g} GPa: waves would run along a rod at "
+            f"{speed / 1e3:.3g} km/s, in no metal above {MOST_SPEED / 1e3:g} km/s.",
+            key="rho",
+            value=f"{metal.rho:.4g} kg/m3",
+            remedy="Are both units right? Metals have 1700 to 22600 kg/m3 and 10 to 400 GPa.",
         )
     if metal.ultimate_stress < metal.yield_stress:
         raise SceneError(

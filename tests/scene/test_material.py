@@ -138,6 +138,15 @@ def test_a_material_that_contradicts_itself_is_refused(changes, words):
         Material("mine", 206e9, 0.29, 7850.0, **stated)
 
 
+@pytest.mark.parametrize(
+    ("rho", "words"), [(785.0, "16.2 km/s, in no metal"), (78500.0, "at most 2.3e.04|Osmium")]
+)
+def test_a_density_that_is_wrong_by_ten_is_refused(rho, words):
+    with pytest.raises(SceneError, match=words):
+        Material("mine", 206e9, 0.29, rho, 320e6, 446e6)
+    assert Material("stiff and never yielding", 1e13, 0.29, 785.0).rho == 785.0
+
+
 def test_a_hardness_below_yield_is_refused_before_any_work():
     soft = replace_all(T5B, {"barrier.material.law": "hardness", "barrier.material.hardness": 90})
     with pytest.raises(SceneError, match="HV 90 stands for a flow stress of 294 MPa"):

@@ -24,7 +24,7 @@ from fem_impact.physics.flash import flash
 from fem_impact.run.common import MELTS
 from fem_impact.run.modal import closed, reduce
 from fem_impact.run.modal_error import factor_of, farness, part_of_harder, place_of
-from fem_impact.scene.fields import LEVELS
+from fem_impact.scene.fields import LEVELS, check_choice
 from fem_impact.scene.inputs import first_melting
 from fem_impact.scene.types import Scene
 from fem_impact.tables.text import with_band
@@ -341,3 +341,15 @@ class DentCriterion(Limited):
 
 LIMITED: Mapping[str, Limited] = {"heat": HeatCriterion(), "force": ForceCriterion(), "dent": DentCriterion()}
 """Criteria that need a limit, by the word that asks for them."""
+
+
+def criterion_of(word: str) -> Criterion:
+    """Return a criterion by its word: of `LIMITED`, or the change by vibration of one of `CHANGED`.
+
+    Raises
+    ------
+    SceneError
+        The word is none of them.
+    """
+    check_choice(word, (*LIMITED, *vibration.CHANGED), "of=")
+    return LIMITED[word] if word in LIMITED else Rigidity(word)

@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 
 from fem_impact.answers.refine.forecast import budget_of
-from fem_impact.answers.validate import FRICTION, Ends, at_place, interval_of
+from fem_impact.answers.validate import FRICTION, Ends, Interval, at_place, interval_of
 from fem_impact.answers.verdict.assess import BUDGET, LACKING, check_means
-from fem_impact.answers.verdict.criteria import Bound, Criterion
+from fem_impact.answers.verdict.criteria import Bound, Criterion, criterion_of
 from fem_impact.answers.verdict.levels import (
     NO_ANSWER,
     Means,
@@ -37,6 +37,7 @@ from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.record import installed_versions
 from fem_impact.progress import tell_cell
 from fem_impact.scene.types import Scene, digest
+from fem_impact.scene.units import parse_number, parse_quantity
 from fem_impact.tables.text import digits_apart, plain
 
 PLACES = {1: 21, 2: 7, 3: 5, 4: 3}
@@ -49,6 +50,8 @@ UNCONFIRMED = (
     "finite elements at more places than the worst and the mildest, for as much as the reduced model is too "
     "low there it may be too low elsewhere: assess parts of the intervals, or a limit with more margin."
 )
+SOLIDS = "finite elements"
+ALONE = "finite elements where the reduced model has its least number, too: notes say why they tell none."
 UNLIKE = (
     "No scene that both models computed is like this one, so that the reduced model's error is told as wide "
     "as it is where scenes differ most: finite elements, --fidelity solid, tell more."
@@ -58,7 +61,7 @@ Place = tuple[float, ...]
 CELSIUS = 273.15  # K, of 0 degC
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class LimitVerdict:
     """Whether a number stays below a limit.
 
@@ -67,9 +70,11 @@ class LimitVerdict:
     scene, criterion, limit : the question; SI
     intervals : lowest to highest value by key, as stated
     answer : for all of the intervals
-    worst, bound, by : values by key where the number is largest, the number there, and by which model
-    least : the smallest number of the reduced model over the intervals, None where it has none
+    worst, bound, by : values by key where the number is largest, the number there, and by which model; by
+        finite elements the worse of the places that these computed
+    range : smallest and largest number of the reduced model over the intervals, None where it has none
     places, not_known : where the reduced model looked, and why it has no answer at some
+    computed : places at which finite elements tell the number
     steps, notes : what was computed one after the other, and what the reader should know
     more : arguments of `judge` with which it may decide what is undecided
     """
@@ -82,12 +87,20 @@ class LimitVerdict:
     worst: Mapping[str, str]
     bound: Bound | None
     by: str
-    least: float | None
+    range: tuple[float, float] | None
     places: int
     not_known: str
+    computed: int
     steps: tuple[str, ...]
     notes: tuple[str, ...]
     more: Means
+
+    def __repr__(self) -> str:
+        told = "not known" if self.bound is None else f"{_told(self.criterion, self.bound)} by {self.by}"
+        limit = _in_unit(self.criterion, self.limit)
+        return (
+            f"LimitVerdict({self.scene.id!r}: {self.criterion.called} below {limit}: {self.answer}, {told})"
+        )
 
     @property
     def missing(self) -> str:
@@ -105,7 +118,9 @@ class LimitVerdict:
             )
         if self.not_known:
             return f"an answer: {self.not_known}"
-        return UNCONFIRMED if self.bound else "a model that tells the number: the notes say what was tried."
+        if self.bound is None:
+            return "a model that tells the number: the notes say what was tried."
+        return ALONE if self.computed == 1 else UNCONFIRMED
 
     @property
     def hopeless(self) -> bool:
@@ -125,8 +140,8 @@ class LimitVerdict:
 
 def judge(
     scene: Scene,
-    criterion: Criterion,
-    limit: float,
+    of: Criterion | str,
+    limit: float | str,
     uncertain: Mapping[str, Ends] | None = None,
     fidelity: str = "auto",
     budget_s: float = BUDGET,
@@ -137,6 +152,9 @@ def judge(
 
     Parameters
     ----------
+    of : the number: "heat", "force" or "dent"; or "e", "energy" or "friction", whose change by vibration is
+        judged as by `fem_impact.assess`
+    limit : in SI units, or text with its unit such as "430 degC"
     uncertain : lowest and highest value by key, as of `fem_impact.answers.validate.validate`; None: friction
         over the interval of the scene, if it states one
     fidelity, budget_s, workers, tell : as of `fem_impact.answers.verdict.assess.assess`
@@ -144,8 +162,9 @@ def judge(
     Raises
     ------
     SceneError, UsageError
-        The scene or an interval cannot be used, or the scene does not state what the number needs.
+        The scene, limit or an interval cannot be used, or the scene does not state what the number needs.
     """
+    criterion, limit = _question(of, limit)
     check_means(fidelity, budget_s)
     scene = scene.first_impact
     criterion.require(scene)
@@ -163,7 +182,7 @@ def judge(
     why = LACKING.format(lacking) if lacking and bounds else why
     worst = max(known, key=lambda at: (known[at].value, known[at].low), default=(0.5,) * len(intervals))
     mildest = min(known, key=lambda place: known[place].value, default=worst)
-    bound, by = known.get(worst), "the reduced model"
+    bound, by, shown, solids = known.get(worst), "the reduced model", worst, dict[Place, Bound]()
     answer = _together([one.answer(limit) for one in known.values()], bool(why) or not known)
     answer = "undecided" if lacking else answer  # its told error holds no such body
     if bound is not None:
@@ -179,7 +198,8 @@ def judge(
             bound, answer, more = None, "undecided", more and {"fidelity": "solid", **more}
         reduced = bound if fidelity == "auto" and answer == "undecided" else None
         if worst in solids and not (reduced and reduced.holds_against(solids[worst], limit)):
-            bound, by = solids[worst], "finite elements"
+            shown = max(solids, key=lambda at: (solids[at].answer(limit) != "yes", solids[at].value))
+            bound, by = solids[shown], SOLIDS
             answer = _together([one.answer(limit) for one in solids.values()], mildest not in solids)
             if answer == "yes" and intervals:
                 low = [one.high - known[at].value for at, one in solids.items() if at in known]
@@ -193,19 +213,33 @@ def judge(
         limit,
         {key: f"{low:g} to {high:g} {unit}".rstrip() for key, low, high, unit in intervals},
         answer,
-        {
-            key: f"{low + share * (high - low):.4g} {unit}".rstrip()
-            for (key, low, high, unit), share in zip(intervals, worst, strict=True)
-        },
+        _values(intervals, shown),
         bound,
         by,
-        min((one.value for one in known.values()), default=None),
+        (known[mildest].value, known[worst].value) if known else None,
         len(bounds),
         why,
+        len(solids),
         tuple(steps),
         tuple(notes),
         more if answer == "undecided" else {},
     )
+
+
+def _question(of: Criterion | str, limit: float | str) -> tuple[Criterion, float]:
+    """Return a criterion and its limit in SI units (SceneError: one of them is none)."""
+    criterion = criterion_of(of) if isinstance(of, str) else of
+    if isinstance(limit, str) and criterion.dimension:
+        return criterion, parse_quantity(limit, criterion.dimension, "limit=")
+    return criterion, parse_number(limit, "limit=")
+
+
+def _values(intervals: Sequence[Interval], place: Place) -> dict[str, str]:
+    """Return the value of each uncertain key at a place."""
+    return {
+        key: f"{low + share * (high - low):.4g} {unit}".rstrip()
+        for (key, low, high, unit), share in zip(intervals, place, strict=True)
+    }
 
 
 def _over_friction(scene: Scene) -> dict[str, Ends]:
@@ -214,7 +248,7 @@ def _over_friction(scene: Scene) -> dict[str, Ends]:
     return {FRICTION: (low, high)} if low < high else {}
 
 
-def _places(scene: Scene, intervals: Sequence[tuple[str, float, float, str]]) -> dict[Place, Scene]:
+def _places(scene: Scene, intervals: Sequence[Interval]) -> dict[Place, Scene]:
     """Return the scenes at places over the intervals, of odd numbers: their middle is one of them.
 
     What is stated wrongly is found here, before any run (SceneError, UsageError).
@@ -323,13 +357,15 @@ def limit_document(v: LimitVerdict, command: str) -> dict[str, Any]:
             "no": f", at least {size} above the limit",
             "undecided": f", up to {size} above the limit" if size else "",
         }
-        worst = "At the worst place" if v.least is not None else "Where all have their middle values"
+        worst = "At the worst place" if v.range else "Where all have their middle values"
+        worst += " of finite elements" * bool(v.range and v.by == SOLIDS)
         place = f"{worst}, {at}:" if at else "Here:"
         box.append([place, f"{_told(of, bound)}{far[bound.answer(v.limit)]}, by {v.by}."])
     if bound is not None and bound.counts:
         box.append(["It counts", bound.counts])
-    if v.least is not None and over:
-        box.append([f"Of {v.places} places of the reduced model", f"the least has {_in_unit(of, v.least)}."])
+    if v.range and over:
+        least, most = (_in_unit(of, number) for number in v.range)
+        box.append([f"Of {v.places} places of the reduced model", f"the least has {least}, the most {most}."])
     lacking = [f"The reduced model does not answer everywhere: {v.not_known}"] if v.not_known else []
     lacking += [UNLIKE] if v.by == "the reduced model" and bound is not None and not bound.alike else []
     return {

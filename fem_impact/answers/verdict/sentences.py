@@ -84,13 +84,16 @@ def _refused(v: Verdict) -> str:
 
 
 def _beyond(v: Verdict) -> str:
-    """Say where a yes holds for the stated friction alone, not over its interval."""
-    most, surface = max(v.over_friction or (0.0,), key=abs), v.scene.surface
-    if not v.answer.endswith("yes") or abs(most) <= v.tolerance:
+    """Say where an answer holds for the stated friction alone, not over its interval."""
+    low, high = v.over_friction or (0.0, 0.0)
+    changes = {"yes": max(low, high, key=abs), "no": 0.0 if low < 0.0 < high else min(low, high, key=abs)}
+    side = v.answer.removeprefix("probably ")
+    told, surface = changes.get(side, 0.0), v.scene.surface
+    if v.over_friction is None or side not in changes or (abs(told) <= v.tolerance) == (side == "yes"):
         return ""
     ends = f"{surface.friction_low:g},{surface.friction_high:g}"
     return (
-        f" That is for f = {surface.friction:g} alone: within its interval the change reaches {most:+.3f} by "
+        f" That is for f = {surface.friction:g} alone: within its interval the change is {told:+.3f} by "
         f"the reduced model; --uncertain surface.friction={ends} answers for all of it."
     )
 
@@ -243,7 +246,9 @@ def _motion(run: Outcome) -> str:
 
 def _other_angles(v: Verdict) -> Iterator[Line]:
     if v.elsewhere is not None:
-        error = v.elsewhere.source if v.fidelity == "solid" else "Its error is the same."
+        error = (
+            "Each has its own error, told like that here." if v.fidelity == "modal" else v.elsewhere.source
+        )
         yield "other inclinations", f"by the reduced model at every 5 degrees. {error}"
     angles, why = v.not_known
     if angles:

@@ -68,7 +68,7 @@ def test_no_yes_stands_beside_a_place_that_is_undecided(scene):
     assert [told[limit].answer for limit in (75.0, 69.0, 49.0)] == ["yes", "undecided", "no"]
     assert told[69.0].worst == {"impact.angle": "60 deg"} and told[69.0].margin == pytest.approx(-1.0)
     assert told[75.0].margin == pytest.approx(5.0) and told[49.0].margin == pytest.approx(-1.0)
-    assert told[75.0].places == 21 and told[75.0].least == pytest.approx(20.0)
+    assert told[75.0].places == 21 and told[75.0].range == pytest.approx((20.0, 60.0))
     assert judge(scene, Sloped(), 69.0, None, "modal").answer == "yes"
 
 
@@ -115,6 +115,35 @@ def test_finite_elements_confirm_at_the_worst_place_and_the_mildest(
     found = judge(scene, Sloped(), limit, ANGLE)
     assert found.answer == answer and seen == ran and found.by == "finite elements"
     assert found.bound.value == values[60]
+
+
+def test_a_limit_that_is_passed_at_the_mildest_place_is_told_by_the_number_there(monkeypatch, scene):
+    """The reduced model had its most where finite elements told ten times less than it had anywhere."""
+    solids(monkeypatch, {60: 5.0, 20: 80.0})
+    told = limit_document(judge(scene, Sloped(), 65.0, ANGLE), "")
+    assert told["answer"] == "no" and told["margin"] == pytest.approx(-14.0)
+    assert told["box"][1][0] == "At the worst place of finite elements, impact.angle 20 deg:"
+    assert told["box"][2] == ["Of 21 places of the reduced model", "the least has 0.02 kN, the most 0.06 kN."]
+
+
+@pytest.mark.parametrize(("mildest", "missing"), [(None, "least number, too"), (30.0, "more places")])
+def test_what_lacks_at_the_mildest_place_is_said(monkeypatch, scene, mildest, missing):
+    solids(monkeypatch, {60: 50.0, 20: mildest})
+    assert missing in judge(scene, Sloped(), 65.0, ANGLE).missing
+
+
+@pytest.mark.parametrize(("limit", "most"), [("20 kN", 20e3), (20e3, 20e3)])
+def test_a_number_and_its_limit_may_be_words(scene, limit, most):
+    found = fem_impact.judge(scene, "force", limit, fidelity="modal")
+    assert found.limit == most and found.criterion is LIMITED["force"] and found.answer == "yes"
+    assert repr(found).startswith(f"LimitVerdict({scene.id!r}: the peak force below 20 kN: yes, ")
+    assert (
+        fem_impact.judge(scene, "e", 0.5, fidelity="modal").criterion.called == "the change of e by vibration"
+    )
+    with pytest.raises(SceneError, match="of="):
+        fem_impact.judge(scene, "dents", limit)
+    with pytest.raises(SceneError, match="limit="):
+        fem_impact.judge(scene, "force", "20 mm")
 
 
 @pytest.mark.parametrize(

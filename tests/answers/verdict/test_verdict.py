@@ -943,15 +943,28 @@ def test_friction_without_an_interval_is_said_to_count_as_exact():
     assert "no friction" in dict(document(assess(smooth, "modal"))["basis"])["uncertain friction"]
 
 
-@pytest.mark.parametrize(("over", "alone"), [((-0.06, 0.01), True), ((-0.04, 0.01), False), (None, False)])
-def test_a_yes_that_the_interval_of_friction_changes_is_told_as_one_at_its_friction_alone(short, over, alone):
+@pytest.mark.parametrize(
+    ("value", "over", "beyond"),
+    [
+        (0.01, (-0.06, 0.01), "is -0.060"),
+        (0.01, (-0.04, 0.01), ""),
+        (0.01, None, ""),
+        (0.08, (0.03, 0.08), "is +0.030"),
+        (0.08, (-0.07, 0.08), "is +0.000"),
+        (0.08, (0.06, 0.08), ""),
+        (0.08, None, ""),
+    ],
+)
+def test_an_answer_that_the_interval_of_friction_changes_is_told_as_one_at_its_friction_alone(
+    short, value, over, beyond
+):
     """A titanium pin was told YES, and far below that its f changes e by more than what was allowed."""
     sure = replace(short, here=replace(short.here, band=0.0), tolerance=0.05, over_friction=over)
-    sure = replace(sure, here=replace(sure.here, value=0.01), scene=load("t5b"))
+    sure = replace(sure, here=replace(sure.here, value=value), scene=load("t5b"))
     told = box(sure)[0][1]
-    assert told.startswith("YES") and ("That is for f = 0.57 alone" in told) == alone
-    if alone:
-        assert "reaches -0.060" in told and "--uncertain surface.friction=0.45,0.7" in told
+    assert told.startswith("YES" if value < 0.05 else "NO")
+    assert ("That is for f = 0.57 alone" in told) == bool(beyond) and beyond in told
+    assert ("--uncertain surface.friction=0.45,0.7" in told) == bool(beyond)
 
 
 @pytest.mark.long
