@@ -128,8 +128,8 @@ MOST_STRAIN = 0.1
 """Elastic strain that no metal bears: a perfect crystal shears at G/(2 pi) (Frenkel 1926), in tension it
 yields at sqrt(3) G/(2 pi), a tenth of E."""
 MOST_SPEED, STIFFEST = 14e3, 7e11
-"""Speed sqrt(E/rho) of waves along a rod, m/s, that no metal has: beryllium has 12.8 km/s. E, Pa, of hard metal:
-beyond it a body stands for a rigid one, of any density."""
+"""Speed sqrt(E/rho) of waves along a rod, m/s, that no metal has: beryllium has 12.8 km/s. E, Pa, of hard
+metal: beyond it a body stands for a rigid one, of any density."""
 
 
 @dataclass(frozen=True, slots=True)
