@@ -13,7 +13,7 @@ from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.progress import Progress
 from fem_impact.run import common
 from fem_impact.run.assemble import ImpactEnd, Reduction
-from fem_impact.run.modal_error import digs_in, half_widths, part_of_harder, place_of, sentence
+from fem_impact.run.modal_error import digs_in, half_widths, part_of_other, place_of, sentence
 from fem_impact.run.resolution import without_coefficients
 
 HALVINGS = 2  # of the time step
@@ -103,7 +103,7 @@ def reduce(case: Case, result: ModalResult) -> Outcome:
         reason = Unknown(f"how wrong these numbers are is not known. {omitted or light}")
         return replace(outcome, validity=replace(said, model_band=reason))
     place = place_of(case, outcome)
-    halves = half_widths(place, outcome, case.contact.approach, part_of_harder(case.contact))
+    halves = half_widths(place, outcome, case.contact.approach, part_of_other(case))
     if digs_in(outcome) and (half := halves.get("e_edge", 0.0)) >= 1.0:
         outcome = without_coefficients(outcome, Unknown(OPEN.format(half)))
     said = replace(

@@ -23,7 +23,7 @@ from fem_impact.physics.contact_law import contact_law
 from fem_impact.physics.flash import flash
 from fem_impact.run.common import MELTS
 from fem_impact.run.modal import closed, reduce
-from fem_impact.run.modal_error import factor_of, farness, part_of_harder, place_of
+from fem_impact.run.modal_error import factor_of, farness, part_of_other, place_of
 from fem_impact.scene.fields import LEVELS, check_choice
 from fem_impact.scene.inputs import first_melting
 from fem_impact.scene.types import Scene
@@ -305,9 +305,9 @@ class ForceCriterion(Limited):
         return outcome.contact.peak_force
 
 
-HARDER_BARRIER = Unknown(
-    "the barrier is the stronger body and yields as well: the reduced model, in which the softer one alone "
-    "yields, tells no dent"
+LATER_BARRIER = Unknown(
+    "the projectile yields at a lower stress, and the barrier yields as well: the reduced model, in which "
+    "the body with the lower yield stress alone yields, tells no dent"
 )
 
 
@@ -318,16 +318,16 @@ class DentCriterion(Limited):
     dimension, unit, per_unit = "length", "mm", 1e-3
 
     def reduced(self, scene: Scene) -> Bound | Unknown:
-        """Return the depth, which is not known where the barrier is the harder body and yields as well.
+        """Return the depth, which is not known where the barrier yields as well, but after the projectile.
 
-        Of a softer one the least is lower by the part that the harder projectile takes.
+        Where it yields first, the least is lower by the part that the projectile takes.
         """
-        pair = Case.of(scene, "modal").contact
-        harder = part_of_harder(pair)
-        if harder and pair.softer == pair.rod:
-            return HARDER_BARRIER
+        case = Case.of(scene, "modal")
+        other = part_of_other(case)
+        if other and case.contact.softer == case.contact.rod:
+            return LATER_BARRIER
         bound = super().reduced(scene)
-        return bound if isinstance(bound, Unknown) else replace(bound, low=bound.low * (1.0 - harder))
+        return bound if isinstance(bound, Unknown) else replace(bound, low=bound.low * (1.0 - other))
 
     def of_reduced(self, case: Case, result: ModalResult) -> float:
         """Return the depth, m, at the place that is pressed deepest."""
