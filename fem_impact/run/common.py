@@ -9,7 +9,9 @@ from fem_impact.case.effects.heating import halves
 from fem_impact.case.shaft import gives_elsewhere
 from fem_impact.outcome.groups import ArmCoefficients, BarrierMotion, Heat, Restitution, RodMotion
 from fem_impact.outcome.keys import Num, Unknown, known, unknown
+from fem_impact.physics.contact_law import BEGINS, FULLY_PLASTIC
 from fem_impact.physics.flash import Flash, flash_bound
+from fem_impact.physics.hardening import strain_rate
 from fem_impact.run.tests import tests_of
 from fem_impact.scene.inputs import first_melting, melting
 from fem_impact.tables.text import plain
@@ -20,9 +22,7 @@ UPRIGHT = Unknown("the barrier does not turn")
 TURNING = Unknown("the barrier turns: rigid theory's arms are those of one that does not")
 UNBENT = Unknown("the plate-bending effect is off")
 CUT_OFF = Unknown("the run ended before the last separation was certain")
-HARDER = Unknown(
-    "in this contact law the softer body alone yields; plastic work of the harder one is in its share"
-)
+HARDER = Unknown("in this contact law the skin of the body that yields first alone is sheared")
 HARD = "neither body yields, so that no hardness limits the pressure of a touching spot"
 UNDETERMINED = Unknown("the contact point does not approach, or no moment acts about the mass centre: 0 / 0")
 NO_PUSH = Unknown("gravity has drawn the projectile to the barrier more than that has pushed it away")
@@ -30,6 +30,9 @@ MELTS = "melt; melting is left out"
 """End of the reason of a temperature beyond a melting point."""
 RESIDUAL_LIMIT = 1e-4  # of E_0: above it a run failed
 OPEN_LEDGER = "The energy ledger misses"  # how the reason begins, which a level looks for
+EARLY = 0.02
+"""Plastic strain at which the strengths of two bodies that flow are held against each other."""
+MOST_OF_LAST = 0.7  # see `part_of_last`
 ROUND_OFF = 1e-6  # a moment impulse over that of the normal impulse at arm d_d: below it there is none
 
 
@@ -247,11 +250,36 @@ def rod_flows(case: Case) -> bool:
     return bool(case.contact.rod_yields and case.contact.softer == case.contact.rod)
 
 
-def plastic_shares(case: Case, share: float) -> tuple[Num, Num]:
-    """Return the plastic work of rod and barrier; that of a harder body that may yield is not known."""
-    in_rod = rod_flows(case)
-    other = HARDER if case.contact.rod_yields and case.contact.barrier_yields else 0.0
-    return (share, other) if in_rod else (other, share)
+def part_of_last(case: Case) -> float:
+    """Return the part, 0 to 0.7, of the plastic work that the body takes which yields last.
+
+    What counts is how strong both bodies are where most of the metal flows, by plastic strains of `EARLY` at
+    the rate of the indentation: a body that the mean pressure of full flow in the weaker one does not make
+    yield takes none, and one that is so much weaker `MOST_OF_LAST`. In between the part follows the third
+    power of the distance from that ratio. In 47 runs by finite elements (edges at 45 degrees and round noses
+    at 10; 26 with nine pairs of metals, of which in 17 the one that yields first hardens beyond the other)
+    the part was 0.4 to 1.6 times that.
+    """
+    pair, laws = case.contact, (case.slots.rod_law, case.slots.barrier_law)
+    if len(pair.yielding) < 2:
+        return 0.0
+    pace = strain_rate(pair.estimate)
+    flows = [
+        float(law.flow_stress(EARLY)) * (law.rate.factor(pace) if law.rate else 1.0) for law in laws if law
+    ]
+    first, last = flows if pair.softer == pair.rod else flows[::-1]
+    most = FULLY_PLASTIC / BEGINS
+    less = 0.5 * max((most - max(first / last, last / first)) / (most - 1.0), 0.0) ** 3
+    return MOST_OF_LAST * (less if first <= last else 1.0 - less)
+
+
+def plastic_shares(case: Case, share: float, skin: float = 0.0) -> tuple[float, float]:
+    """Return the plastic work of rod and barrier of that of both; the barrier's holds that of its ``skin``."""
+    last = part_of_last(case) * share
+    if rod_flows(case):
+        return share - last, last
+    last = min(last, share - skin)
+    return last, share - last
 
 
 def heat(case: Case, flash: Flash, power: float, flux: float, patch: float, less_vibration: Num) -> Heat:

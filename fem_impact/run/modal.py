@@ -13,7 +13,7 @@ from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.progress import Progress
 from fem_impact.run import common
 from fem_impact.run.assemble import ImpactEnd, Reduction
-from fem_impact.run.modal_error import digs_in, half_widths, part_of_other, place_of, sentence
+from fem_impact.run.modal_error import digs_in, half_widths, place_of, sentence
 from fem_impact.run.resolution import without_coefficients
 
 HALVINGS = 2  # of the time step
@@ -103,7 +103,7 @@ def reduce(case: Case, result: ModalResult) -> Outcome:
         reason = Unknown(f"how wrong these numbers are is not known. {omitted or light}")
         return replace(outcome, validity=replace(said, model_band=reason))
     place = place_of(case, outcome)
-    halves = half_widths(place, outcome, case.contact.approach, part_of_other(case))
+    halves = half_widths(place, outcome, case.contact.approach, common.part_of_last(case))
     if digs_in(outcome) and (half := halves.get("e_edge", 0.0)) >= 1.0:
         outcome = without_coefficients(outcome, Unknown(OPEN.format(half)))
     said = replace(
@@ -128,7 +128,8 @@ def _too_light(case: Case) -> str:
 def _energy(case: Case, result: ModalResult) -> Energy:
     E_0, vibration = result.E_0, result.vibration / result.E_0
     floor = abs(result.residual) / E_0
-    plastic_rod, plastic_barrier = common.plastic_shares(case, result.plastic / E_0)
+    sheared = (result.skin - result.friction) / E_0
+    plastic_rod, plastic_barrier = common.plastic_shares(case, result.plastic / E_0, sheared)
     skin, skin_rod, skin_barrier = _skins(case, result.skin / E_0, result.friction / E_0)
     return Energy(
         E_0=E_0,
@@ -188,8 +189,9 @@ ASSUMPTIONS = (
     "sqrt(R1 R2).",
     "The forces of a sliding tip that ploughs and of a contact that yields in shear hold two constants, "
     "found from six other impacts.",
-    "Left out: residual stress, and waves in the barrier. The harder body stays elastic: W_skin lacks the "
-    "work in its surface, .01 and .03 of E_0 in two scenes of steel by finite elements.",
+    "Left out: residual stress, and waves in the barrier. The body that yields first takes all of the dent; "
+    "of two that yield the plastic work is shared by their strengths. W_skin lacks the work in the surface "
+    "of the other one, .01 and .03 of E_0 in two scenes of steel by finite elements.",
 )
 
 

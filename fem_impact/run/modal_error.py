@@ -23,8 +23,7 @@ from fem_impact.case.measured import CONFIDENCE, reduced_pairs, tolerance_rank
 from fem_impact.outcome.keys import known, or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.physics.contact import ContactPair
-from fem_impact.physics.contact_law import BEGINS, FULLY_PLASTIC, contact_law
-from fem_impact.physics.hardening import strain_rate
+from fem_impact.physics.contact_law import contact_law
 
 HELD = 0.9
 """Share of differences from finite elements that a half-width holds."""
@@ -37,14 +36,14 @@ PLOUGHS = 0.1
 """Impulse ratio beyond friction, of the form of a dent, that no stored scene comes near; the most is .095."""
 # speed over that of approach, up to which errors of e do not grow with it in the stored scenes, and the most
 GRAZING = 3.1
-EARLY = 0.02
-"""Plastic strain at which the strengths of two bodies that flow are held against each other."""
 LEAST_VIBRATION = 0.005  # of E_0, below which errors of the vibration energy no longer fall with it
 TOLD = (
     *("e_edge", "mu", "V_n_m_per_s", "V_t_m_per_s", "Omega_rad_per_s"),
     *("E_r_over_E_0", VIBRATION, "W_friction_over_E_0"),
 )
 """Keys of the numbers whose error is stored, the last three shares of E_0."""
+# over the part of the plastic work that the body takes which yields last: see `part_of_last`
+SPLIT = 0.6
 PLASTIC = ("E_plastic_rod_over_E_0", "E_plastic_barrier_over_E_0")
 FACTORS = ("peak_force_N", "dent_m", "flash_rise_K")
 """Numbers that are held against limits; their errors are natural logarithms of the ratio of both models."""
@@ -207,37 +206,12 @@ def scale_of(key: str, outcome: Outcome) -> float:
     return max(or_none(outcome.energy.vibration) or 0.0, LEAST_VIBRATION)
 
 
-def part_of_other(case: Case) -> float:
-    """Return the largest part, 0 to 1, of the plastic work that the body which yields last takes.
-
-    The contact law gives all to the one that yields first. What counts is how strong both are where most of
-    the metal flows, by plastic strains of `EARLY` at the rate of the indentation: as strong as each other
-    they share it, and a body that the mean pressure of full flow in the weaker one does not make yield takes
-    none. In between the part is the third power of the distance from that ratio. Where the one that yields
-    first hardens beyond the other, the other takes the rest. In 47 runs by finite elements (edges at 45
-    degrees and round noses at 10; 26 with nine pairs of metals, of which in 17 the one hardens beyond the
-    other) it holds what was taken to .02. Most was .74, where copper struck aluminium: it yields at .68 of
-    the aluminium's stress, and hardens to 1.7 times it.
-    """
-    pair, laws = case.contact, (case.slots.rod_law, case.slots.barrier_law)
-    if len(pair.yielding) < 2:
-        return 0.0
-    pace = strain_rate(pair.estimate)
-    flows = (
-        float(law.flow_stress(EARLY)) * (law.rate.factor(pace) if law.rate else 1.0) for law in laws if law
-    )
-    first, last = flows if pair.softer == pair.rod else reversed([*flows])
-    most = FULLY_PLASTIC / BEGINS
-    part = 0.5 * max((most - max(first / last, last / first)) / (most - 1.0), 0.0) ** 3
-    return part if first <= last else 1.0 - part
-
-
-def half_widths(place: Place, outcome: Outcome, approach: float, other: float = 0.0) -> dict[str, float]:
+def half_widths(place: Place, outcome: Outcome, approach: float, last: float = 0.0) -> dict[str, float]:
     """Return half-widths, by key, of those numbers that an outcome of the reduced model knows.
 
     Where the form of a dent gives more impulse along the barrier than any stored scene shows, all that is
     beyond friction may be wrong, and with it what that impulse gives the motion. ``approach``, m/s, is
-    that of the contact point; ``other`` the part of the plastic work that the other body may take.
+    that of the contact point; ``last`` the part of the plastic work that the body takes which yields last.
     """
     at, table, far = np.array(place), stored(), farness(place, outcome)
     halves = {
@@ -247,7 +221,7 @@ def half_widths(place: Place, outcome: Outcome, approach: float, other: float = 
     }
     if "e_edge" in halves:
         halves["e_edge"] *= widened_by(unit_of("V_n_m_per_s", outcome), approach)
-    # the plastic work of the body that flows is what the other shares leave
+    # the plastic work is what the other shares leave
     plastic = [key for key in PLASTIC if or_none(KEY_TABLE[key].of(outcome))]
     if not outcome.motion.friction:  # nothing rubs; along an elastic body nothing pushes at all
         halves["W_friction_over_E_0"] = 0.0
@@ -256,7 +230,9 @@ def half_widths(place: Place, outcome: Outcome, approach: float, other: float = 
             turned = halves["V_n_m_per_s"] * arm
             halves |= {"mu": 0.0, "V_t_m_per_s": 0.0, "Omega_rad_per_s": turned}
     others = sum(halves.get(key, 0.0) for key in TOLD[-3:])
-    halves |= {key: others + other * known(KEY_TABLE[key].of(outcome)) for key in plastic}
+    whole = sum(known(KEY_TABLE[key].of(outcome)) for key in plastic)
+    for key in plastic:
+        halves[key] = others * known(KEY_TABLE[key].of(outcome)) / whole + SPLIT * last * whole
     for key in (*TOLD[-3:], *plastic):  # shares lie between 0 and 1
         if key in halves:
             share = known(KEY_TABLE[key].of(outcome))

@@ -6,7 +6,7 @@ from fem_impact.case.case import Case
 from fem_impact.files.atomic import write_text
 from fem_impact.modal.impact import ModalResult
 from fem_impact.modal.motion import ROW
-from fem_impact.run.common import rod_flows
+from fem_impact.run.common import plastic_shares
 from fem_impact.tables.history import HISTORY
 from fem_impact.tables.table import Table
 
@@ -22,8 +22,7 @@ def write_history(case: Case, result: ModalResult, path: Path) -> None:
     """
     record, barrier = result.record, case.scene.barrier
     zero = 0.0 * record[:, ROW.time]
-    plastic = record[:, ROW.plastic]
-    in_rod = rod_flows(case)
+    in_rod, in_barrier = plastic_shares(case, 1.0)
     columns = dict.fromkeys(HISTORY, zero) | {
         "time_s": record[:, ROW.time],
         "force_n_N": record[:, ROW.force_n],
@@ -31,8 +30,8 @@ def write_history(case: Case, result: ModalResult, path: Path) -> None:
         "contact_nodes": (record[:, ROW.force_n] > 0).astype(int),
         "E_kinetic_rod_J": record[:, ROW.rigid] + record[:, ROW.vibration],
         "E_strain_rod_J": record[:, ROW.strain],
-        "E_plastic_rod_J": plastic if in_rod else zero,
-        "E_plastic_barrier_J": zero if in_rod else plastic,
+        "E_plastic_rod_J": in_rod * record[:, ROW.plastic],
+        "E_plastic_barrier_J": in_barrier * record[:, ROW.plastic],
         "E_kinetic_barrier_J": record[:, ROW.barrier],
         "W_friction_J": record[:, ROW.friction],
         "W_damping_J": record[:, ROW.viscous],

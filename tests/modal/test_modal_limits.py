@@ -194,12 +194,12 @@ def test_an_impact_in_which_gravity_rules_is_no_result():
     assert "no impact any more" in told.stopped_because
 
 
-def test_plastic_work_of_the_harder_body_is_not_known():
-    """The contact law lets the softer body flow alone; the rod of the paper yields too."""
+def test_plastic_work_of_both_bodies_is_known():
+    """The contact law lets one body flow alone; the rod of the paper yields too, .14 by finite elements."""
     scene = load("t5b")
     energy = outcome_of(scene).energy
-    assert "the softer body alone" in energy.plastic_rod.reason
-    assert energy.plastic == energy.plastic_barrier > 0.1
+    assert energy.plastic_rod == pytest.approx(0.15, abs=0.01)
+    assert energy.plastic == energy.plastic_barrier + energy.plastic_rod > 0.7
     stiff = outcome_of(replace(scene, effects=("vibration", "friction", "barrier-elastoplastic"))).energy
     assert stiff.plastic_rod == 0.0
 

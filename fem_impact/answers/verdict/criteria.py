@@ -21,9 +21,9 @@ from fem_impact.outcome.keys import Num, Unknown
 from fem_impact.outcome.record import Outcome
 from fem_impact.physics.contact_law import contact_law
 from fem_impact.physics.flash import flash
-from fem_impact.run.common import MELTS
+from fem_impact.run.common import MELTS, part_of_last
 from fem_impact.run.modal import closed, reduce
-from fem_impact.run.modal_error import factor_of, farness, part_of_other, place_of
+from fem_impact.run.modal_error import SPLIT, factor_of, farness, place_of
 from fem_impact.scene.fields import LEVELS, check_choice
 from fem_impact.scene.inputs import first_melting
 from fem_impact.scene.types import Scene
@@ -323,11 +323,15 @@ class DentCriterion(Limited):
         Where it yields first, the least is lower by the part that the projectile takes.
         """
         case = Case.of(scene, "modal")
-        other = part_of_other(case)
-        if other and case.contact.softer == case.contact.rod:
+        last = part_of_last(case)
+        if last and case.contact.softer == case.contact.rod:
             return LATER_BARRIER
         bound = super().reduced(scene)
-        return bound if isinstance(bound, Unknown) else replace(bound, low=bound.low * (1.0 - other))
+        return (
+            bound
+            if isinstance(bound, Unknown)
+            else replace(bound, low=bound.low * (1.0 - (1.0 + SPLIT) * last))
+        )
 
     def of_reduced(self, case: Case, result: ModalResult) -> float:
         """Return the depth, m, at the place that is pressed deepest."""
