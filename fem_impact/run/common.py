@@ -274,7 +274,7 @@ def part_of_last(case: Case) -> float:
 
 
 def plastic_shares(case: Case, share: float, skin: float = 0.0) -> tuple[float, float]:
-    """Return the plastic work of rod and barrier of that of both; the barrier's holds that of its ``skin``."""
+    """Return plastic work of rod and barrier of that of both; the barrier's holds that of its ``skin``."""
     last = part_of_last(case) * share
     if rod_flows(case):
         return share - last, last
