@@ -206,5 +206,5 @@ def _dent(case: Case) -> list[str]:
 def _skins(case: Case, sheared: float, friction: float) -> tuple[Num, Num, Num]:
     """Return friction and plastic work of the surface, and that work of rod and barrier alone."""
     if common.rod_flows(case):
-        return SOFT_ROD, SOFT_ROD, common.HARDER if case.contact.barrier_yields else 0.0
-    return sheared, common.HARDER if case.contact.rod_yields else 0.0, sheared - friction
+        return SOFT_ROD, SOFT_ROD, common.UNSHEARED if case.contact.barrier_yields else 0.0
+    return sheared, common.UNSHEARED if case.contact.rod_yields else 0.0, sheared - friction

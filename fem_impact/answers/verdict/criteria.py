@@ -327,11 +327,8 @@ class DentCriterion(Limited):
         if last and case.contact.softer == case.contact.rod:
             return LATER_BARRIER
         bound = super().reduced(scene)
-        return (
-            bound
-            if isinstance(bound, Unknown)
-            else replace(bound, low=bound.low * (1.0 - (1.0 + SPLIT) * last))
-        )
+        least = 1.0 - min((1.0 + SPLIT) * last, 1.0)
+        return bound if isinstance(bound, Unknown) else replace(bound, low=least * bound.low)
 
     def of_reduced(self, case: Case, result: ModalResult) -> float:
         """Return the depth, m, at the place that is pressed deepest."""

@@ -72,7 +72,7 @@ class LimitVerdict:
     answer : for all of the intervals
     worst, bound, by : values by key where the number is largest, the number there, and by which model; by
         finite elements the worse of the places that these computed
-    range : smallest and largest number of the reduced model over the intervals, None where it has none
+    reduced : smallest and largest number of the reduced model over the intervals, None where it has none
     places, not_known : where the reduced model looked, and why it has no answer at some
     computed : places at which finite elements tell the number
     steps, notes : what was computed one after the other, and what the reader should know
@@ -87,7 +87,7 @@ class LimitVerdict:
     worst: Mapping[str, str]
     bound: Bound | None
     by: str
-    range: tuple[float, float] | None
+    reduced: tuple[float, float] | None
     places: int
     not_known: str
     computed: int
@@ -357,14 +357,14 @@ def limit_document(v: LimitVerdict, command: str) -> dict[str, Any]:
             "no": f", at least {size} above the limit",
             "undecided": f", up to {size} above the limit" if size else "",
         }
-        worst = "At the worst place" if v.range else "Where all have their middle values"
-        worst += " of finite elements" * bool(v.range and v.by == SOLIDS)
+        worst = "At the worst place" if v.reduced else "Where all have their middle values"
+        worst += " of finite elements" * bool(v.reduced and v.by == SOLIDS)
         place = f"{worst}, {at}:" if at else "Here:"
         box.append([place, f"{_told(of, bound)}{far[bound.answer(v.limit)]}, by {v.by}."])
     if bound is not None and bound.counts:
         box.append(["It counts", bound.counts])
-    if v.range and over:
-        least, most = (_in_unit(of, number) for number in v.range)
+    if v.reduced and over:
+        least, most = (_in_unit(of, number) for number in v.reduced)
         box.append([f"Of {v.places} places of the reduced model", f"the least has {least}, the most {most}."])
     lacking = [f"The reduced model does not answer everywhere: {v.not_known}"] if v.not_known else []
     lacking += [UNLIKE] if v.by == "the reduced model" and bound is not None and not bound.alike else []

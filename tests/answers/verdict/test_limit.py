@@ -70,7 +70,7 @@ def test_no_yes_stands_beside_a_place_that_is_undecided(scene):
     assert [told[limit].answer for limit in (75.0, 69.0, 49.0)] == ["yes", "undecided", "no"]
     assert told[69.0].worst == {"impact.angle": "60 deg"} and told[69.0].margin == pytest.approx(-1.0)
     assert told[75.0].margin == pytest.approx(5.0) and told[49.0].margin == pytest.approx(-1.0)
-    assert told[75.0].places == 21 and told[75.0].range == pytest.approx((20.0, 60.0))
+    assert told[75.0].places == 21 and told[75.0].reduced == pytest.approx((20.0, 60.0))
     assert judge(scene, Sloped(), 69.0, None, "modal").answer == "yes"
 
 
