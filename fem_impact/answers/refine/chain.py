@@ -380,7 +380,7 @@ class LevelChain:
             return "cells were crushed, and finer ones would be sooner: fidelity rigid or modal has none"
         if self.refused or self.following is not None:
             return "a finer level gave no result" if self.refused else "a larger budget adds a finer level"
-        levels = f"accuracy.levels = {self.scene.accuracy.levels + 1}"
+        levels = f"accuracy.levels = {1 + (now := self.scene.accuracy.levels)} in place of {now}"
         return f"{'a smaller accuracy.tip_size' if self.meshes.is_sized else levels} adds a finer level"
 
     def advice(self, before_s: float = 0.0, halvings: int = 1) -> tuple[str, int | None]:

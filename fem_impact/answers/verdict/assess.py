@@ -21,6 +21,7 @@ from fem_impact.progress import tell_cell
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.impact import Following
 from fem_impact.scene.types import Scene, require_scene
+from fem_impact.scene.units import parse_number
 from fem_impact.tables.table import Table
 from fem_impact.tables.text import digits_apart, plain
 
@@ -173,6 +174,7 @@ def assess(
     if of not in CHANGED:
         remedy = f"Use one of {', '.join(CHANGED)}."
         raise SceneError("is not a number whose change is judged.", key="of=", value=of, remedy=remedy)
+    tolerance = parse_number(tolerance, "tolerance=")
     if not 0.0 < tolerance < 1.0:
         remedy = "It is the change that may be neglected: give one such as 0.05."
         raise SceneError("must lie between 0 and 1.", key="tolerance=", value=tolerance, remedy=remedy)

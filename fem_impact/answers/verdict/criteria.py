@@ -52,6 +52,10 @@ class Bound:
             return "no"
         return "yes" if self.high <= limit else "undecided"
 
+    def rank(self, limit: float) -> int:
+        """Return how bad the answer is: 0 of a yes, 2 of a no."""
+        return ("yes", "undecided", "no").index(self.answer(limit))
+
     def graded(self, limit: float) -> vibration.Answer:
         """Return the answer: of a limit none is probable."""
         return self.answer(limit)
@@ -265,7 +269,9 @@ class HeatCriterion(Limited):
         if last:
             return _solid_metal(scene, Bound(inf, inf if before else self.base(scene), inf))
         bound = super().solid(levels)
-        return None if bound is None else _solid_metal(scene, bound)
+        if bound is None:
+            return None
+        return _solid_metal(scene, replace(bound, low=max(bound.low, self.base(scene))))
 
     def meshed(self, scene: Scene) -> tuple[Scene, Scene | None]:
         """Return the scene with its heat followed."""

@@ -43,12 +43,13 @@ from fem_impact.tables.text import digits_apart, plain
 PLACES = {1: 21, 2: 7, 3: 5, 4: 3}
 """Values of each of so many intervals at which the reduced model looks."""
 CONFIRMED = (
-    "Finite elements ran where the reduced model has its largest number and its least; as much as it is too "
-    "low at one of them it counts as too low at all places."
+    "Finite elements ran where the reduced model has its largest number and its least; as far as their upper "
+    "end lies above it at one of them, it counts as too low at all places."
 )
 UNCONFIRMED = (
-    "finite elements at more places than the worst and the mildest, for as much as the reduced model is too "
-    "low there it may be too low elsewhere: assess parts of the intervals, or a limit with more margin."
+    "a smaller error of finite elements: they stay below the limit where the reduced model has its largest "
+    "number and its least, but as far as their upper end lies above it at one of them it may be too low at "
+    "all places, and that passes the limit. Assess parts of the intervals, or a limit with more margin."
 )
 SOLIDS = "finite elements"
 ALONE = "finite elements where the reduced model has its least number, too: notes say why they tell none."
@@ -171,20 +172,18 @@ def judge(
     stated = {**_over_friction(scene), **(uncertain or {})}
     intervals = [interval_of(scene, key, ends) for key, ends in stated.items()]
     scenes, lacking = _places(scene, intervals), not_reduced(Case(scene).bodies)
-    steps, notes = list[str](), list[str]()
-    if lacking and fidelity != "modal":
-        notes.append(LACKING.format(lacking))
-    else:
-        tell(f"the reduced model at {len(scenes)} places ...")
-    bounds = {} if lacking and fidelity != "modal" else _scanned(scenes, criterion)
+    reduced = not lacking or fidelity == "modal"
+    steps, notes = list[str](), [] if reduced else [LACKING.format(lacking)]
+    bounds = _scanned(scenes, criterion, tell) if reduced else {}
     known = {place: one for place, one in bounds.items() if isinstance(one, Bound)}
     why = next((one.reason for one in bounds.values() if isinstance(one, Unknown)), "")
     why = LACKING.format(lacking) if lacking and bounds else why
     worst = max(known, key=lambda at: (known[at].value, known[at].low), default=(0.5,) * len(intervals))
     mildest = min(known, key=lambda place: known[place].value, default=worst)
-    bound, by, shown, solids = known.get(worst), "the reduced model", worst, dict[Place, Bound]()
-    answer = _together([one.answer(limit) for one in known.values()], bool(why) or not known)
-    answer = "undecided" if lacking else answer  # its told error holds no such body
+    shown = max(known, key=lambda at: (known[at].rank(limit), known[at].value), default=worst)
+    bound, by, solids = known.get(shown), "the reduced model", dict[Place, Bound]()
+    every = [one.answer(limit) for one in known.values()]  # the told error holds no body that lacks the model
+    answer = "undecided" if lacking else _together(every, bool(why) or not known)
     if bound is not None:
         where = f" at the worst of {len(known)} places" if intervals else ""
         steps.append(f"{by}: {_told(criterion, bound)}{where}: {answer}")
@@ -195,10 +194,11 @@ def judge(
         solids, said, more = _by_solids(two, criterion, limit, (budget_s, workers), tell, steps)
         notes += said
         if fidelity == "solid" and worst not in solids:  # what was asked for tells nothing
-            bound, answer, more = None, "undecided", more and {"fidelity": "solid", **more}
-        reduced = bound if fidelity == "auto" and answer == "undecided" else None
-        if worst in solids and not (reduced and reduced.holds_against(solids[worst], limit)):
-            shown = max(solids, key=lambda at: (solids[at].answer(limit) != "yes", solids[at].value))
+            bound, answer = None, "undecided"
+        more = {"fidelity": fidelity, **more} if more and fidelity == "solid" else more
+        quick = known.get(worst) if fidelity == "auto" and answer == "undecided" else None
+        if worst in solids and not (quick and quick.holds_against(solids[worst], limit)):
+            shown = max(solids, key=lambda at: (solids[at].rank(limit), solids[at].value))
             bound, by = solids[shown], SOLIDS
             answer = _together([one.answer(limit) for one in solids.values()], mildest not in solids)
             if answer == "yes" and intervals:
@@ -230,8 +230,11 @@ def _question(of: Criterion | str, limit: float | str) -> tuple[Criterion, float
     """Return a criterion and its limit in SI units (SceneError: one of them is none)."""
     criterion = criterion_of(of) if isinstance(of, str) else of
     if isinstance(limit, str) and criterion.dimension:
-        return criterion, parse_quantity(limit, criterion.dimension, "limit=")
-    return criterion, parse_number(limit, "limit=")
+        limit = parse_quantity(limit, criterion.dimension, "limit")
+    limit = parse_number(limit, "limit")
+    if limit <= 0.0:
+        raise SceneError("must lie above 0.", key="limit", value=_in_unit(criterion, limit))
+    return criterion, limit
 
 
 def _values(intervals: Sequence[Interval], place: Place) -> dict[str, str]:
@@ -264,8 +267,9 @@ def _places(scene: Scene, intervals: Sequence[Interval]) -> dict[Place, Scene]:
     }
 
 
-def _scanned(scenes: Mapping[Place, Scene], criterion: Criterion) -> dict[Place, Bound | Unknown]:
+def _scanned(scenes: Mapping[Place, Scene], criterion: Criterion, tell: Tell) -> dict[Place, Bound | Unknown]:
     """Return the number by the reduced model at places (SceneError: the only one is refused)."""
+    tell(f"the reduced model at {len(scenes)} places ...")
     bounds = dict[Place, Bound | Unknown]()
     for place, scene in scenes.items():
         try:

@@ -10,6 +10,7 @@ from fem_impact.answers.verdict.levels import next_step
 from fem_impact.answers.verdict.screening import Screening
 from fem_impact.answers.verdict.vibration import (
     CALLED,
+    CHANGED,
     MESHES,
     PROBABLY,
     GradedAnswer,
@@ -22,6 +23,7 @@ from fem_impact.outcome.keys import Unknown, or_none
 from fem_impact.outcome.record import Outcome, installed_versions
 from fem_impact.outcome.shares import SHARES, heat_ends
 from fem_impact.run.common import RESIDUAL_LIMIT
+from fem_impact.run.simulate import simulate
 from fem_impact.run.unusual import ROUND_OFF
 from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.impact import FIRST
@@ -50,6 +52,13 @@ THERE: Mapping[GradedAnswer, str] = {
     "probably no": "rigid theory may probably not be used there",
     "undecided": "whether rigid theory may be used there is undecided",
 }
+FORMULA = "its restitution is a closed formula; give it a measured or computed one, the key restitution"
+WHY: Mapping[str, str] = {
+    "e": FORMULA,
+    "energy": FORMULA,
+    "friction": "its loss along the barrier counts plastic flow, too",
+}
+"""Why rigid theory has another number than a run whose vibration hardly matters."""
 Line = tuple[str, str]
 
 
@@ -72,10 +81,24 @@ def _may(v: Verdict) -> str:
     answer = v.answer.upper()
     if v.answer in PROBABLY.values():
         answer += " (four of five such answers are right)"
-    refused = _refused(v) if v.answer.endswith("yes") else ""
-    if refused:
-        return f"{answer} as to vibration: {said} But --fidelity rigid has no answer here: {refused}"
-    return f"{answer}: {said}"
+    but = _but(v) if v.answer.endswith("yes") else ""
+    return f"{answer} as to vibration: {said} {but}" if but else f"{answer}: {said}"
+
+
+def _but(v: Verdict) -> str:
+    """Return why --fidelity rigid does not give the number that a yes is about; nothing where it does."""
+    if v.here is None:
+        return ""
+    if refused := _refused(v):
+        return f"But --fidelity rigid has no answer here: {refused}"
+    key = CHANGED[v.of]
+    theirs, ours = key.of(simulate(untargeted(v.scene), "rigid")), key.of(v.here.free)
+    if v.scene.restitution is not None or isinstance(theirs, Unknown) or isinstance(ours, Unknown):
+        return ""
+    if abs(theirs - ours) <= v.tolerance:
+        return ""
+    numbers = f"{theirs:.3f} for {CALLED[v.of]} and {v.here.model} {ours:.3f}"
+    return f"But --fidelity rigid has {numbers}: {WHY[v.of]}."
 
 
 def _refused(v: Verdict) -> str:
@@ -116,7 +139,8 @@ def _anywhere(v: Verdict) -> str:
     if v.worst is v.here:
         return f"No other inclination{known} has a larger change{by}{everywhere}."
     return (
-        f"At the worst inclination{known}, {degrees(v.worst.angle):.0f} degrees, it changes {v.of} by "
+        f"At the worst inclination{known}, {degrees(v.worst.angle):.0f} degrees (rod and velocity turned "
+        f"together), it changes {v.of} by "
         f"{v.worst.told}"
         f"{doubt(v.worst)}{by}{everywhere or f'; {THERE[v.worst.graded(v.tolerance)]}'}."
     )

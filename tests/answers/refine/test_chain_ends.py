@@ -152,7 +152,10 @@ def test_smaller_cells_do_not_follow_crushed_ones(level):
 
 def test_where_levels_end_unresolved_the_remedy_is_one_that_adds_a_finer_one(level):
     """Three levels more than asked for have run already: one more has to be asked for."""
-    for scene, remedy in ((FREE, "accuracy.levels = 4"), (QUICK, "a smaller accuracy.tip_size")):
+    for scene, remedy in (
+        (FREE, "accuracy.levels = 4 in place of 3"),
+        (QUICK, "a smaller accuracy.tip_size"),
+    ):
         levels = LevelChain(Case(scene), done=[level])
         levels.done = [
             replace(lasting(level, 0.1), splits=splits)

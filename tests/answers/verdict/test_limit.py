@@ -12,7 +12,7 @@ import pytest
 import fem_impact
 from fem_impact.answers.verdict import levels
 from fem_impact.answers.verdict import limit as module
-from fem_impact.answers.verdict.criteria import LIMITED, Bound, ForceCriterion
+from fem_impact.answers.verdict.criteria import LIMITED, Bound, ForceCriterion, Limited
 from fem_impact.answers.verdict.limit import judge, limit_document
 from fem_impact.case.case import Case
 from fem_impact.case.effects.heating import halves
@@ -128,7 +128,9 @@ def test_a_limit_that_is_passed_at_the_mildest_place_is_told_by_the_number_there
     assert told["box"][2] == ["Of 21 places of the reduced model", "the least has 0.02 kN, the most 0.06 kN."]
 
 
-@pytest.mark.parametrize(("mildest", "missing"), [(None, "least number, too"), (30.0, "more places")])
+@pytest.mark.parametrize(
+    ("mildest", "missing"), [(None, "least number, too"), (30.0, "upper end lies above")]
+)
 def test_what_lacks_at_the_mildest_place_is_said(monkeypatch, scene, mildest, missing):
     solids(monkeypatch, {60: 50.0, 20: mildest})
     assert missing in judge(scene, Sloped(), 65.0, ANGLE).missing
@@ -142,9 +144,11 @@ def test_a_number_and_its_limit_may_be_words(scene, limit, most):
     assert (
         fem_impact.judge(scene, "e", 0.5, fidelity="modal").criterion.called == "the change of e by vibration"
     )
+    with pytest.raises(SceneError, match="above 0"):
+        fem_impact.judge(scene, "force", "-1 N")
     with pytest.raises(SceneError, match="of="):
         fem_impact.judge(scene, "dents", limit)
-    with pytest.raises(SceneError, match="limit="):
+    with pytest.raises(SceneError, match="limit = .20 mm"):
         fem_impact.judge(scene, "force", "20 mm")
 
 
@@ -238,6 +242,16 @@ def test_a_temperature_beyond_the_melting_point_is_at_least_that(scene):
         assert LIMITED["heat"].solid(levels).low == pytest.approx(low)
     levels[-1].runs.wide = False  # a contact hardly wider than a cell tells no heat, high or low
     assert LIMITED["heat"].solid(levels) is None
+
+
+def test_a_temperature_is_never_below_that_of_the_surroundings(monkeypatch, scene):
+    """Levels of a nylon pin told 218 to 550 K in a room of 293 K."""
+    monkeypatch.setattr(Limited, "solid", lambda self, levels: Bound(360.0, 218.0, 550.0))
+    heat = SimpleNamespace(rise=100.0)
+    level = SimpleNamespace(
+        cases=[Case(scene)], outcome=SimpleNamespace(heat=heat), runs=SimpleNamespace(wide=True)
+    )
+    assert LIMITED["heat"].solid([level] * 3) == Bound(360.0, 293.15, 550.0)
 
 
 def test_heat_by_finite_elements_follows_the_contact(scene):
@@ -336,9 +350,31 @@ def test_finite_elements_that_tell_nothing_leave_undecided_who_asked_for_them(mo
     assert judge(scene, Sloped(), 75.0, None, "auto").answer == "yes"
 
 
+def test_the_next_step_of_finite_elements_asks_for_them_again(monkeypatch, scene):
+    """Without them it gave the reduced model's answer."""
+    solids(monkeypatch, {60: 65.5})
+    told = limit_document(judge(scene, Sloped(), 65.0, ANGLE, "solid"), "fem-impact assess t5b")
+    assert told["next_step"] == "fem-impact assess t5b --fidelity solid --budget '90 s'"
+
+
+class Unsure(Sloped):
+    """The same, told within 40 N where it is small."""
+
+    def reduced(self, scene):
+        bound = super().reduced(scene)
+        return replace(bound, high=bound.value + 40.0) if bound.value < 45.0 else bound
+
+
+def test_the_place_that_leaves_an_answer_open_is_shown(scene):
+    """A dent was told to stay below its limit at the worst place, beside UNDECIDED."""
+    found = judge(scene, Unsure(), 75.0, ANGLE, "modal")
+    assert found.answer == "undecided" and found.bound.value == pytest.approx(44.0)
+    assert found.missing.startswith("a smaller error")
+
+
 def test_finite_elements_elsewhere_are_missing_where_the_reduced_model_is_too_low(monkeypatch, scene):
     solids(monkeypatch, {60: 50.0, 20: 30.0})
-    assert judge(scene, Sloped(), 65.0, ANGLE).missing.startswith("finite elements at more places")
+    assert judge(scene, Sloped(), 65.0, ANGLE).missing.startswith("a smaller error of finite elements")
 
 
 def test_heat_needs_as_many_levels_as_a_default_run():

@@ -115,7 +115,8 @@ def test_the_verdict_tells_how_hot_the_contact_becomes(short):
         (
             80.0,
             0.2,
-            "At the worst inclination, 80 degrees, it changes e by +0.200 ± 0.010; rigid theory may not ",
+            "At the worst inclination, 80 degrees (rod and velocity turned together), it changes e by "
+            "+0.200 ± 0.010; rigid theory may not ",
         ),
         (80.0, 0.054, "± 0.010; whether rigid theory may be used there is undecided."),
         (80.0, 0.055, "± 0.010; rigid theory may probably not be used there."),
@@ -130,13 +131,36 @@ def test_the_verdict_tells_how_hot_the_contact_becomes(short):
 def test_this_inclination_and_the_worst_one_are_two_sentences(short, at, value, words):
     here = replace(short.here, value=0.01, band=0.01)
     other = replace(short.here, angle=math.radians(at), value=value, band=0.01)
-    may = box(replace(short, here=here, elsewhere=other, not_known=((), "")))[0][1]
+    stated = replace(short, scene=replace_all(short.scene, {"restitution": 0.4}))
+    may = box(replace(stated, here=here, elsewhere=other, not_known=((), "")))[0][1]
     assert may.startswith(
         "YES: at this inclination, 45 degrees, vibration changes e by +0.010 ± 0.010, by the "
     )
     assert may.partition("(allowed: 0.05). ")[2].startswith(words) or may.endswith(words)
     partly = box(replace(short, here=here, elsewhere=other, not_known=((0.5,), "why")))[0][1]
     assert "inclination of those that are known" in partly
+
+
+def test_a_yes_tells_the_number_of_rigid_theory_where_its_closed_formula_has_another(short):
+    """A YES stood over a ball on a plate of which rigid theory has e .21 and finite elements .41."""
+    here = replace(short.here, value=0.01, band=0.01)
+    told = box(replace(short, here=here))[0][1]
+    assert (
+        told.startswith("YES as to vibration: ")
+        and "rigid has 0.306 for e and the reduced model 0.406: its restitution" in told
+    )
+    of_friction = box(replace(short, here=here, of="friction"))[0][1]
+    assert (
+        "0.506 for the work of friction, of E_0, and" in of_friction and "plastic flow, too." in of_friction
+    )
+    measured = replace(short, here=here, scene=replace_all(short.scene, {"restitution": 0.4}))
+    assert box(measured)[0][1].startswith("YES: ")
+    assert "rigid has" not in box(replace(short, here=replace(here, value=0.2)))[0][1]
+
+
+def test_a_tolerance_in_words_is_refused_as_one():
+    with pytest.raises(SceneError, match="tolerance=.0.05.: is a text"):
+        assess(load("t5b"), "modal", tolerance="0.05")
 
 
 def test_a_yes_agrees_with_check_where_rigid_theory_has_no_contact_law(short):
@@ -708,7 +732,9 @@ def test_the_three_lines_and_the_document(short):
         "Vibration takes",
         "The rest goes to",
     ]
-    assert lines[0][1].startswith("YES: at this inclination, 45 degrees, vibration changes e by +0.014")
+    assert lines[0][1].startswith(
+        "YES as to vibration: at this inclination, 45 degrees, vibration changes e by +0.014"
+    )
     assert "by the reduced model" in lines[0][1]
     found = document(short)
     assert found["answer"] == "yes"
