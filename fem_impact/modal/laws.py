@@ -13,7 +13,7 @@ from fem_impact.modal.landing import height_of, in_body, lay_flat
 from fem_impact.modal.motion import AT, SITE, ModalState, Sites, Start, Touched
 from fem_impact.modal.rod import ModalRod
 from fem_impact.modal.sites import lowest, settle, skin
-from fem_impact.modal.tip import Flank, half_length
+from fem_impact.modal.tip import ROUND, Flank, half_length
 from fem_impact.modal.touch import LAID
 from fem_impact.physics.contact import ContactPair
 from fem_impact.physics.contact_law import ContactLaw, FlowLaw, contact_law, flow_law
@@ -194,8 +194,13 @@ def shape(sites: Sites, held: Touched, s: int, turn: float, longest: float) -> N
 
 
 def _flank(lean: float, t: float, n: float, turn: float) -> Flank:
-    """Return a straight part that leans by an angle, rad, to its far end (t, n), m, of a rod at a turn."""
+    """Return a straight part that leans by an angle, rad, to its far end (t, n), m, of a rod at a turn.
+
+    One that hangs over the barrier is none, even where its far end lies right above what touches.
+    """
     slope = _slope(lean)
+    if slope == inf:
+        return ROUND
     along, rise = abs(cos(turn) * t + sin(turn) * n), cos(turn) * n - sin(turn) * t
     # of a steep part, whose slope is bounded, the rise counts
     return Flank(slope, max(along, rise / slope), tan(min(atan(slope) + BEYOND, UPRIGHT)))

@@ -189,9 +189,9 @@ ASSUMPTIONS = (
     "sqrt(R1 R2).",
     "The forces of a sliding tip that ploughs and of a contact that yields in shear hold two constants, "
     "found from six other impacts.",
-    "Left out: residual stress, and waves in the barrier. The body that yields first takes all of the dent; "
-    "of two that yield the plastic work is shared by their strengths. W_skin lacks the work in the surface "
-    "of the other one, .01 and .03 of E_0 in two scenes of steel by finite elements.",
+    "Left out: residual stress, and waves in the barrier. Of two bodies that yield the one that does so "
+    "first is pressed in alone; their strengths share the plastic work. W_skin lacks that in the surface of "
+    "the other one, .01 and .03 of E_0 in two scenes of steel by finite elements.",
 )
 
 

@@ -70,6 +70,24 @@ def test_no_run_ends_because_another_place_strikes(changes, effects):
     assert moment == pytest.approx(mass * k2 * (found.Omega - impact.omega), abs=2e-3 * impulse_n)
 
 
+def test_a_side_that_hangs_over_the_barrier_with_its_end_above_the_contact_does_not_touch():
+    """A hemisphere had e .40 at 14 degrees: its tail's edge lies right above its contact there."""
+    ball = {
+        "id": "ball",
+        "projectile": {"shape": "hemisphere", "length": "30 mm", "diameter": "12 mm", "material": "100cr6"},
+        "barrier": {"material": "stainless-304l"},
+        "surface": {"state": "custom", "friction": 0.0, "source": "oiled"},
+        "impact": {"angle": "10 deg", "v_n": "-4 m/s", "v_t": "0 m/s"},
+    }
+    beside, above, beyond = (
+        simulate(replace_all(read_dict(ball), {"impact.angle": f"{angle} deg"}), "modal")
+        for angle in (10, 14, 18)
+    )
+    middle = 0.5 * (beside.restitution.edge.e + beyond.restitution.edge.e)
+    assert above.restitution.edge.e == pytest.approx(middle, abs=1e-3)
+    assert abs(above.energy.residual) < 2e-5
+
+
 def test_the_other_edge_strikes_while_the_first_one_still_touches():
     first, second = follow(SPUN).sites
     assert first.start < second.start < first.end < second.end

@@ -45,4 +45,4 @@ def test_the_metals_differ_in_what_yields():
     """Soft aluminium takes the plastic work itself; a tungsten alloy leaves nearly all of it to the plate."""
     soft, hard = (simulate(load(name), "modal").energy for name in ("aluminium-rod", "tungsten-rod"))
     assert soft.plastic_rod > 0.2
-    assert hard.plastic_barrier > 0.19
+    assert hard.plastic_barrier > 0.18 > 0.02 > hard.plastic_rod

@@ -159,7 +159,7 @@ def test_a_yes_tells_the_number_of_rigid_theory_where_its_closed_formula_has_ano
 
 
 def test_a_tolerance_in_words_is_refused_as_one():
-    with pytest.raises(SceneError, match="tolerance=.0.05.: is a text"):
+    with pytest.raises(SceneError, match="is a text, not a number"):
         assess(load("t5b"), "modal", tolerance="0.05")
 
 
