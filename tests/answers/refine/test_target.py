@@ -112,7 +112,9 @@ def test_levels_end_some_splits_beyond_those_that_resolve_the_contact(ran):
     levels = LevelChain(Case(replace(ASKED, "accuracy", FINEST)), budget_s=1e9)
     outcome = levels.run()
     assert levels.done[-1].splits == levels.finest + chain.MOST_FINER
-    assert told(outcome)[0].endswith("No finer level is tried: accuracy.levels = 4 adds a finer level.")
+    assert told(outcome)[0].endswith(
+        "No finer level is tried: accuracy.levels = 4 in place of 3 adds a finer level."
+    )
 
 
 def test_a_level_that_cannot_keep_the_budget_is_given_up(monkeypatch):
