@@ -171,14 +171,14 @@ class Faceted:
     def half_widths(self, start: Floats, end: Floats, share: Floats) -> Floats:
         """Half widths across, m, of the flat side on a straight part of the outline from `start` to `end`.
 
-        Both are (x, z), m; `share` are shares of the way. They are 0 where an edge alone lies in it.
+        Both are (x, z), m; `share` are shares of the way. They are 0 where an edge alone lies in it, or nothing.
         """
         way = end - start
         length = float(np.hypot(*way))
         x, z = ((self.points[:, [0, 2]] - start) @ np.array([way, [-way[1], way[0]]]).T / length).T
         near = np.abs(z) < LEVEL * self.length
         flat = np.column_stack([x[near], self.points[near, 1]])
-        if flat[:, 1].max() < LEVEL * self.length:
+        if flat[:, 1].max(initial=0.0) < LEVEL * self.length:
             return np.zeros_like(share)
         line = hull(np.vstack([flat, flat * [1.0, -1.0]]), 0.0)
         top = line[line[:, 1] >= 0.0]

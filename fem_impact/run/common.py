@@ -278,7 +278,7 @@ def plastic_shares(case: Case, share: float, skin: float = 0.0) -> tuple[float, 
     last = part_of_last(case) * share
     if rod_flows(case):
         return share - last, last
-    last = min(last, share - skin)
+    last = max(min(last, share - skin), 0.0)
     return last, share - last
 
 

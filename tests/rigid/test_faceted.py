@@ -60,6 +60,14 @@ def bar(width=2e-2, length=0.1):
     return Faceted(corners, faces, np.array([[0.0, length, *moments]]))
 
 
+def test_a_straight_line_on_which_no_node_lies_has_no_width():
+    """An own mesh ended `assess` at another inclination: its round ends beside the nodes."""
+    one, share = bar(), np.array([0.1, 0.9])
+    side = np.array([0.01, 0.0]), np.array([0.01, 0.1])
+    assert one.half_widths(*side, share) == pytest.approx([0.01, 0.01])
+    assert not one.half_widths(*(place - [0.004, 0.0] for place in side), share).any()
+
+
 def test_a_square_bar_has_its_closed_form_and_stands_on_an_edge():
     one = bar()
     assert one.mass == pytest.approx(RHO * 4e-4 * 0.1, rel=1e-12)

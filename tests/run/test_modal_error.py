@@ -13,7 +13,7 @@ from fem_impact.case.measured import CONFIDENCE
 from fem_impact.outcome.groups import texts
 from fem_impact.outcome.keys import Unknown
 from fem_impact.run import modal_error
-from fem_impact.run.common import part_of_last
+from fem_impact.run.common import part_of_last, plastic_shares
 from fem_impact.run.modal_error import (
     CALLED,
     GRAZING,
@@ -206,6 +206,12 @@ def test_two_bodies_that_yield_share_the_plastic_work_by_their_strengths(rod, pa
     others = sum(halves[share] for share in TOLD[-3:])
     for key, of_whole in ((first, 1.0 - 0.7 * part), (last, 0.7 * part)):
         assert halves[key] == pytest.approx(others * of_whole + 0.42 * part * whole, abs=2e-3)
+
+
+def test_plastic_work_of_the_rod_is_not_below_none_where_the_skin_of_the_barrier_takes_all():
+    """A drawn scene ended with a half-width below zero."""
+    case = Case(load("t5b"), "modal")
+    assert plastic_shares(case, 0.1, 0.2) == (0.0, 0.1) and plastic_shares(case, 0.1, 0.09)[0] < 0.0101
 
 
 @pytest.mark.parametrize(
