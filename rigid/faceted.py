@@ -171,7 +171,7 @@ class Faceted:
     def half_widths(self, start: Floats, end: Floats, share: Floats) -> Floats:
         """Half widths across, m, of the flat side on a straight part of the outline from `start` to `end`.
 
-        Both are (x, z), m; `share` are shares of the way. They are 0 where an edge alone lies in it, or nothing.
+        Both are (x, z), m; `share` are shares of the way. 0 where an edge alone or nothing lies in it.
         """
         way = end - start
         length = float(np.hypot(*way))
