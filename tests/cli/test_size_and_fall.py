@@ -14,7 +14,7 @@ from fem_impact.scene.types import to_toml
 def test_check_tells_elements_memory_steps_and_time(cli):
     code, out, err = cli("check", "t5b")
     assert code == 0 and "A run with finite elements" in out
-    assert "and all take 3 s to 37 s of processor time in nine of ten scenes" in " ".join(out.split())
+    assert "and all take 2 s to 37 s of processor time in nine of ten scenes" in " ".join(out.split())
     code, out, err = cli("check", "t5b", "--set", "accuracy.levels=1")
     assert code == 0 and not err
     assert "Size of a run with finite elements" in out and "MB of memory" in out and "of computing" in out
