@@ -30,7 +30,7 @@ from math import inf, pi, sqrt
 from typing import NamedTuple
 
 from fem_impact.physics.contact import LIMIT_PRESSURE, ContactPair
-from fem_impact.physics.hardening import Hardening, HardeningLaw, strain_rate
+from fem_impact.physics.hardening import Hardening, HardeningLaw, rate_factor, strain_rate
 from fem_impact.physics.viscous import relaxation
 
 # s: contacts with a shorter gap count as one; a few passages of a wave across the tip
@@ -175,7 +175,7 @@ def flow_law(pair: ContactPair, rod: HardeningLaw | None, barrier: HardeningLaw 
     both = [(law.power, metal == soft) for law, metal in ((barrier, pair.barrier), (rod, pair.rod)) if law]
     both.sort(key=lambda one: not one[1])
     curve, other, *_ = (*(power for power, _ in both), *2 * [Hardening(inf, 0.0, 0.0)])
-    faster, other_faster = (of.rate.factor(strain_rate(size)) if of.rate else 1.0 for of in (curve, other))
+    faster, other_faster = (rate_factor(of.rate, strain_rate(size)) for of in (curve, other))
     skins = (curve, faster), (other, other_faster)
     skin = min(rate * float(of.flow_stress(SKIN_STRAIN)) for of, rate in skins) / sqrt(3)
     over_length = (R2 / R1) ** 0.25  # an ellipse is shorter along t than the circle of its area

@@ -287,10 +287,14 @@ def strain_rate(size: ContactEstimate) -> float:
     return 0.2 * sqrt(size.a_t * size.a_b / (size.R1 * size.R2)) / (0.5 * size.duration)
 
 
+def rate_factor(law: RateLaw | None, rate: float) -> float:
+    """Return the factor of the flow stress at a strain rate, 1/s; 1 without a law."""
+    return law.factor(rate) if law else 1.0
+
+
 def rate_gain(metal: Material, rate: float) -> float:
     """Return the relative gain of a metal's flow stress at a strain rate, 1/s; 0 without data."""
-    law = rate_law(metal)
-    return law.factor(rate) - 1 if law else 0.0
+    return rate_factor(rate_law(metal), rate) - 1
 
 
 PROOF_STRAIN = 0.002  # plastic strain of the proof stress through which Ramberg and Osgood's law goes

@@ -11,7 +11,7 @@ from fem_impact.outcome.groups import ArmCoefficients, BarrierMotion, Heat, Rest
 from fem_impact.outcome.keys import Num, Unknown, known, unknown
 from fem_impact.physics.contact_law import BEGINS, FULLY_PLASTIC
 from fem_impact.physics.flash import Flash, flash_bound
-from fem_impact.physics.hardening import strain_rate
+from fem_impact.physics.hardening import rate_factor, strain_rate
 from fem_impact.run.tests import tests_of
 from fem_impact.scene.inputs import first_melting, melting
 from fem_impact.tables.text import plain
@@ -264,9 +264,7 @@ def part_of_last(case: Case) -> float:
     if len(pair.yielding) < 2:
         return 0.0
     pace = strain_rate(pair.estimate)
-    flows = [
-        float(law.flow_stress(EARLY)) * (law.rate.factor(pace) if law.rate else 1.0) for law in laws if law
-    ]
+    flows = [rate_factor(law.rate, pace) * float(law.flow_stress(EARLY)) for law in laws if law]
     first, last = flows if pair.softer == pair.rod else flows[::-1]
     most = FULLY_PLASTIC / BEGINS
     less = 0.5 * max((most - max(first / last, last / first)) / (most - 1.0), 0.0) ** 3

@@ -14,6 +14,7 @@ from fem_impact.progress import Progress
 from fem_impact.run import common
 from fem_impact.run.assemble import ImpactEnd, Reduction
 from fem_impact.run.modal_error import digs_in, half_widths, place_of, sentence
+from fem_impact.run.modal_history import plastic_works
 from fem_impact.run.resolution import without_coefficients
 
 HALVINGS = 2  # of the time step
@@ -128,8 +129,7 @@ def _too_light(case: Case) -> str:
 def _energy(case: Case, result: ModalResult) -> Energy:
     E_0, vibration = result.E_0, result.vibration / result.E_0
     floor = abs(result.residual) / E_0
-    sheared = (result.skin - result.friction) / E_0
-    plastic_rod, plastic_barrier = common.plastic_shares(case, result.plastic / E_0, sheared)
+    plastic_rod, plastic_barrier = (work / E_0 for work in plastic_works(case, result))
     skin, skin_rod, skin_barrier = _skins(case, result.skin / E_0, result.friction / E_0)
     return Energy(
         E_0=E_0,

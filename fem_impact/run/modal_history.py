@@ -1,6 +1,7 @@
 """What moved over time in the reduced model, as the history.csv of a run: forces, energies, motion."""
 
 from pathlib import Path
+from sys import float_info
 
 from fem_impact.case.case import Case
 from fem_impact.files.atomic import write_text
@@ -14,6 +15,11 @@ CONTACT = "E_contact_J"
 """What Hertz' contact and its tangential springs hold: of both bodies, so an account of its own."""
 
 
+def plastic_works(case: Case, result: ModalResult) -> tuple[float, float]:
+    """Return the plastic work of rod and barrier, J."""
+    return plastic_shares(case, result.plastic, result.skin - result.friction)
+
+
 def write_history(case: Case, result: ModalResult, path: Path) -> None:
     """Write one row every few steps, with the columns of finite elements; velocities are the scene's.
 
@@ -22,7 +28,7 @@ def write_history(case: Case, result: ModalResult, path: Path) -> None:
     """
     record, barrier = result.record, case.scene.barrier
     zero = 0.0 * record[:, ROW.time]
-    in_rod, in_barrier = plastic_shares(case, 1.0)
+    in_rod, in_barrier = (work / max(result.plastic, float_info.min) for work in plastic_works(case, result))
     columns = dict.fromkeys(HISTORY, zero) | {
         "time_s": record[:, ROW.time],
         "force_n_N": record[:, ROW.force_n],

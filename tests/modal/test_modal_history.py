@@ -42,6 +42,14 @@ def test_energies_add_up_at_every_time_and_forces_give_the_impulses(tmp_path, na
     assert history.numbers("E_kinetic_rod_J")[0] == pytest.approx(E_0, rel=1e-3)
 
 
+def test_its_plastic_work_is_that_of_the_outcome_where_the_barriers_surface_takes_most(tmp_path):
+    weak = {"barrier.material.yield_stress": "500 MPa", "barrier.material.ultimate_stress": "650 MPa"}
+    outcome, history = run(tmp_path, **{"impact.angle": "70 deg", "surface.friction": 0.6}, **weak)
+    E = outcome.energy
+    for body, part in (("rod", E.plastic_rod), ("barrier", E.plastic_barrier)):
+        assert history.numbers(f"E_plastic_{body}_J")[-1] == pytest.approx(known(part) * E.E_0, rel=2e-3)
+
+
 def test_the_history_ends_with_the_motion_of_the_outcome(tmp_path):
     outcome, history = run(tmp_path, effects=["vibration", "friction", "barrier-elastic"])
     for column, value in (("V_n_m_per_s", outcome.motion.V_n), ("Omega_rad_per_s", outcome.motion.Omega)):

@@ -46,7 +46,7 @@ def test_a_mesh_that_stands_is_forecast_by_the_impact_of_the_level_before():
     assert seen[1].text == "level 2: about 25 s left (8 s to 2 min 03 s)."
     told, dear = shown(turns=2, used_s=5.0, limit_s=20.0)
     dear(at(0, 3.0))
-    assert told[1].text.endswith("2 min 03 s). For all of it give a budget of 45 s.")
+    assert told[1].text.endswith("2 min 03 s). For all of it give a budget of 61 s.")
     assert seen[2].eta_s == pytest.approx(1 + level.own_s + about * 2 * 12, abs=0.5)  # time goes by
     assert describe(seen[0]).startswith("level 2  t 0/100 us  about 25 s left (8 s to 2 min 03 s)")
 
@@ -163,7 +163,7 @@ def test_a_level_whose_mesh_shows_that_it_takes_too_long_is_given_up_at_once():
     pilot = LevelProgress(None, "pilot", limit_s=10.0)
     pilot(at(0, 18.0))
     pilot(at(0, None))
-    with pytest.raises(OverBudgetError, match=r"gave no number\. .* give a budget of 190 s"):
+    with pytest.raises(OverBudgetError, match=r"gave no number\. .* give a budget of 260 s"):
         pilot(at(0, 40.0))
 
 
