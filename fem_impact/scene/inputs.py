@@ -1,5 +1,6 @@
 """The inputs of a scene: every value that enters a model, with where it comes from."""
 
+from dataclasses import MISSING, fields
 from math import inf
 from typing import Any
 
@@ -9,7 +10,9 @@ from fem_impact.scene.types import Scene, material_table, to_dict
 from fem_impact.tables.table import Table
 from fem_impact.tables.text import plain
 
-STATED = "the scene, or its default"
+STATED = "the scene"
+DEFAULT = "the default"
+"""Source of a value that a scene need not state, and that it does not state otherwise."""
 UNSOURCED = "no source stated"
 WORDS = ("name", "law", "family", "sources")  # of a material
 MOST_POINTS = 6  # of a profile, a bore or a curve that is written out; longer ones stand in the scene
@@ -19,10 +22,12 @@ def inputs(scene: Scene) -> Table:
     """Return the table of inputs of projectile, barrier, impact and surface.
 
     Columns: ``input``, the dotted key as `replace` takes it (a part of a list by its number, from 1);
-    ``value`` with its unit; ``source``, `STATED` for values that no shipped table holds.
+    ``value`` with its unit; ``source``, `STATED` or `DEFAULT` for values that no shipped table holds.
     """
     tables, surface = to_dict(scene), scene.surface
     rows = [row for name in ("projectile", "barrier", "impact") for row in _rows(name, tables[name])]
+    kept = _defaults(scene)
+    rows = [(key, value, DEFAULT if key in kept else source) for key, value, source in rows]
     low, high = surface.friction_low, surface.friction_high
     friction = f"{surface.friction:g} ({low:g} to {high:g})" if low < high else f"{surface.friction:g}"
     rows.append(("surface.friction", friction, surface.source))
@@ -33,6 +38,17 @@ def inputs(scene: Scene) -> Table:
         own = getattr(scene.heating, f"{body}_melting") is None
         rows += [(f"heating.{body}_melting", f"{limit:g} K", source_of(name, "melting") if own else STATED)]
     return Table.of(("input", "value", "source"), rows, left=range(3))
+
+
+def _defaults(scene: Scene) -> set[str]:
+    """Return the keys of projectile, barrier and impact that have their default value."""
+    parts = ("projectile", scene.projectile), ("barrier", scene.barrier), ("impact", scene.impact)
+    return {
+        f"{name}.{field.name}"
+        for name, part in parts
+        for field in fields(part)
+        if field.default is not MISSING and getattr(part, field.name) == field.default
+    }
 
 
 def _source(material: dict[str, Any], key: str) -> str:

@@ -10,7 +10,7 @@ from fem_impact.errors import SceneError, UsageError
 from fem_impact.outcome.groups import texts
 from fem_impact.scene.fields import DEFAULTS
 from fem_impact.scene.impact import Following, Impact
-from fem_impact.scene.inputs import STATED, inputs, materials_of
+from fem_impact.scene.inputs import DEFAULT, STATED, inputs, materials_of
 from fem_impact.scene.library import materials, shipped, surfaces
 from fem_impact.scene.read import read_dict, read_toml
 from fem_impact.scene.shipped import load, replace, replace_all
@@ -108,6 +108,13 @@ def test_every_surface_and_material_value_carries_a_source():
         ]
     assert len(stated) > 100
     assert all(len(source) > 15 and source not in ("stated in the scene", STATED) for source in stated)
+
+
+def test_inputs_say_which_values_are_the_default():
+    rows = {key: source for key, _, source in inputs(load("plate-10mm")).rows}
+    assert rows["impact.omega"] == DEFAULT and rows["impact.height"] == STATED
+    turning = inputs(replace(load("plate-10mm"), "impact.omega", "3 rad/s"))
+    assert {key: source for key, _, source in turning.rows}["impact.omega"] == STATED
 
 
 def test_inputs_name_each_segment_and_layer_once():

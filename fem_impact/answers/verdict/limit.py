@@ -51,6 +51,7 @@ UNCONFIRMED = (
     "number and its least, but as far as their upper end lies above it at one of them it may be too low at "
     "all places, and that passes the limit. Assess parts of the intervals, or a limit with more margin."
 )
+LEAST = " where the number is least and may be {} at most, to be below the limit everywhere"
 SOLIDS = "finite elements"
 ALONE = "finite elements where the reduced model has its least number, too: notes say why they tell none."
 UNLIKE = (
@@ -190,8 +191,9 @@ def judge(
         tell(steps[-1])
     open_still = answer == "undecided" or not all(one.alike for one in known.values())
     if fidelity == "solid" or (fidelity == "auto" and open_still):
-        two = {place: scenes[place] for place in (worst, mildest)}
-        solids, said, more = _by_solids(two, criterion, limit, (budget_s, workers), tell, steps)
+        apart = known[worst].value - known[mildest].value if known else 0.0
+        two = {worst: (scenes[worst], limit)} | {mildest: (scenes[mildest], limit - apart)}
+        solids, said, more = _by_solids(two, criterion, (budget_s, workers), tell, steps)
         notes += said
         if fidelity == "solid" and worst not in solids:  # what was asked for tells nothing
             bound, answer = None, "undecided"
@@ -282,25 +284,26 @@ def _scanned(scenes: Mapping[Place, Scene], criterion: Criterion, tell: Tell) ->
 
 
 def _by_solids(
-    scenes: Mapping[Place, Scene],
+    scenes: Mapping[Place, tuple[Scene, float]],
     criterion: Criterion,
-    limit: float,
     means: tuple[float, int | None],
     tell: Tell,
     steps: list[str],
 ) -> tuple[dict[Place, Bound], list[str], Means]:
-    """Return what finite elements say at places until one does not stay below the limit; notes; more means.
+    """Return what finite elements say at places until one does not stay below its limit; notes; more means.
 
     ``means`` are the budget of all of them, s, and runs at a time.
     """
     (budget_s, workers), begun = means, perf_counter()
-    solids, notes, as_text = dict[Place, Bound](), list[str](), partial(_told, criterion)
+    solids, notes = dict[Place, Bound](), list[str]()
     more: Means = {}
-    for place, scene in scenes.items():
+    for place, (scene, limit) in scenes.items():
+        least = LEAST.format(_in_unit(criterion, limit)) if solids else ""
         before = perf_counter() - begun
         left = max(budget_s - before, 1.0), workers
         try:
             pair = criterion.meshed(scene)
+            as_text = partial(_told, criterion, where=least)
             told = tell, steps, before, criterion.least_levels
             bound, said, more = by_levels(pair, criterion.solid, as_text, limit, left, *told)
         except (SceneError, RunError) as refused:
@@ -331,15 +334,15 @@ def _apart(criterion: Criterion, number: float, digits: int = 3) -> str:
     return f"{plain(number / criterion.per_unit, digits)} {criterion.unit}".rstrip()
 
 
-def _told(criterion: Criterion, bound: Bound) -> str:
-    """Return a number between its least and most, in the unit of its criterion."""
+def _told(criterion: Criterion, bound: Bound, where: str = "") -> str:
+    """Return a number between its least and most, in the unit of its criterion, and where that is."""
     value, low = _in_unit(criterion, bound.value), _in_unit(criterion, bound.low)
     if bound.low == bound.ceiling:
-        return f"at least {value} ({bound.beyond})"
+        return f"at least {value} ({bound.beyond}){where}"
     if bound.beyond:
         more = " or more" if bound.value == bound.ceiling else ""
-        return f"{low} or more, at the best estimate {value}{more} ({bound.beyond})"
-    return f"{value} ({low} to {_in_unit(criterion, bound.high)})"
+        return f"{low} or more, at the best estimate {value}{more} ({bound.beyond}){where}"
+    return f"{value} ({low} to {_in_unit(criterion, bound.high)}){where}"
 
 
 def _plain(bound: Bound) -> dict[str, Any]:
