@@ -229,7 +229,7 @@ def test_a_body_that_yields_first_and_hardens_beyond_the_other_may_take_less_of_
     outcome = simulate(replace_all(load("quick"), stated), "modal")
     for key, of_solid in zip(PLASTIC, solid, strict=True):
         share, half = outcome.estimate(key)
-        assert abs(share - of_solid) <= min(half, 0.14) and half < 0.3
+        assert abs(share - of_solid) <= min(half, 0.14) and half < 0.32
 
 
 @pytest.mark.parametrize(
