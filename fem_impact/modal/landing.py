@@ -15,7 +15,7 @@ from fem_impact.physics.contact_law import FULLY_PLASTIC, REPRESENTATIVE, FlowLa
 from rigid import Faceted
 
 NEAR = 0.5  # radii of gyration, beyond which a flank presses too far from its end to act there
-LEANS = 0.5  # rise over length beyond which a straight part that touches with an end does not land flat
+LEANS = 0.25  # rise over length beyond which a straight part that touches with an end does not land flat
 ON_SIDE = 0.25 * pi  # stiffness of a side over E* times its length (Popov 2010)
 RIGID = 1e-9  # share of the contact's give that a barrier which gives nothing is taken to have
 

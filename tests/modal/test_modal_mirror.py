@@ -46,6 +46,19 @@ def test_a_chamfer_that_leans_by_37_degrees_does_not_land_flat():
     assert run.motion.Omega == pytest.approx(12.8, abs=1.8)
 
 
+@pytest.mark.parametrize(("angle", "solid"), [(22, (0.24, 0.077, 0.055)), (26, (0.20, 0.052, 0.069))])
+def test_a_chamfer_that_leans_by_20_degrees_does_not_land_flat(angle, solid):
+    """It had e .495 and .484, and no friction; `assess` said YES by it, finite elements +.049 +- .016."""
+    chamfered = {"profile": [["0 mm", "8 mm"], ["1.5 mm", "9.5 mm"], ["80 mm", "9.5 mm"]]}
+    surface = {"state": "custom", "friction": 0.3, "source": "a guess"}
+    tables = {"id": "chamfered", "projectile": {**chamfered, "material": "steel-4340"}, "surface": surface}
+    impact = {"angle": f"{angle} deg", "v_n": "-2.8 m/s", "v_t": "-1.3 m/s"}
+    run = simulate(load({**tables, "barrier": {"material": "s355"}, "impact": impact}), "modal")
+    told = run.restitution.edge.e, run.energy.rigid, run.energy.friction
+    assert told == pytest.approx(solid, abs=0.06)
+    assert run.half_widths["e_edge"] < 0.15
+
+
 def test_all_impulse_beyond_friction_that_no_stored_scene_comes_near_counts_as_error():
     """Finite elements on two levels at 65 degrees: mu .43 +- .25; at 70 they rise from .26 to .35."""
     run = tilted(70)
