@@ -293,9 +293,7 @@ def interval_of(scene: Scene, key: str, ends: Ends) -> Interval:
 
 def _about(scene: Scene, key: str, text: str) -> Interval:
     """Return the interval of a text such as ``+-2 %`` or ``+-0.1 m/s`` about the scene's value of a key."""
-    value_there: Any = to_dict(scene)
-    for name in key.split("."):
-        value_there = value_there.get(name, "") if isinstance(value_there, dict) else ""
+    value_there = _own(scene, key)
     value, unit = measure(value_there)
     half, of = measure(text.strip().lstrip("+-\u00b1"))
     if of == "%" and not isinstance(half, str) and not isinstance(value, str):
@@ -307,6 +305,26 @@ def _about(scene: Scene, key: str, text: str) -> Interval:
         problem = f"gives no interval about the scene's {where}."
         raise UsageError(problem, key=key, value=text, remedy=f"Write {key}=LOW,HIGH with one unit.")
     return key, value - half, value + half, unit
+
+
+def _own(scene: Scene, key: str) -> Any:
+    """Return the value that a scene states of a key, as it writes it; empty where it states none."""
+    value: Any = to_dict(scene)
+    for name in key.split("."):
+        value = value.get(name, "") if isinstance(value, dict) else ""
+    return value
+
+
+def left_out(scene: Scene, intervals: Sequence[Interval]) -> list[str]:
+    """Say of which keys the scene has a value of its own that the interval does not hold, or none."""
+    said = []
+    for key, low, high, unit in intervals:
+        own = _own(scene, key)
+        value, of = measure(own)
+        at = in_unit(f"{value} {of}", unit) if of and unit else value
+        if isinstance(at, str) or not low <= at <= high:
+            said.append(f"{key}: the scene has {own or 'none'}, the answer holds for its interval alone.")
+    return said
 
 
 def at_place(scene: Scene, intervals: Sequence[Interval], place: Array) -> Scene:

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from fem_impact.answers.refine.forecast import budget_of
-from fem_impact.answers.validate import FRICTION, Ends, Interval, at_place, interval_of
+from fem_impact.answers.validate import FRICTION, Ends, Interval, at_place, interval_of, left_out
 from fem_impact.answers.verdict.assess import BUDGET, LACKING, check_means
 from fem_impact.answers.verdict.criteria import Bound, Criterion, criterion_of
 from fem_impact.answers.verdict.levels import (
@@ -174,7 +174,7 @@ def judge(
     intervals = [interval_of(scene, key, ends) for key, ends in stated.items()]
     scenes, lacking = _places(scene, intervals), not_reduced(Case(scene).bodies)
     reduced = not lacking or fidelity == "modal"
-    steps, notes = list[str](), [] if reduced else [LACKING.format(lacking)]
+    steps, notes = list[str](), [*left_out(scene, intervals), *([] if reduced else [LACKING.format(lacking)])]
     bounds = _scanned(scenes, criterion, tell) if reduced else {}
     known = {place: one for place, one in bounds.items() if isinstance(one, Bound)}
     why = next((one.reason for one in bounds.values() if isinstance(one, Unknown)), "")

@@ -150,6 +150,20 @@ def test_what_lacks_at_the_mildest_place_is_said(monkeypatch, scene, mildest, mi
     assert missing in judge(scene, Sloped(), 65.0, ANGLE).missing
 
 
+@pytest.mark.parametrize(
+    ("key", "ends", "own"),
+    [
+        ("impact.angle", ("40 deg", "50 deg"), None),
+        ("impact.angle", ("10 deg", "20 deg"), "45 deg"),
+        ("impact.height", ("5 mm", "15 mm"), "none"),  # it states velocities, in whose place the drop stands
+    ],
+)
+def test_an_interval_without_the_scenes_own_value_is_told(scene, key, ends, own):
+    """Reported: a scene of 2 m/s had a YES by a drop of a few millimetres, and nothing said so."""
+    notes = judge(scene, Sloped(), 1e3, {key: ends}, "modal").notes
+    assert notes == (() if own is None else (f"{key}: the scene has {own}, {notes[0].split(', ')[1]}",))
+
+
 @pytest.mark.parametrize(("limit", "most"), [("20 kN", 20e3), (20e3, 20e3)])
 def test_a_number_and_its_limit_may_be_words(scene, limit, most):
     found = fem_impact.judge(scene, "force", limit, fidelity="modal")
