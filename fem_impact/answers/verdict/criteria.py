@@ -210,15 +210,19 @@ class HeatCriterion(Limited):
 
     def counts(self, told: Callable[[str], str]) -> str:
         """Return the shares of friction, which is counted, and of all that can heat the contact."""
-        sure = " (its error is not known)"
+        sure = "its error is not known"
+        unsure = {
+            "W_friction_over_E_0": sure,
+            "W_skin_over_E_0": f"{sure}; finite elements had up to 8 times it",
+        }
         friction, skin = (
-            share if share == "not known" else f"{share} % of E_0" + sure * (" " not in share)
-            for share in map(told, ("W_friction_over_E_0", "W_skin_over_E_0"))
+            share if share == "not known" else f"{share} % of E_0" + f" ({doubt})" * (" " not in share)
+            for share, doubt in ((told(name), doubt) for name, doubt in unsure.items())
         )
         return (
             f"the power of friction alone, over the mean of the patch, in the first strike. Friction takes "
-            f"{friction}. The larger bound of what can heat the contact is W_skin, friction and the plastic "
-            f"work down to 0.1 mm below both surfaces: {skin}."
+            f"{friction}. More can heat the contact: W_skin, friction and the plastic work down to "
+            f"0.1 mm below both surfaces, {skin}."
         )
 
     def of_reduced(self, case: Case, result: ModalResult) -> float:
