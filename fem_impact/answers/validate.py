@@ -317,12 +317,15 @@ def _own(scene: Scene, key: str) -> Any:
 
 def left_out(scene: Scene, intervals: Sequence[Interval]) -> list[str]:
     """Say of which keys the scene has a value of its own that the interval does not hold, or none."""
+    ends = [at_place(scene, intervals, np.full(len(intervals), end)) for end in (0.0, 1.0)]
     said = []
-    for key, low, high, unit in intervals:
-        own = _own(scene, key)
-        value, of = measure(own)
-        at = in_unit(f"{value} {of}", unit) if of and unit else value
-        if isinstance(at, str) or not low <= at <= high:
+    for key, *_ in intervals:
+        own, low, high = (_own(one, bare(key)) for one in (scene, *ends))
+        unit = measure(low)[1]
+        least, value, most = (in_unit(one, unit) for one in (low, own, high))
+        if isinstance(least, str) or isinstance(most, str):
+            continue  # not written as one value
+        if isinstance(value, str) or not least <= value <= most:
             said.append(f"{key}: the scene has {own or 'none'}, the answer holds for its interval alone.")
     return said
 
