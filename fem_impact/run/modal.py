@@ -13,7 +13,7 @@ from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.progress import Progress
 from fem_impact.run import common
 from fem_impact.run.assemble import ImpactEnd, Reduction
-from fem_impact.run.modal_error import digs_in, half_widths, place_of, sentence
+from fem_impact.run.modal_error import digs_in, half_widths, place_of, sentence, with_barrier
 from fem_impact.run.modal_history import plastic_works
 from fem_impact.run.resolution import without_coefficients
 
@@ -105,6 +105,7 @@ def reduce(case: Case, result: ModalResult) -> Outcome:
         return replace(outcome, validity=replace(said, model_band=reason))
     place = place_of(case, outcome)
     halves = half_widths(place, outcome, case.contact.approach, common.part_of_last(case))
+    halves = with_barrier(case.scene.barrier, outcome, halves)
     if digs_in(outcome) and (half := halves.get("e_edge", 0.0)) >= 1.0:
         outcome = without_coefficients(outcome, Unknown(OPEN.format(half)))
     said = replace(

@@ -24,6 +24,7 @@ from fem_impact.outcome.keys import known, or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.physics.contact import ContactPair
 from fem_impact.physics.contact_law import contact_law
+from fem_impact.scene.barrier import Barrier
 
 HELD = 0.9
 """Share of differences from finite elements that a half-width holds."""
@@ -243,17 +244,35 @@ def half_widths(place: Place, outcome: Outcome, approach: float, last: float = 0
         for key, change in _by_impulse(beyond, outcome, approach).items():
             if key in halves:
                 halves[key] = hypot(halves[key], change)  # beside what is open at a known impulse
-    mass, base = outcome.motion.mass, or_none(outcome.barrier.mass)
-    if base and "V_n_m_per_s" in halves and or_none(outcome.barrier.Omega_b) is None:
-        # the stored scenes are of heavy barriers: what is open between both bodies they share by momentum
-        for way in ("n", "t"):
-            of_both = halves[f"V_{way}_m_per_s"] / (mass + base)
-            halves |= {f"V_{way}_m_per_s": of_both * base, f"V_b{way}_m_per_s": of_both * mass}
     if (force := or_none(outcome.contact.peak_force)) is not None:
         halves["peak_force_N"] = force * (factor_of(place, "peak_force_N", far) - 1.0)
     if or_none(outcome.restitution.paper.e) is not None:
         halves["e_paper"] = halves["e_edge"]  # arms a little apart take nearly the same approach
     return halves
+
+
+def with_barrier(struck: Barrier, outcome: Outcome, halves: Mapping[str, float]) -> dict[str, float]:
+    """Return half-widths, by key, with those of a free barrier: what is open between both bodies they share.
+
+    The stored scenes are of heavy barriers. Momentum says what the barrier has of it, the lever of the struck
+    point what its spin has.
+    """
+    mass, base, rod = outcome.motion.mass, struck.mass, dict(halves)
+    if base is None or "V_n_m_per_s" not in rod:
+        return rod
+    ways = "V_n_m_per_s", "V_t_m_per_s"
+    if struck.inertia is None:
+        rod |= {key: rod[key] * base / (mass + base) for key in ways}
+    n, t = (rod[key] * mass / base for key in ways)
+    spin = base * (n * abs(struck.centre_offset) + t * abs(struck.centre_depth or 0.0))
+    spin /= struck.inertia or inf
+    moved = outcome.barrier
+    pairs = [(base, known(moved.V_bn) - moved.v_bn, n), (base, known(moved.V_bt) - moved.v_bt, t)]
+    pairs.append((struck.inertia or 0.0, or_none(moved.Omega_b) or 0.0, spin))
+    energy = sum(of * (abs(speed) + 0.5 * half) * half for of, speed, half in pairs)
+    share = energy / outcome.energy.E_0
+    rod |= {"V_bn_m_per_s": n, "V_bt_m_per_s": t, "barrier_Omega_rad_per_s": spin}
+    return rod | {"E_barrier_over_E_0": min(share, 1.0)}
 
 
 def widened_by(speed: float, approach: float) -> float:

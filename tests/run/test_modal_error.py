@@ -11,7 +11,7 @@ from fem_impact import load, replace, simulate
 from fem_impact.case.case import Case
 from fem_impact.case.measured import CONFIDENCE
 from fem_impact.outcome.groups import texts
-from fem_impact.outcome.keys import Unknown
+from fem_impact.outcome.keys import Unknown, or_none
 from fem_impact.run import modal_error
 from fem_impact.run.common import part_of_last, plastic_shares
 from fem_impact.run.modal_error import (
@@ -175,6 +175,30 @@ def test_a_light_barrier_shares_the_doubt_by_momentum_and_one_too_light_has_no_e
     rigid = {"barrier.mass": "0.3 g", "effects": ["auto", "barrier-rigid"]}
     assert "V_bn_m_per_s" in simulate(replace_all(load("t5b"), rigid), "modal").half_widths
     assert "of metal that deforms" in tiny.half_widths.reason
+
+
+@pytest.mark.parametrize("turns", [False, True])
+def test_speeds_spin_and_energy_of_a_free_barrier_are_as_open_as_momentum_leaves_them(turns):
+    free = {"barrier.mass": "5 kg", "impact.v_t": "-1 m/s", "impact.v_n": "-1 m/s"}
+    inertia = {"barrier.inertia": "0.02 kg m2", "barrier.centre_depth": "30 mm", "barrier.centre_offset": "50 mm"}
+    outcome = simulate(replace_all(load("t5b"), free | (inertia if turns else {})), "modal")
+    mass, barrier = outcome.motion.mass, outcome.barrier
+    halves = [outcome.estimate(f"V_{way}_m_per_s")[1] for way in ("bn", "bt")]
+    assert halves == [outcome.estimate(f"V_{way}_m_per_s")[1] * mass / 5 for way in ("n", "t")]
+    spin = 5 * (halves[0] * 0.05 + halves[1] * 0.03) / 0.02 * turns
+    if turns:
+        assert outcome.estimate("barrier_Omega_rad_per_s")[1] == pytest.approx(spin)
+
+    def energy(sign):
+        """Return what the barrier has where all of its speeds are larger by their half-widths."""
+        speeds = zip((barrier.V_bn, barrier.V_bt, or_none(barrier.Omega_b) or 0.0), (*halves, spin))
+        return 0.5 * sum(
+            of * (abs(speed) + sign * half) ** 2 for of, (speed, half) in zip((5, 5, 0.02), speeds)
+        )
+
+    told, half = outcome.estimate("E_barrier_over_E_0")
+    assert told == pytest.approx(energy(0) / outcome.energy.E_0, rel=1e-6)
+    assert told + half == pytest.approx(energy(1) / outcome.energy.E_0, rel=1e-6)
 
 
 def test_a_free_barrier_that_is_grazed_too_slowly_tells_no_speed_and_no_error_of_one():
