@@ -66,7 +66,8 @@ LEAST = 1e-4  # of a number, its least half-width: no model holds more digits
 def with_band(value: float, band: float, low: float = -inf, high: float = inf) -> str:
     """Return a number with its half-width, of `LEAST` at least, both to the second digit of that.
 
-    Where the band of a number between ``low`` and ``high`` runs beyond them, its ends stand in its place.
+    Where the band of a number between ``low`` and ``high`` runs beyond them, its ends stand in its place. A
+    number that itself lies beyond them, as one extrapolated from meshes may, is the end that its band reaches.
 
     Examples
     --------
@@ -78,8 +79,8 @@ def with_band(value: float, band: float, low: float = -inf, high: float = inf) -
     ('11.0000 +- 0.0074', '11.0000 +- 0.0011')
     >>> with_band(2.4, 39.0, 0.0, 100.0), with_band(-0.001, 0.5), with_band(1.2e-6, 3e-6, 0.0)
     ('2 (0 to 42)', '0.00 +- 0.50', '(1.2 (0.0 to 4.2))e-6')
-    >>> with_band(25.05, 99.0, 0.0, 100.0)
-    '25 (0 to 100)'
+    >>> with_band(25.05, 99.0, 0.0, 100.0), with_band(-4.2, 37.0, 0.0, 100.0), with_band(-4.2, 3.0, 0.0)
+    ('25 (0 to 100)', '0 (0 to 33)', '-4.2 +- 3.0')
     """
     if band <= 0.0:
         return f"{value:.4g} +- 0"
@@ -87,12 +88,14 @@ def with_band(value: float, band: float, low: float = -inf, high: float = inf) -
     power = floor(log10(max(abs(value), band)))
     if not -5 < power < 6:
         return f"({with_band(*(one / 10.0**power for one in (value, band, low, high)))})e{power}"
-    places = 1 - floor(log10(band))
-    told = f"{round(value, places) + 0.0:.{max(0, places)}f}"  # no minus zero
-    if (low <= value - band and value + band <= high) or not low <= value <= high:
+    places, shown = 1 - floor(log10(band)), min(max(value, low), high)
+    if abs(shown - value) > band:
+        shown, low, high = value, -inf, inf
+    told = f"{round(shown, places) + 0.0:.{max(0, places)}f}"  # no minus zero
+    if low <= value - band and value + band <= high:
         return f"{told} +- {rounded_up(band, places)}"
     if places < 0:  # ends need no more digits, but the number would not add up with others
-        told = plain(value, 2)
+        told = plain(shown, 2)
     first = f"{round(max(low, value - band), places) + 0.0:.{max(0, places)}f}"
     return f"{told} ({first} to {rounded_up(min(high, value + band), places)})"
 
