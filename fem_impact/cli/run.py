@@ -37,6 +37,10 @@ if TYPE_CHECKING:
     from fem_impact.outcome.groups import Energy
 
 
+ALONE = (
+    ", with the errors of its model for the stated values (those above hold the intervals of friction, angle "
+    "and speed, too)"
+)
 LONG = 600.0
 """Expected computing time, s, above which `run` prints it before it starts."""
 
@@ -82,7 +86,9 @@ def run(options: Options) -> int:
         sys.stdout.write(f"{headed(outcome.provenance.scene_id, outcome.provenance.scene_title)}\n\n")
         if scene.impact.until != FIRST:  # what was asked for
             print_strikes(outcome, options)
-            sys.stdout.write("\nThe first strike alone\n\n")
+            known_errors = not isinstance(outcome.strikes.certain, Unknown)
+            title = wrapped(f"The first strike alone{ALONE if known_errors else ''}", "")
+            sys.stdout.write("\n" + "\n".join(title) + "\n\n")
         print_outcome(outcome, out, own_tests, spread, scene.accuracy.target_of, scene.projectile.named)
         _say_comparison(scene, outcome, options)
         _say_screening(case, options)

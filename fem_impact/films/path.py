@@ -17,7 +17,7 @@ from fem_impact.films.film import RenderResult, target
 from fem_impact.films.movement import FPS
 from fem_impact.outcome.record import Outcome
 from fem_impact.outcome.strikes import StrikeRecord
-from fem_impact.run.strikes import gravity_of
+from fem_impact.run.common import gravity_of
 from fem_impact.scene.read import read_toml
 from rigid.strikes import FlightState, Outline, outline
 

@@ -23,8 +23,8 @@ from fem_impact.outcome.strikes import spread_table, strikes_table, told
 from fem_impact.pages import html, sections
 from fem_impact.physics.flash import ASSUMPTIONS
 from fem_impact.run.certain import other_end_curve
+from fem_impact.run.common import gravity_of
 from fem_impact.run.simulate import simulate
-from fem_impact.run.strikes import gravity_of
 from fem_impact.scene.inputs import inputs
 from fem_impact.scene.read import read_toml
 from fem_impact.scene.types import Scene, digest, to_toml

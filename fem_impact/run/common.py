@@ -6,6 +6,7 @@ from math import atan2, cos, hypot, inf, pi, sin
 import rigid
 from fem_impact.case.case import Case
 from fem_impact.case.effects.heating import halves
+from fem_impact.case.effects.registry import AUTO
 from fem_impact.case.shaft import gives_elsewhere
 from fem_impact.outcome.groups import ArmCoefficients, BarrierMotion, Heat, Restitution, RodMotion
 from fem_impact.outcome.keys import Num, Unknown, known, unknown
@@ -15,6 +16,7 @@ from fem_impact.physics.flash import Flash, flash_bound
 from fem_impact.physics.hardening import rate_factor, strain_rate
 from fem_impact.run.tests import tests_of
 from fem_impact.scene.inputs import first_melting, melting
+from fem_impact.scene.types import Scene
 from fem_impact.tables.text import plain
 
 NO_TABLE = "the scene repeats no measured set, so no table gives its arms"
@@ -44,11 +46,17 @@ ROUND = 0.25
 ROUND_OFF = 1e-6  # a moment impulse over that of the normal impulse at arm d_d: below it there is none
 
 
+def gravity_of(scene: Scene) -> float:
+    """Return the gravity, m/s2, of flights: 0 only where the scene leaves the effect out."""
+    named = "gravity" in scene.effects or (AUTO in scene.effects and "-gravity" not in scene.effects)
+    return rigid.GRAVITY if named else 0.0
+
+
 def strikes_again(case: Case, V_n: float, Omega: float) -> str:
     """Return that a body strikes again as it leaves the barrier, nothing if it does not.
 
     Its mass centre still comes down, with V_n < 0, m/s, or it turns, with Omega, rad/s, another part down
-    faster than it rises. Gravity is left out.
+    faster than it rises: so far gravity, by which each body comes down, is left out. When is told with it.
     """
     if not V_n > 0:
         return "The mass centre still comes down, so that the rod strikes again later."
@@ -59,7 +67,10 @@ def strikes_again(case: Case, V_n: float, Omega: float) -> str:
 
     shape, alpha = outline(body), case.scene.relative.angle
     height = shape.corners[shape.lowest(alpha, Omega)].arms(alpha)[1]
-    touch = next_touch(shape, FlightState(0.0, height, 0.0, alpha, V_n, 0.0, Omega), 0.0)
+    state = FlightState(0.0, height, 0.0, alpha, V_n, 0.0, Omega)
+    touch = next_touch(shape, state, 0.0)
+    if touch is not None:
+        touch = next_touch(shape, state, gravity_of(case.scene) * cos(case.scene.impact.vertical))
     if touch is None:
         return ""
     when = f"about {plain(1e3 * touch[0])} ms later" if touch[0] > 0.0 else "at once"

@@ -7,14 +7,12 @@ from math import copysign, cos, hypot, inf, pi, remainder, sin
 
 from fem_impact.case.bodies import WEAKEST, LaterStrike
 from fem_impact.case.case import Case
-from fem_impact.case.effects.registry import AUTO
 from fem_impact.outcome.keys import Num, Unknown, unknown
 from fem_impact.outcome.strikes import PHASED, StrikeRecord, Strikes, other_end
 from fem_impact.physics.contact import ContactPair
-from fem_impact.run.common import rod_flows
+from fem_impact.run.common import gravity_of, rod_flows
 from fem_impact.run.rigid import NormalLoss, normal_loss
-from fem_impact.scene.types import Scene
-from rigid import GRAVITY, Body, kinetic_energy
+from rigid import Body, kinetic_energy
 from rigid.strikes import (
     LEAST,
     RUNAWAY,
@@ -68,12 +66,6 @@ AGAIN = (
     "{} of the strikes land in the dent of an earlier one, but are computed as on an undented surface, which "
     "loses too much: a hardened dent gives nearly all back."
 )
-
-
-def gravity_of(scene: Scene) -> float:
-    """Return the gravity, m/s2, of flights: 0 only where the scene leaves the effect out."""
-    named = "gravity" in scene.effects or (AUTO in scene.effects and "-gravity" not in scene.effects)
-    return GRAVITY if named else 0.0
 
 
 @dataclass(eq=False)

@@ -67,7 +67,7 @@ def with_band(value: float, band: float, low: float = -inf, high: float = inf) -
     """Return a number with its half-width, of `LEAST` at least, both to the second digit of that.
 
     Where the band of a number between ``low`` and ``high`` runs beyond them, its ends stand in its place. A
-    number that itself lies beyond them, as one extrapolated from meshes may, is the end that its band reaches.
+    number that lies beyond them itself, as one extrapolated from meshes may, is the end that its band holds.
 
     Examples
     --------

@@ -13,8 +13,8 @@ from fem_impact.options import RunOptions
 from fem_impact.outcome.strikes import strikes_table, told
 from fem_impact.pages.run_page import run_page
 from fem_impact.pages.sheet import write_sheet
+from fem_impact.run.common import gravity_of
 from fem_impact.run.simulate import simulate
-from fem_impact.run.strikes import gravity_of
 from fem_impact.scene.shipped import load, replace_all
 from rigid.strikes import outline
 

@@ -16,10 +16,11 @@ from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.record import Outcome
 from fem_impact.outcome.strikes import told as in_words
 from fem_impact.run import certain
+from fem_impact.run.common import gravity_of
 from fem_impact.run.modal import closed, reduce
 from fem_impact.run.modal_error import HELD
 from fem_impact.run.simulate import simulate
-from fem_impact.run.strikes import RATTLE, gravity_of
+from fem_impact.run.strikes import RATTLE
 from fem_impact.scene.read import read_dict, read_toml
 from fem_impact.scene.shipped import load, replace, replace_all
 from fem_impact.scene.types import to_dict, to_toml

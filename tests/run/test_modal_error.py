@@ -180,7 +180,8 @@ def test_a_light_barrier_shares_the_doubt_by_momentum_and_one_too_light_has_no_e
 @pytest.mark.parametrize("turns", [False, True])
 def test_speeds_spin_and_energy_of_a_free_barrier_are_as_open_as_momentum_leaves_them(turns):
     free = {"barrier.mass": "5 kg", "impact.v_t": "-1 m/s", "impact.v_n": "-1 m/s"}
-    inertia = {"barrier.inertia": "0.02 kg m2", "barrier.centre_depth": "30 mm", "barrier.centre_offset": "50 mm"}
+    places = {"barrier.centre_depth": "30 mm", "barrier.centre_offset": "50 mm"}
+    inertia = {"barrier.inertia": "0.02 kg m2", **places}
     outcome = simulate(replace_all(load("t5b"), free | (inertia if turns else {})), "modal")
     mass, barrier = outcome.motion.mass, outcome.barrier
     halves = [outcome.estimate(f"V_{way}_m_per_s")[1] for way in ("bn", "bt")]
@@ -191,10 +192,8 @@ def test_speeds_spin_and_energy_of_a_free_barrier_are_as_open_as_momentum_leaves
 
     def energy(sign):
         """Return what the barrier has where all of its speeds are larger by their half-widths."""
-        speeds = zip((barrier.V_bn, barrier.V_bt, or_none(barrier.Omega_b) or 0.0), (*halves, spin))
-        return 0.5 * sum(
-            of * (abs(speed) + sign * half) ** 2 for of, (speed, half) in zip((5, 5, 0.02), speeds)
-        )
+        speeds = np.abs([barrier.V_bn, barrier.V_bt, or_none(barrier.Omega_b) or 0.0])
+        return 0.5 * np.array([5, 5, 0.02]) @ (speeds + sign * np.array([*halves, spin])) ** 2
 
     told, half = outcome.estimate("E_barrier_over_E_0")
     assert told == pytest.approx(energy(0) / outcome.energy.E_0, rel=1e-6)
