@@ -1,12 +1,32 @@
 """The verdict on a sequence of strikes."""
 
+from dataclasses import replace
+
 import pytest
 
+from fem_impact.answers.verdict import assess
 from fem_impact.answers.verdict.assess import sequence_verdict
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace_all
 
 FLOOR = {"impact.slope": "0 deg", "impact.until": "2 strikes", "surface.friction": 0.57}
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("open_friction, whole", [(0.0, "NO"), (1e6, "UNDECIDED")])
+def test_a_strike_that_is_not_certain_decides_nothing(monkeypatch, open_friction, whole):
+    scene = replace_all(load("quick"), FLOOR)
+    outcomes = {fidelity: simulate(scene, fidelity) for fidelity in ("rigid", "modal")}
+    modal = outcomes["modal"].strikes
+    number = modal.hardest_energy
+    assert sequence_verdict(scene, 0.5)[0].startswith("YES")
+    unsure = replace(modal, certain=number - 1, hardest_agree=33, friction_half=open_friction)
+    outcomes["modal"] = replace(outcomes["modal"], strikes=unsure)
+    monkeypatch.setattr(assess, "simulate", lambda scene, fidelity: outcomes[fidelity])
+    first, second, _ = sequence_verdict(scene, 1e-9)
+    assert first.startswith("UNDECIDED") and "not certain, in 33 of 64 sequences" in first
+    assert second.startswith(whole)
+    assert sequence_verdict(scene, 0.5)[1].startswith("UNDECIDED")
 
 
 @pytest.mark.long
