@@ -24,7 +24,7 @@ from fem_impact.answers.sweep_results import (
     row_of,
 )
 from fem_impact.answers.vary import Variation, cases, in_unit, listed, measure
-from fem_impact.case.effects.heating import thermal
+from fem_impact.case.effects.heating import why_off
 from fem_impact.errors import FemImpactError, UsageError, did_you_mean
 from fem_impact.figures.panels import Panel, Picture, Series
 from fem_impact.files.atomic import checksum, directory_lock, make_directory
@@ -156,9 +156,7 @@ def _without_heat(scene: Scene) -> dict[str, str]:
     case = compiled(scene, "solid")
     if "contact-heating" in case.active:
         return {}
-    missing = [f"heating.{key}" for key, value in thermal(case.bodies).items() if value is None]
-    why = f"state {', '.join(missing)}" if missing else "the contact-heating effect is off"
-    return {key.name: why for key in KEYS if key.path[0] == "heat"}
+    return {key.name: why_off(case.bodies) for key in KEYS if key.path[0] == "heat"}
 
 
 def cases_digest(every: Sequence[Variation], fidelity: str) -> str:

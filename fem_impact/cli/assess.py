@@ -72,7 +72,8 @@ def _rigid(options: Options, scene: Scene) -> tuple[dict[str, Any], Picture | No
     verdict = assessed(scene, options.fidelity, change, *_means(options), tell=_telling(options), of=of)
     # without the options that the next step may add
     answer = document(
-        verdict, scene_options.command_line(options, "assess", *SHORT, *scene_options.SHAPE, "within")
+        verdict,
+        scene_options.command_line(options, "assess", *SHORT, *scene_options.SHAPE, "within", "workers"),
     )
     if scene.impact.until != FIRST:
         answer["sequence"] = sequence_verdict(scene, verdict.tolerance)
@@ -108,7 +109,7 @@ def _limited(options: Options, scene: Scene) -> tuple[dict[str, Any], None]:
     uncertain: dict[str, Any] = dict(read_values(text) for text in options.uncertain)
     means = options.fidelity, *_means(options)
     found = judge(scene, criterion, limit, uncertain, *means, tell=_telling(options))
-    given = "question", "limit", "uncertain", "within"
+    given = "question", "limit", "uncertain", "within", "workers"
     command = scene_options.command_line(options, "assess", *SHORT, *scene_options.SHAPE, *given).replace(
         "--question", "--for"
     )

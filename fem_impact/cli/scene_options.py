@@ -101,8 +101,8 @@ def command_line(options: Options, command: str, *names: str, scene: str = "") -
     words += [word for change in options.changes for word in ("--set", change)]
     for name in names:
         given = getattr(options, name)
-        values = [given] if isinstance(given, str) else given
-        words += [word for value in values if value for word in (f"--{name.replace('_', '-')}", value)]
+        values = given if isinstance(given, list | tuple) else [given]
+        words += [word for value in values if value for word in (f"--{name.replace('_', '-')}", str(value))]
     return shlex.join(words)
 
 

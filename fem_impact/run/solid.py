@@ -9,7 +9,7 @@ import numpy as np
 
 import rigid
 from fem_impact.case.cells import advice
-from fem_impact.case.effects.heating import halves
+from fem_impact.case.effects.heating import halves, why_off
 from fem_impact.errors import RunError
 from fem_impact.outcome.groups import ContactSite, Energy, Heat, Readings, RodMotion, RunCost, limitations
 from fem_impact.outcome.keys import Num, Unknown, known, or_none, unknown
@@ -227,7 +227,7 @@ def _heat(result: SolidResult, E_lt: Num, vibration: Num) -> Heat:
     """Return flash temperature and bound, and rigid theory's friction loss less the vibration in it."""
     watch = result.heat
     if watch is None or not watch.power:
-        return unknown(Heat, "the contact-heating effect is off")
+        return unknown(Heat, why_off(result.case.bodies))
     power, patch, speed = (np.array(values) for values in (watch.power, watch.patch, watch.speed))
     flux = np.divide(power, patch, out=np.zeros_like(power), where=patch > 0)
     rise = flash(np.array(watch.t), flux, np.sqrt(patch / np.pi), speed, *halves(result.case.bodies))

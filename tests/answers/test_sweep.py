@@ -165,7 +165,7 @@ def test_a_wanted_error_is_left_out_where_there_is_no_mesh_and_said_so():
         (
             "solid",
             {"effects": ["barrier-elastic", "friction"]},
-            "flash_temperature_K (the contact-heating effect is off)",
+            "flash_temperature_K (the contact-heating effect is off: effects =",
         ),
         ("solid", {"barrier.material": tomllib.loads(BRONZE)}, "state heating.barrier_conductivity"),
     ],

@@ -158,7 +158,7 @@ def test_heat_does_not_act_on_the_motion():
     assert plain.heat is None
     assert watched.accounts == plain.accounts
     outcome = reduce(plain)
-    assert outcome.heat.rise.reason == "the contact-heating effect is off"
+    assert outcome.heat.rise.reason.startswith("the contact-heating effect is off: effects = [")
     # a list without auto forces off what it does not name, and the outcome says so
     missed = {
         words.split()[0]

@@ -323,15 +323,13 @@ def sequence_verdict(scene: Scene, tolerance: float) -> list[str]:
     ends = ("not by itself" if isinstance(one, Unknown) else f"{one:.3g} times" for one in ratios)
     which = f"number {number} by the reduced model"
     if number > certain:
-        agree = (
-            "" if isinstance(modal.hardest_agree, Unknown) else f", in {modal.hardest_agree} of 64 sequences"
-        )
-        which += f" (not certain{agree})"
+        agree = or_none(modal.hardest_agree)
+        which += f" (not certain{f', in {agree} of 64 sequences' if agree else ''})"
     return [
         f"{_answer(hardest, number <= certain)}: rigid theory for the hardest strike, {which}: "
         f"{_struck(theirs, number)}; by rigid theory {_struck(ours, number)}.",
-        f"{_answer(whole, surely)}: rigid theory for the whole sequence, which loses {by_modes} by the reduced "
-        f"model and {rigidly} by rigid theory (allowed: {tolerance:g} of a speed and of E_0).",
+        f"{_answer(whole, surely)}: rigid theory for the whole sequence, which loses {by_modes} by the "
+        f"reduced model and {rigidly} by rigid theory (allowed: {tolerance:g} of a speed and of E_0).",
         "The other end strikes {} as fast as the first strike came by the reduced model, by rigid theory "
         "{}.".format(*ends),
     ]

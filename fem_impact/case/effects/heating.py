@@ -43,6 +43,14 @@ def halves(bodies: Bodies) -> Halves:
     )
 
 
+def why_off(bodies: Bodies) -> str:
+    """Return why the heat of a contact is not followed, and what turns it on."""
+    missing = [f"heating.{key}" for key, value in thermal(bodies).items() if value is None]
+    if missing:
+        return f"state {', '.join(missing)}"
+    return 'the contact-heating effect is off: effects = ["auto", "contact-heating"] turns it on'
+
+
 def number(bodies: Bodies) -> float:
     """Return the expected flash temperature rise over the rise to ignition, 0 where it is not known."""
     heating = bodies.scene.heating
