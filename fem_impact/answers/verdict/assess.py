@@ -32,6 +32,7 @@ BUDGET = 60.0
 FIDELITIES = ("auto", "modal", "solid")
 ANGLES = tuple(np.radians(np.arange(5.0, 81.0, 5.0)))
 """Inclinations among which the worst one is looked for, rad."""
+ALONE = ", but no scene like it was computed both ways: finite elements are asked, too"
 WIDER = "Finite elements bear that out less narrowly: {}."
 SURE: tuple[vibration.Answer, ...] = ("yes", "no")
 WORST_FIRST: tuple[vibration.GradedAnswer, ...] = ("no", "probably no", "undecided", "probably yes", "yes")
@@ -185,12 +186,13 @@ def assess(
     quick, notes = _quick(scene, of, tell) if reduced else (None, [LACKING.format(lacking)])
     screened = screening(bodies)
     steps = [f"rigid theory: T1/tau = {screened.ratio:.2f}, {screened.published}"]
-    steps += [f"the reduced model: {_told(quick)}: {quick.graded(tolerance)}"] if quick else []
+    # where nothing like the scene was computed both ways, the reduced model's error is not known well enough
+    open_still = quick is None or not quick.alike or quick.answer(tolerance) == "undecided"
+    asked = ALONE if fidelity == "auto" and quick and not quick.alike else ""
+    steps += [f"the reduced model: {_told(quick)}: {quick.graded(tolerance)}{asked}"] if quick else []
     for step in steps:
         tell(step)
     effect, used = quick, "modal"
-    # where nothing like the scene was computed both ways, the reduced model's error is not known well enough
-    open_still = quick is None or not quick.alike or quick.answer(tolerance) == "undecided"
     if fidelity == "solid" or (fidelity == "auto" and open_still):
 
         def estimate(levels: Sequence[LevelRun]) -> vibration.VibrationEffect | None:

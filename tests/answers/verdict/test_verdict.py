@@ -17,6 +17,7 @@ from fem_impact.answers.refine.chain import LevelChain
 from fem_impact.answers.refine.forecast import OverBudgetError
 from fem_impact.answers.refine.level_meshes import LevelMeshes
 from fem_impact.answers.refine.places import run_elsewhere
+from fem_impact.answers.verdict import assess as verdict_of
 from fem_impact.answers.verdict import levels as levels_module
 from fem_impact.answers.verdict import vibration
 from fem_impact.answers.verdict.assess import assess
@@ -280,6 +281,17 @@ def test_the_change_of_e_is_that_of_two_runs(short):
     assert short.here.value == free - stiff
     assert abs(short.worst.value) >= abs(short.here.value)
     assert (short.answer, short.fidelity) == ("yes", "modal")
+
+
+@pytest.mark.parametrize("alike", [True, False])
+def test_a_step_says_why_finite_elements_are_asked_after_a_sure_answer(monkeypatch, short, alike):
+    sure = replace(short.here, band=0.0, alike=alike)
+    monkeypatch.setattr(verdict_of, "_quick", lambda *_: (sure, []))
+    monkeypatch.setattr(verdict_of, "_over_angles", lambda *_: (None, ((), "")))
+    monkeypatch.setattr(verdict_of, "by_levels", lambda *_: (None, [], {}))
+    monkeypatch.setattr(verdict_of, "_over_friction", lambda *_: None)
+    why = "" if alike else ", but no scene like it was computed both ways: finite elements are asked, too"
+    assert assess(load("t5b")).steps[1].endswith(f"yes{why}")
 
 
 def left_out(of):
