@@ -20,7 +20,7 @@ from fem_impact.answers.verdict.vibration import (
 from fem_impact.case.case import Case
 from fem_impact.outcome.groups import texts
 from fem_impact.outcome.keys import Unknown, or_none
-from fem_impact.outcome.record import Outcome, installed_versions
+from fem_impact.outcome.record import KEY_TABLE, Outcome, installed_versions
 from fem_impact.outcome.shares import SHARES, heat_ends
 from fem_impact.run.common import RESIDUAL_LIMIT
 from fem_impact.run.simulate import simulate
@@ -147,7 +147,9 @@ def _anywhere(v: Verdict) -> str:
 
 
 def _vibration(effect: VibrationEffect) -> str:
-    share, half = with_band(100 * effect.E_vib, max(100 * effect.E_vib_band, LEAST_HALF / 100)).split(" +- ")
+    share, half = with_band(
+        100 * max(effect.E_vib, 0.0), max(100 * effect.E_vib_band, LEAST_HALF / 100)
+    ).split(" +- ")
     share = f"{share} % of the energy"
     if or_none(effect.free.energy.below_floor):
         return f"{share}, which is below the numerical floor of the model"
@@ -206,16 +208,16 @@ def basis(v: Verdict) -> tuple[Line, ...]:
         *(((f"with vibration{on}", _motion(here.free)), (twin + on, _motion(here.stiff))) if here else ()),
         *((f"step {number}", f"{step}.") for number, step in enumerate(v.steps, 1)),
         *((("fidelity", f"{v.fidelity}. {here.source}"),) if here else ()),
-        *((("heat of the contact", _heat(here.free)),) if here else ()),
+        *((("heat of the contact", _heat(here)),) if here else ()),
         *_other_angles(v),
         _friction(v),
         *(("note", note) for note in v.notes),
     )
 
 
-def _heat(run: Outcome) -> str:
+def _heat(effect: VibrationEffect) -> str:
     """Return how hot the contact becomes, or why that is not known."""
-    heat = run.heat
+    heat = effect.free.heat
     if isinstance(heat.power, Unknown):
         return f"not known: {heat.power.reason}."
     if isinstance(heat.temperature, Unknown):
@@ -225,10 +227,16 @@ def _heat(run: Outcome) -> str:
         if isinstance(heat.bound, Unknown)
         else f"No spot exceeds {heat.bound:.0f} K, under the assumptions of the report"
     )
+    told, error = (
+        f"{heat.temperature:.0f}",
+        " The error of this mesh is not known: finer elements may give more.",
+    )
+    if effect.heat is not None:
+        ends = effect.free.ends_of(KEY_TABLE["flash_temperature_K"])
+        told, error = with_band(*effect.heat, *ends).replace("+-", "±"), ""
     return (
-        f"the patch reaches {heat.temperature:.0f} K in the mean, by friction alone. {spot}. The error of "
-        "this mesh is not known: finer elements may give more. Method: conduction of heat into both bodies "
-        "(Jaeger 1942; Tian & Kennedy 1994, doi:10.1115/1.2927035)."
+        f"the patch reaches {told} K in the mean, by friction alone. {spot}. {error}Method: conduction of "
+        "heat into both bodies (Jaeger 1942; Tian & Kennedy 1994, doi:10.1115/1.2927035)."
     )
 
 

@@ -14,7 +14,7 @@ from typing import Literal
 
 import numpy as np
 
-from fem_impact.answers.refine import extrapolate
+from fem_impact.answers.refine import extrapolate, needed
 from fem_impact.case.case import Case
 from fem_impact.case.effects.registry import NAMES, with_prerequisites
 from fem_impact.case.measured import vibration_pairs
@@ -193,6 +193,7 @@ class VibrationEffect:
     errors : half-widths of shares of E_0, by their names in an outcome's energy, as far as they are known
     alike : whether scenes like this one were computed by the reduced model and finite elements, or finite
         elements computed this one
+    heat : mean temperature of the patch, K, and its half-width, None where levels do not tell them
     """
 
     of: str
@@ -207,6 +208,7 @@ class VibrationEffect:
     model: str
     errors: Mapping[str, float]
     alike: bool = True
+    heat: tuple[float, float] | None = None
 
     def at_least(self, off: float) -> "VibrationEffect":
         """Return the change with a band no smaller than ``off``, an error that finite elements showed."""
@@ -324,6 +326,7 @@ def solid_effect(levels: Sequence[extrapolate.MeshRuns], of: str = "e") -> Vibra
     band = max(own, SHARE * bands[CHANGED[of].name]) * (UNSHOWN if unshown else 1.0)
     E_vib, E_vib_band = (of[extrapolate.VIBRATION.name] for of in (limits, bands))
     floor = extrapolate.vibration_floor(free)
+    lost = needed.unresolved_heat(limits, bands, free, fine.across)
     errors = {
         key.path[-1]: max(abs(limits[key.name] - known(key.of(free))) + bands[key.name], floor)
         for key in (*(share.key for share in SHARES), KEY_TABLE["W_skin_over_E_0"])
@@ -336,7 +339,7 @@ def solid_effect(levels: Sequence[extrapolate.MeshRuns], of: str = "e") -> Vibra
         band,
         E_vib,
         E_vib_band,
-        free,
+        replace(free, heat=needed.known_heat(free, lost)),
         stiff,
         f"Finite elements on {len(levels)} levels, the last two with cells of {_size(coarse)} and "
         f"{_size(fine)} at the contact{ONCE if len(changes[-1]) == 1 else TWICE} at least half of the "
@@ -344,6 +347,7 @@ def solid_effect(levels: Sequence[extrapolate.MeshRuns], of: str = "e") -> Vibra
         f"{TWICE_AS_WIDE * unshown}." + COUNTS.format(100 * floor),
         MESHES,
         errors,
+        heat=(limits[needed.TEMPERATURE], bands[needed.TEMPERATURE]) if needed.TEMPERATURE in bands else None,
     )
 
 

@@ -92,11 +92,11 @@ def test_the_heat_of_the_contact_is_followed_in_the_run_that_vibrates_where_the_
     assert all("contact-heating" not in one.effects for one in twins(without))
 
 
-def heated(short, **values):
+def heated(short, by_levels=None, **values):
     """The verdict with other values of the heat of the contact in its run with vibration."""
-    heat = replace(short.here.free.heat, power=900.0, temperature=431.0, bound=1200.0)
-    free = replace(short.here.free, heat=replace(heat, **values))
-    return dict(basis(replace(short, here=replace(short.here, free=free))))["heat of the contact"]
+    heat = replace(short.here.free.heat, power=900.0, temperature=431.0, rise=138.0, bound=1200.0)
+    here = replace(short.here, free=replace(short.here.free, heat=replace(heat, **values)), heat=by_levels)
+    return dict(basis(replace(short, here=here)))["heat of the contact"]
 
 
 def test_the_verdict_tells_how_hot_the_contact_becomes(short):
@@ -108,6 +108,23 @@ def test_the_verdict_tells_how_hot_the_contact_becomes(short):
         short, bound=Unknown("not resolved: why")
     )
     assert "is not resolved: why." in heated(short, temperature=Unknown("not resolved: why"))
+    told = heated(short, (450.0, 40.0))
+    assert "reaches 450 ± 40 K in the mean" in told and "error of this mesh" not in told
+    assert "reaches 450 (290 to 640) K" in heated(short, (450.0, 190.0))
+
+
+@pytest.mark.parametrize("across", [3, 4])
+def test_levels_tell_the_heat_of_a_patch_that_they_resolve(short, across):
+    heat = replace(short.here.free.heat, power=900.0, temperature=431.0, rise=138.0)
+    free, stiff = replace(short.here.free, heat=heat), short.here.stiff
+    levels = [
+        extrapolate.MeshRuns(size, [free, stiff], wide=across == 4, rows=across) for size in (2e-3, 1e-3)
+    ]
+    here = solid_effect(levels)
+    if across == 4:
+        assert here.heat[0] == here.free.heat.temperature == 431.0 and here.heat[1] >= 0.0
+    else:
+        assert here.heat is None and "4 nodes, and has 3" in here.free.heat.temperature.reason
 
 
 @pytest.mark.parametrize(
