@@ -212,5 +212,5 @@ def _at_border(model: Model, zone: YieldingZone) -> str:
         return ""
     return (
         f"Yielding reached the edge of the {zone.body}'s fine zone (plastic strain {strain:.3f}): "
-        "beyond it the material was taken as elastic."
+        "beyond it the material was taken as elastic. A larger accuracy.tip_size makes the zone wider."
     )
