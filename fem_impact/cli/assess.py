@@ -19,13 +19,13 @@ from fem_impact.cli.parser import Options, stated_budget
 from fem_impact.cli.paths import checked_out
 from fem_impact.cli.terminal import print_answer
 from fem_impact.cli.values import read_values
-from fem_impact.errors import UsageError
+from fem_impact.errors import SceneError, UsageError
 from fem_impact.figures.panels import Picture
 from fem_impact.files.run_directory import refuse_other_scene
 from fem_impact.pages.run_page import write_verdict
 from fem_impact.scene.impact import FIRST
 from fem_impact.scene.types import Scene, to_toml
-from fem_impact.scene.units import option_quantity
+from fem_impact.scene.units import option_quantity, parse_change
 from fem_impact.tables.text import wrapped
 
 RIGID = "rigid"  # the question that is asked where no other is
@@ -134,8 +134,8 @@ def _within(options: Options) -> tuple[str, float]:
     if of not in CHANGED:
         raise wrong
     try:
-        return of, float(text.removesuffix("%")) / (100.0 if text.endswith("%") else 1.0)
-    except ValueError as error:
+        return of, parse_change(text, "--within")
+    except SceneError as error:
         raise wrong from error
 
 

@@ -147,6 +147,25 @@ def parse_number(value: Any, key: str) -> float:
         raise SceneError("is too large.", key=key, value="an integer of many digits") from None
 
 
+def parse_change(value: Any, key: str) -> float:
+    """Read a dimensionless number, or its text, which may be in per cent.
+
+    Examples
+    --------
+    >>> parse_change(0.05, "within"), parse_change("0.05", "within"), parse_change("5 %", "within")
+    (0.05, 0.05, 0.05)
+    """
+    if not isinstance(value, str):
+        return parse_number(value, key)
+    if value.strip().endswith("%"):
+        return parse_share(value.strip(), key)
+    try:
+        return float(value)
+    except ValueError:
+        remedy = 'Write one such as 0.05 or "5 %".'
+        raise SceneError("is not a number.", key=key, value=value, remedy=remedy) from None
+
+
 @lru_cache(maxsize=4096)  # a sweep writes the same materials for every case
 def format_quantity(value: float, dimension: str, symbol: str = "") -> str:
     """Write an SI value with a unit, so that `parse_quantity` gives back the very same float.

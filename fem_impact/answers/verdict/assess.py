@@ -21,7 +21,7 @@ from fem_impact.progress import tell_cell
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.impact import Following
 from fem_impact.scene.types import Scene, require_scene
-from fem_impact.scene.units import parse_number
+from fem_impact.scene.units import parse_change
 from fem_impact.tables.table import Table
 from fem_impact.tables.text import digits_apart, plain
 
@@ -139,7 +139,7 @@ class Verdict:
 def assess(
     scene: Scene,
     fidelity: str = "auto",
-    tolerance: float = TOLERANCE,
+    tolerance: float | str = TOLERANCE,
     budget_s: float = BUDGET,
     workers: int | None = None,
     tell: Tell = tell_cell,
@@ -157,7 +157,7 @@ def assess(
         ``auto`` takes the reduced model with its known error, and finite elements where that error leaves the
         answer open, or is that of scenes unlike this one, and the budget allows. Other inclinations than the
         scene's are computed with the reduced model.
-    tolerance : change that may be neglected
+    tolerance : change that may be neglected, such as 0.05 or "5 %"
     budget_s : wall time of the finite elements, s
     workers : runs at a time, 1 or 2; None: 2 where this process may use as many cores
     tell : called with a sentence before something that takes long, and after each step; by default these are
@@ -175,7 +175,7 @@ def assess(
     if of not in CHANGED:
         remedy = f"Use one of {', '.join(CHANGED)}."
         raise SceneError("is not a number whose change is judged.", key="of=", value=of, remedy=remedy)
-    tolerance = parse_number(tolerance, "tolerance=")
+    tolerance = parse_change(tolerance, "tolerance=")
     if not 0.0 < tolerance < 1.0:
         remedy = "It is the change that may be neglected: give one such as 0.05."
         raise SceneError("must lie between 0 and 1.", key="tolerance=", value=tolerance, remedy=remedy)

@@ -37,7 +37,7 @@ from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.record import installed_versions
 from fem_impact.progress import tell_cell
 from fem_impact.scene.types import Scene, digest
-from fem_impact.scene.units import parse_number, parse_quantity
+from fem_impact.scene.units import parse_change, parse_quantity
 from fem_impact.tables.text import digits_apart, plain
 
 PLACES = {1: 21, 2: 7, 3: 5, 4: 3}
@@ -233,8 +233,8 @@ def _question(of: Criterion | str, limit: float | str) -> tuple[Criterion, float
     criterion = criterion_of(of) if isinstance(of, str) else of
     if isinstance(limit, str) and criterion.dimension:
         limit = parse_quantity(limit, criterion.dimension, "limit")
-    limit = parse_number(limit, "limit")
-    if limit <= 0.0:
+    limit = parse_change(limit, "limit")
+    if not 0.0 < limit < inf:
         raise SceneError("must lie above 0.", key="limit", value=_in_unit(criterion, limit))
     return criterion, limit
 

@@ -172,11 +172,12 @@ def test_a_number_and_its_limit_may_be_words(scene, limit, most):
     found = fem_impact.judge(scene, "force", limit, fidelity="modal")
     assert found.limit == most and found.criterion is LIMITED["force"] and found.answer == "yes"
     assert repr(found).startswith(f"LimitVerdict({scene.id!r}: the peak force below 20 kN: yes, ")
-    assert (
-        fem_impact.judge(scene, "e", 0.5, fidelity="modal").criterion.called == "the change of e by vibration"
-    )
-    with pytest.raises(SceneError, match="above 0"):
-        fem_impact.judge(scene, "force", "-1 N")
+    for half in (0.5, "0.5", "50 %"):
+        change = fem_impact.judge(scene, "e", half, fidelity="modal")
+        assert change.criterion.called == "the change of e by vibration" and change.limit == 0.5
+    for of, wrong in (("force", "-1 N"), ("e", "nan")):
+        with pytest.raises(SceneError, match="above 0"):
+            fem_impact.judge(scene, of, wrong)
     with pytest.raises(SceneError, match="of="):
         fem_impact.judge(scene, "dents", limit)
     with pytest.raises(SceneError, match="is not a unit of force"):

@@ -176,9 +176,11 @@ def test_a_yes_tells_the_number_of_rigid_theory_where_its_closed_formula_has_ano
     assert "rigid has" not in box(replace(short, here=replace(here, value=0.2)))[0][1]
 
 
-def test_a_tolerance_in_words_is_refused_as_one():
-    with pytest.raises(SceneError, match="is a text, not a number"):
-        assess(load("t5b"), "modal", tolerance="0.05")
+def test_a_tolerance_may_be_a_text_and_in_per_cent_and_is_refused_where_it_is_none():
+    for told in ("0.05", "5 %"):
+        assert assess(load("t5b"), "modal", tolerance=told).tolerance == 0.05
+    with pytest.raises(SceneError, match="is not a number"):
+        assess(load("t5b"), "modal", tolerance="little")
 
 
 def test_a_yes_agrees_with_check_where_rigid_theory_has_no_contact_law(short):
