@@ -157,10 +157,9 @@ def parse_change(value: Any, key: str) -> float:
     """
     if not isinstance(value, str):
         return parse_number(value, key)
-    if value.strip().endswith("%"):
-        return parse_share(value.strip(), key)
+    text = value.strip()
     try:
-        return float(value)
+        return float(text.removesuffix("%")) / (100.0 if text.endswith("%") else 1.0)
     except ValueError:
         remedy = 'Write one such as 0.05 or "5 %".'
         raise SceneError("is not a number.", key=key, value=value, remedy=remedy) from None
