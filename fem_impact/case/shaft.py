@@ -82,7 +82,8 @@ def coned(bodies: Bodies) -> str:
         return ""
     _, heights = shoulders.eased(bodies.body.outline, bodies.scene.across)
     places = " and ".join(f"{z * 1e3:.3g} mm" for z in heights)
-    return f"in a mesh the shoulder {places} from the tip is a cone of 63 degrees" if places else ""
+    are = ("shoulder {} from the tip is a cone", "shoulders {} from the tip are cones")[len(heights) > 1]
+    return f"in a mesh the {are.format(places)} of 63 degrees" if places else ""
 
 
 def lands_on_ridge(bodies: Bodies) -> bool:

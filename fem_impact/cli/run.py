@@ -37,10 +37,7 @@ if TYPE_CHECKING:
     from fem_impact.outcome.groups import Energy
 
 
-ALONE = (
-    ", with the errors of its model for the stated values (those above hold the intervals of friction, angle "
-    "and speed, too)"
-)
+ALONE = ", with the errors of its own numbers (those above are the spread of 64 sequences)"
 LONG = 600.0
 """Expected computing time, s, above which `run` prints it before it starts."""
 

@@ -152,7 +152,9 @@ def _say_fall(scene: Scene, changed: set[str], options: Options) -> None:
         )
     else:
         sentence = "warning: v_n and v_t are those of the old angle."
-        if speed * math.cos(impact.angle) > SLOWED * abs(impact.v_n):  # a fall along the axis still strikes
+        still = not (scene.barrier.v_n or scene.barrier.v_t)
+        # a fall along the axis still strikes
+        if still and speed * math.cos(impact.angle) > SLOWED * abs(impact.v_n):
             sentence += f" A fall as fast at the new one: --set impact.speed='{speed:.4g} m/s'"
     sys.stderr.write(f"fem-impact: {sentence}\n")
 

@@ -105,10 +105,17 @@ def heat_ends(outcome: Outcome) -> str:
     if half is not None or half_rubbed is None or isinstance(skin, Unknown) or isinstance(rubbed, Unknown):
         return ""
     high = rubbed + half_rubbed + sum((or_none(work) or 0.0) + (error or 0.0) for work, error in flowed)
-    least, greatest = (plain(100 * end, 2) for end in (max(rubbed - half_rubbed, 0.0), min(high, 1.0)))
+    others = [share.key for share in SHARES if share.key.name.removesuffix("_over_E_0") not in WORKS]
+    kept = sum(
+        max((or_none(value) or 0.0) - error, 0.0)
+        for value, error in map(outcome.estimate, others)
+        if error is not None
+    )
+    left = 1.0 + max(or_none(outcome.energy.gravity) or 0.0, 0.0) - kept
+    least, greatest = (plain(100 * end, 2) for end in (max(rubbed - half_rubbed, 0.0), min(high, left)))
     return (
-        f"it lies between {least} % (friction) and {greatest} % (friction and all plastic work), "
-        "errors included"
+        f"it lies between {least} % (friction) and {greatest} % (friction and all plastic work, or what "
+        "other shares leave), errors included"
     )
 
 

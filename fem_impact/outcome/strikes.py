@@ -169,6 +169,7 @@ ROW = {
 SIGNED = "alpha", "mu"
 """Those that may be below 0."""
 KEYS = {key.path[-1]: key.name for key in keys_of(StrikeRecord)}
+PAST_ENDS = 1e-3  # of e, beyond 0 and 1, that is told
 ROUND_OFF = 1e-9  # of the energy before the first strike, below which nothing is told
 SHOWN = 12
 """Strikes that are listed where nothing says how many are certain; all of them stand in strikes.csv."""
@@ -186,6 +187,19 @@ def told(strikes: Strikes) -> list[str]:
         _other_end(strikes),
         *_hardest(strikes),
         *_certain(strikes),
+        *_given_back(strikes.each),
+    ]
+
+
+def _given_back(each: Sequence[StrikeRecord]) -> list[str]:
+    """Say of an e below 0 or above 1 where it comes from; nothing where there is none."""
+    numbers = [str(n) for n, one in enumerate(each, 1) if one.e < -PAST_ENDS or one.e > 1.0 + PAST_ENDS]
+    if not numbers:
+        return []
+    strikes = f"strike{'s' * (len(numbers) > 1)} {', '.join(numbers[:SHOWN])}"
+    return [
+        f"e below 0 or above 1 in {strikes}: a body that still vibrates gives that energy back to its motion "
+        "as it strikes, or takes more up; the energy balance is kept."
     ]
 
 
@@ -283,6 +297,8 @@ def _hardest(strikes: Strikes) -> list[str]:
         if isinstance(number, Unknown):
             continue
         first, same = "", "" if isinstance(agree, Unknown) else f", the hardest in {agree} of 64 sequences"
+        if agree == 0:
+            same = ", in none of the 64 sequences of the reduced model that hold its errors"
         if certain is not None and number > certain:
             first, same = f" not certain (strike {number} of this path{same}); of the certain ones", ""
             number = 1 + max(range(certain), key=lambda at: size(each[at]))
@@ -320,6 +336,7 @@ def _totals(strikes: Strikes) -> str:
     gave = or_none(strikes.gravity) or 0.0
     came = f"{before:.3g} J before the first strike"
     came += f" and {gave:.3g} J from gravity" if abs(gave) > least else ""
-    kept = "" if isinstance(strikes.left, Unknown) else f" the body keeps {strikes.left:.3g} J;"
+    left = strikes.left if isinstance(strikes.left, Unknown) or strikes.left > least else 0.0
+    kept = "" if isinstance(left, Unknown) else f" the body keeps {left:.3g} J;"
     ends = "The last of them" if strikes.end in ("bounces on", "loses nothing") else "The end"
     return f"{ends} comes{time}. Of {came}{kept} the rest: {sums or 'nothing'}.{rubbed}"

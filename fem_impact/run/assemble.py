@@ -22,6 +22,7 @@ from fem_impact.run.common import (
     barrier_motion,
     momentum_error,
     motion,
+    open_end,
     restitution,
     strikes_again,
 )
@@ -141,10 +142,12 @@ class Reduction:
         numbers = origin, self.motion, self.restitution, energy
         shown = () if withheld or cut else unusual(*numbers, case.contact)
         again = strikes_again(case, end.leaving, end.Omega) if end.finished and not failed else ""
-        alone = case.scene.impact.until == FIRST
+        alone, near = case.scene.impact.until == FIRST, ""
+        if end.finished and not failed:
+            near = open_end(case, end.contacts, end.leaving, end.Omega)
         named_again = named(again) if alone and not end.other_end else ""
         next_one = named_again or (end.reason if alone and again else "")
-        of_result = limitations("result", *shown, gravity, next_one)
+        of_result = limitations("result", *shown, gravity, next_one, f"{near}." * bool(near))
         outcome = Outcome(
             provenance=origin,
             validity=_validity(
@@ -157,7 +160,7 @@ class Reduction:
             contact=groups.Contact(
                 intervals=_intervals(end.contacts, unmeshed),
                 sites=sites,
-                strikes_again=bool(again) if end.finished else CUT_OFF,
+                strikes_again=(Unknown(near) if near else bool(again)) if end.finished else CUT_OFF,
                 peak_force=peak_force,
                 readings=readings,
                 markers=markers,
@@ -221,6 +224,6 @@ def _gravity(case: Case, contacts: Array | None) -> tuple[str, str]:
         remedy = "it is no impact any more. Give a higher speed, or leave out the gravity effect."
         return "", f"{gained}: {remedy}"
     if share > GRAVITY_TOLD:
-        why = "The contact bears it, so that V_n, e and E_r hold to about a tenth of that."
+        why = "The contact bears the weight meanwhile: V_n, e and E_r change by about a tenth of that."
         return f"{gained}. {why}", ""
     return "", ""

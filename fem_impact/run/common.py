@@ -4,6 +4,7 @@ from dataclasses import replace
 from math import atan2, cos, hypot, inf, pi, sin
 
 import rigid
+from fem_impact.arrays import Array
 from fem_impact.case.case import Case
 from fem_impact.case.effects.heating import halves
 from fem_impact.case.effects.registry import AUTO
@@ -43,6 +44,7 @@ DEEP = 0.2  # plastic strain at a wedge, that of an indentation as deep as wide 
 SQUARE = 0.8
 ROUND = 0.25
 """Turn of an outline within the contact, over 90 degrees, up to which it bears as a half-space does."""
+NEAR_END = 1.5  # of the time that parts two impacts, up to which a gap may lie on its other side
 ROUND_OFF = 1e-6  # a moment impulse over that of the normal impulse at arm d_d: below it there is none
 
 
@@ -52,29 +54,55 @@ def gravity_of(scene: Scene) -> float:
     return rigid.GRAVITY if named else 0.0
 
 
-def strikes_again(case: Case, V_n: float, Omega: float) -> str:
-    """Return that a body strikes again as it leaves the barrier, nothing if it does not.
+def next_strike(case: Case, V_n: float, Omega: float) -> float | None:
+    """Return when, s from now, a body strikes again as it leaves the barrier with V_n, m/s, and Omega, rad/s.
 
-    Its mass centre still comes down, with V_n < 0, m/s, or it turns, with Omega, rad/s, another part down
-    faster than it rises: so far gravity, by which each body comes down, is left out. When is told with it.
+    Its mass centre still comes down, or it turns another part down faster than it rises: so far gravity, by
+    which each body comes down, is left out. When is told with it. None of a body that does not strike so.
     """
-    if not V_n > 0:
-        return "The mass centre still comes down, so that the rod strikes again later."
     body = case.contact.body
     if abs(Omega) * hypot(body.length, body.diameter) < V_n:  # no part of it comes down
-        return ""
+        return None
     from rigid.strikes import FlightState, next_touch, outline
 
     shape, alpha = outline(body), case.scene.relative.angle
     height = shape.corners[shape.lowest(alpha, Omega)].arms(alpha)[1]
     state = FlightState(0.0, height, 0.0, alpha, V_n, 0.0, Omega)
-    touch = next_touch(shape, state, 0.0)
-    if touch is not None:
-        touch = next_touch(shape, state, gravity_of(case.scene) * cos(case.scene.impact.vertical))
-    if touch is None:
+    if next_touch(shape, state, 0.0) is None:
+        return None
+    touch = next_touch(shape, state, gravity_of(case.scene) * cos(case.scene.impact.vertical))
+    return None if touch is None else touch[0]
+
+
+def strikes_again(case: Case, V_n: float, Omega: float) -> str:
+    """Return that a body strikes again as it leaves the barrier, an empty text if it does not."""
+    if not V_n > 0:
+        return "The mass centre still comes nearer to the barrier, so that the rod strikes again later."
+    after = next_strike(case, V_n, Omega)
+    if after is None:
         return ""
-    when = f"about {plain(1e3 * touch[0])} ms later" if touch[0] > 0.0 else "at once"
+    when = f"about {plain(1e3 * after)} ms later" if after > 0.0 else "at once"
     return f"The rod turns another part down faster than it rises, so that it strikes again {when}."
+
+
+def open_end(case: Case, contacts: Array | None, V_n: float, Omega: float) -> str:
+    """Return that it is open whether a next contact belongs to the impact, nothing where it is not.
+
+    ``contacts`` (k, 2) are start and end, s, of each; V_n, m/s, and Omega, rad/s, those after the last one.
+    """
+    if contacts is None or not len(contacts):
+        return ""
+    limit, gaps = case.one_impact, [float(gap) for gap in contacts[1:, 0] - contacts[:-1, 1]]
+    after = next_strike(case, V_n, Omega)
+    # it leaves turned and moved by about what it would be after half of the contact's time
+    gaps += [] if after is None else [after - 0.5 * float(contacts[-1, 1] - contacts[-1, 0])]
+    near = [gap for gap in gaps if limit / NEAR_END < gap < limit * NEAR_END]
+    if not near:
+        return ""
+    return (
+        f"It touches again after {1e6 * near[0]:.0f} us; what touches again within {1e6 * limit:.0f} us "
+        "counts as the same impact. So near that limit another model, or another mesh, may count otherwise"
+    )
 
 
 def flow_omitted(case: Case) -> str:

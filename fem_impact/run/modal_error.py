@@ -20,7 +20,7 @@ import numpy as np
 from fem_impact.arrays import Array
 from fem_impact.case.case import Case
 from fem_impact.case.measured import CONFIDENCE, reduced_pairs, tolerance_rank
-from fem_impact.outcome.keys import known, or_none
+from fem_impact.outcome.keys import Unknown, known, or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.physics.contact import ContactPair
 from fem_impact.physics.contact_law import contact_law
@@ -275,6 +275,21 @@ def with_barrier(struck: Barrier, outcome: Outcome, halves: Mapping[str, float])
     return rod | {"E_barrier_over_E_0": min(share, 1.0)}
 
 
+def with_waves(share: float, outcome: Outcome, halves: Mapping[str, float]) -> dict[str, float]:
+    """Return half-widths, by key, that hold waves in the barrier, which the reduced model leaves out.
+
+    They take a ``share`` of the normal energy.
+    """
+    e, wider = or_none(outcome.restitution.edge.e), dict(halves)
+    if not share or e is None or "E_r_over_E_0" not in halves:
+        return wider
+    v_n, v_t = (getattr(outcome.motion, v) - getattr(outcome.barrier, f"v_b{v[-1]}") for v in ("v_n", "v_t"))
+    slower = e - sqrt(max(e**2 - share, 0.0))
+    more = {"e_edge": slower, "V_n_m_per_s": slower * abs(v_n)}
+    more["E_r_over_E_0"] = share * v_n**2 / (v_n**2 + v_t**2)
+    return wider | {key: halves[key] + by for key, by in more.items() if key in halves}
+
+
 def widened_by(speed: float, approach: float) -> float:
     """Return how many times wider that of e is, where the approach, m/s, is slow beside the speed, m/s.
 
@@ -319,7 +334,8 @@ def unheard(outcome: Outcome) -> tuple[str, ...]:
     """Return how a scene touches as no stored one does: of those hardly one lands flat, and sends waves."""
     several = ("the number of places that touch",) * (len(or_none(outcome.contact.sites) or ()) > 1)
     flat = ("what lands flat",) * (or_none(outcome.energy.radiated) is not None)
-    return (*several, *flat, *("how an edge digs in",) * digs_in(outcome))
+    again = ("when it touches again",) * isinstance(outcome.contact.strikes_again, Unknown)
+    return (*several, *flat, *again, *("how an edge digs in",) * digs_in(outcome))
 
 
 def digs_in(outcome: Outcome) -> bool:

@@ -153,7 +153,7 @@ def _ringing(result: SolidResult) -> str:
     return (
         f"E_vib lacks {above / E_0:.1e} of E_0 that vibrates above its {len(result.flight.a)} modes and that "
         "E_vib_check holds: fine cells of the tip ring by themselves, or the blow was too short for modes. "
-        "Compare twice the accuracy.across, or another accuracy.tip_size or grid_shift."
+        "To check it, double accuracy.across, or choose another accuracy.tip_size or accuracy.grid_shift."
     )
 
 

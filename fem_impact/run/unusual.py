@@ -11,7 +11,7 @@ from fem_impact.run.common import RESIDUAL_LIMIT
 PLOUGHING = 1.1  # largest mu over f that the slope of a crater explains
 ROUND_OFF = 1e-9  # of e
 LEAST_RATIO = 0.01  # mu allowed where f is 0
-CONFIRM = " Confirm it with half the accuracy.tip_size."
+CONFIRM = " Confirm it with cells of half the size (accuracy.tip_size, or one level more)."
 
 
 def unusual(

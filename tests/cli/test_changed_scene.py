@@ -110,6 +110,15 @@ def test_a_ball_has_no_axis_to_fall_along(cli):
         assert falls in " ".join(cli("check", scene, "--set", "impact.angle=20 deg")[2].split())
 
 
+@pytest.mark.parametrize(("velocity", "advised"), [("0 m/s", True), ("1 m/s", False)])
+def test_no_fall_is_advised_where_the_barrier_moves(cli, velocity, advised):
+    thrown = BALL.replace('speed = "3 m/s"', 'v_n = "-3 m/s", v_t = "-1 m/s"')
+    barrier = f'barrier = {{ material = "plate-steel", v_n = "{velocity}" }}'
+    Path("thrown.toml").write_text(thrown.replace('barrier = { material = "plate-steel" }', barrier))
+    _, _, err = cli("check", "thrown.toml", "--set", "impact.angle=20 deg")
+    assert "those of the old angle" in err and ("A fall as fast" in err) == advised
+
+
 BALL = """
 id = "ball"
 projectile = { shape = "ball", diameter = "25 mm", material = "rod-steel" }

@@ -1,7 +1,7 @@
 """The told error of the reduced model: conformal half-widths from stored scenes, and where a scene stands."""
 
 import dataclasses
-from math import hypot, log10
+from math import cos, hypot, log10, radians
 
 import numpy as np
 import pytest
@@ -175,6 +175,24 @@ def test_a_light_barrier_shares_the_doubt_by_momentum_and_one_too_light_has_no_e
     rigid = {"barrier.mass": "0.3 g", "effects": ["auto", "barrier-rigid"]}
     assert "V_bn_m_per_s" in simulate(replace_all(load("t5b"), rigid), "modal").half_widths
     assert "of metal that deforms" in tiny.half_widths.reason
+
+
+def test_half_widths_hold_the_waves_that_leave_through_a_soft_barrier():
+    """A steel pin on rubber keeps 100 % by the reduced model and 93.9 +- 0.9 % by finite elements."""
+    rubber = {"name": "rubber", "E": "40 MPa", "nu": 0.47, "rho": "1100 kg/m3", "source": "assumed"}
+    soft = {"barrier.material": rubber, "impact.angle": "20 deg", "impact.speed": "2 m/s"}
+    outcome = simulate(replace_all(load("t5b"), soft), "modal")
+    told = " ".join(texts(outcome.validity.limitations, "model"))
+    share = float(told.split("take about ")[1].split(" %")[0]) / 100
+    assert 0.05 < share < 0.1
+    case = Case.of(replace_all(load("t5b"), soft), "modal")
+    plain = half_widths(place_of(case, outcome), outcome, 1.0)
+    more = {key: outcome.half_widths[key] - plain[key] for key in ("E_r_over_E_0", "e_edge", "V_n_m_per_s")}
+    assert more["E_r_over_E_0"] == pytest.approx(share * cos(radians(20)) ** 2, rel=0.05)
+    assert more["e_edge"] == pytest.approx(0.5 * share, rel=0.1)
+    assert more["V_n_m_per_s"] == pytest.approx(more["e_edge"] * 2 * cos(radians(20)), rel=1e-6)
+    metal = simulate(load("t5b"), "modal").validity.limitations
+    assert "Waves in the barrier take" not in " ".join(texts(metal, "model"))
 
 
 @pytest.mark.parametrize("turns", [False, True])

@@ -1,6 +1,7 @@
 """Strikes of the reduced model one after the other."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ from scipy.integrate import solve_ivp
 
 from fem_impact.case.case import Case
 from fem_impact.outcome.groups import texts
+from fem_impact.outcome.strikes import told
 from fem_impact.run.certain import _agree
 from fem_impact.run.modal_strikes import ModalCourse, modal_loss
 from fem_impact.run.simulate import simulate
@@ -42,6 +44,16 @@ def test_hard_strikes_are_those_of_modes(rattle):
     assert s.heat_agree > 32
     swapped = [s.each[1], s.each[0], *s.each[2:]]
     assert _agree(s.each, [s.each, swapped, s.each], lambda one: one.friction) == 2
+
+
+def test_numbers_that_look_wrong_are_explained(rattle):
+    s, first, *others = rattle.strikes, *rattle.strikes.each
+    plain = " ".join(told(replace(s, each=(first,), left=1e-32)))
+    assert "e below 0 or above 1" not in plain and "keeps 0 J" in plain
+    given = replace(s, each=(first, replace(others[0], e=1.5), replace(others[1], e=-0.2)), hardest_agree=0)
+    words = " ".join(told(given))
+    assert "e below 0 or above 1 in strikes 2, 3:" in words
+    assert "in 0 of 64" not in words and "in none of the 64 sequences" in words
 
 
 def test_more_strikes_than_modes_compute_are_those_of_a_rigid_body(monkeypatch):

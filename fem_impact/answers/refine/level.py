@@ -55,8 +55,8 @@ class LevelRun:
         """Say that contact or flow left its zones, empty where they did not."""
         if not self.record.left:
             return ""
-        again = f"{self.repeats} repeat{'s' * (self.repeats != 1)} of the level"
-        return f"Contact or flow left the zones held ready, after {again}."
+        again = f" (it ran {1 + self.repeats} times, with wider ones)" if self.repeats else ""
+        return f"Contact or plastic flow left the finely meshed zones of the level{again}."
 
     @property
     def lost(self) -> str:

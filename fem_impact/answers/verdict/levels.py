@@ -90,9 +90,12 @@ def by_levels(
             tell(steps[-1])
         return told[-1]
 
-    def decides(ran: Sequence[LevelRun]) -> bool:
-        found = report(ran)
+    def decided(found: Number | None) -> bool:
         return found is not None and found.answer(limit) != "undecided"
+
+    def decides(ran: Sequence[LevelRun]) -> bool:
+        # two levels may agree by chance where the coarser does not resolve the contact: a third one follows
+        return decided(report(ran)) and (len(ran) != LEAST_LEVELS or ran[0].runs.wide)
 
     def announce(progress: Progress | Notice) -> None:
         if isinstance(progress, Progress) and progress.note not in heard:
@@ -104,7 +107,7 @@ def by_levels(
     levels = LevelChain(Case(free), RunOptions(progress=announce), budget_s, workers, decides, twin)
     try:
         levels.refine()
-        if not decides(levels.done) and twin and told[-1] and run_elsewhere(levels):
+        if not decided(report(levels.done)) and twin and told[-1] and run_elsewhere(levels):
             told[-1] = found = estimate(levels.done)
             last, said = len(told), "no band" if found is None else f"{as_text(found)}: {found.graded(limit)}"
             two = f"levels {last - 1} and {last} at another place of the grid, too"
@@ -112,9 +115,9 @@ def by_levels(
             tell(steps[-1])
     except KeyboardInterrupt:
         return told[-1] if told else None, [STOPPED.format(len(told))], with_budget(ceil(before_s + budget_s))
-    if decides(levels.done):
-        return told[-1], [], {}
-    estimated = told[-1]
+    estimated = report(levels.done)
+    if decided(estimated):
+        return estimated, [], {}
     over = None if estimated is None else estimated.over(limit)
     return estimated, *_open(levels, over, before_s, needed)
 

@@ -112,20 +112,22 @@ def twins(scene: Scene) -> tuple[Scene, Scene]:
 def inclined(scene: Scene, angle: float) -> Scene:
     """Return the scene at another inclination, rad: rod, velocity and fall are turned together.
 
-    The spin stays, and so does how the rod stands to the vertical where the barrier's slope is stated.
+    The velocity is that over the barrier. The spin stays, and so does how the rod stands to the vertical
+    where the barrier's slope is stated.
 
     Raises
     ------
     SceneError
         The turned velocity points away from the barrier.
     """
-    impact = scene.impact
-    speed, way = hypot(impact.v_n, impact.v_t), angle + impact.beside
+    impact, seen, moving = scene.impact, scene.relative, scene.barrier
+    speed, way = hypot(seen.v_n, seen.v_t), angle + seen.beside
     slope = None if impact.slope is None else impact.slope + angle - impact.angle
     v_n, v_t = -speed * cos(way), -speed * sin(way)
     if v_n >= 0.0:
         problem = "turns the fall so that it leads away from the barrier."
         raise SceneError(problem, key="impact.angle", value=format_quantity(angle, "angle"))
+    v_n, v_t = v_n + moving.v_n, v_t + moving.v_t
     turned = replace(impact, angle=angle, v_n=v_n, v_t=v_t, height=None, speed=None, slope=slope)
     return replace(scene, impact=turned, measured=None)
 

@@ -202,7 +202,7 @@ def test_what_left_its_zones_counts_where_no_repeat_comes_to_its_end(level, ends
         return
     levels._run_level(2, Turns())
     assert levels.done[-1].repeats == 0 and levels.done[-1].outcome == level.outcome
-    assert levels.done[-1].left.endswith("after 0 repeats of the level.")
+    assert levels.done[-1].left.endswith("left the finely meshed zones of the level.")
     assert levels.done[-1].lost == "Another repeat of the level has no outcome. It was given up."
 
 

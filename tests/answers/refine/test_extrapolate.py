@@ -61,6 +61,12 @@ def test_what_the_finer_level_does_not_know_has_no_limit():
     assert set(limits) == set(bands) == {key.name for key in KEYS if key.banded} - {"e_paper"}
 
 
+def test_a_massive_barrier_keeps_its_velocity_without_an_error():
+    for mass in (None, 5.0):
+        runs = [[outcome(barrier_mass_kg=mass, tip_size_m=size)] for size in (4e-4, 8e-4)]
+        assert ("V_bn_m_per_s" in limits_of(*runs)[1]) == (mass is not None)
+
+
 def test_shares_keep_their_sum_in_the_limit():
     """The rule is linear, so what adds up on both meshes adds up in the limit."""
     fine = outcome(E_r_over_E_0=0.7, W_friction_over_E_0=0.3)

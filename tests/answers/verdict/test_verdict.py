@@ -44,6 +44,7 @@ from fem_impact.cli.statement import statement_of
 from fem_impact.errors import SceneError
 from fem_impact.outcome.keys import Unknown, known
 from fem_impact.outcome.record import KEY_TABLE
+from fem_impact.outcome.shares import heat_ends
 from fem_impact.progress import Progress
 from fem_impact.run.modal_error import GRAZING, SPLIT, Stored
 from fem_impact.run.resolution import without_end
@@ -211,6 +212,16 @@ def test_a_share_that_can_heat_without_a_half_width_lies_between_ends(short):
     assert low <= energy.skin <= high
 
 
+def test_no_more_than_other_shares_leave_can_heat_the_contact(short):
+    run = short.here.free
+    halves = dict(run.half_widths)
+    energy = replace(run.energy, rigid=0.655, plastic_rod=0.2, plastic_barrier=0.2)
+    for half, most in ((0.046, "39"), (0.3, "64")):
+        wide = replace(run.validity, model_band=halves | {"E_r_over_E_0": half, "E_vib_over_E_0": 1.0})
+        told = heat_ends(replace(run, energy=energy, validity=wide))
+        assert f"and {most} % (friction and all plastic work" in told
+
+
 def test_a_small_share_that_can_heat_is_not_told_as_none(short):
     energy, errors = replace(short.here.free.energy, skin=0.00206, friction=0.0), dict(short.here.errors)
     errors.pop("skin", None)
@@ -255,6 +266,10 @@ def test_an_inclined_scene_turns_rod_and_velocity_together():
     beside = [math.atan2(-s.impact.v_t, -s.impact.v_n) - s.impact.angle for s in (scene, turned)]
     assert beside[0] == pytest.approx(beside[1], abs=1e-12)
     assert inclined(scene, scene.impact.angle).impact.v_n == pytest.approx(scene.impact.v_n)
+    moving = replace(scene, barrier=replace(scene.barrier, v_n=3.0, v_t=1.0))
+    moving = replace(moving, impact=replace(scene.impact, v_n=scene.impact.v_n + 3, v_t=scene.impact.v_t + 1))
+    away = inclined(moving, 0.3)
+    assert (away.relative.v_n, away.relative.v_t) == pytest.approx((turned.impact.v_n, turned.impact.v_t))
     grazing = replace_all(scene, {"impact.v_n": "-0.6 m/s", "impact.v_t": "-4 m/s", "impact.angle": "35 deg"})
     with pytest.raises(SceneError, match=r'impact\.angle = "60 deg": turns the fall so that it leads away'):
         inclined(grazing, math.radians(60))
@@ -437,6 +452,15 @@ def test_auto_takes_levels_until_the_answer_is_clear(monkeypatch):
     assert (found.fidelity, found.answer, len(asked)) == ("solid", "yes", 2)
     assert asked[0] > asked[1]
     assert found.here.band < 0.005
+
+
+def test_a_third_level_follows_two_of_which_the_coarser_does_not_resolve_the_contact(monkeypatch):
+    """A chamfered pin had +0.005 +- 0.020 on two levels, a sure yes, and +0.052 +- 0.041 on four."""
+    asked, runs = meshed(monkeypatch, [0.0, 0.001, 0.001]), level_module.LevelRun.runs
+    narrow = property(lambda level: replace(runs.fget(level), wide=level.size < 0.9 * asked[0]))
+    monkeypatch.setattr(level_module.LevelRun, "runs", narrow)
+    found = assess(load("t5b"), tolerance=0.02, budget_s=1e5)
+    assert (found.fidelity, found.answer, len(asked)) == ("solid", "yes", 3)
 
 
 def test_a_change_is_not_known_better_than_e_itself_because_levels_agree_in_it(short):
