@@ -71,10 +71,8 @@ def _rigid(options: Options, scene: Scene) -> tuple[dict[str, Any], Picture | No
     of, change = _within(options)
     verdict = assessed(scene, options.fidelity, change, *_means(options), tell=_telling(options), of=of)
     # without the options that the next step may add
-    answer = document(
-        verdict,
-        scene_options.command_line(options, "assess", *SHORT, *scene_options.SHAPE, "within", "workers"),
-    )
+    names = *SHORT, *scene_options.SHAPE, "within", "workers"
+    answer = document(verdict, scene_options.command_line(options, "assess", *names))
     if scene.impact.until != FIRST:
         answer["sequence"] = sequence_verdict(scene, verdict.tolerance)
     if case is not None:

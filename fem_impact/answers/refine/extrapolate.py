@@ -212,8 +212,8 @@ def own_limits(levels: Sequence[MeshRuns]) -> tuple[MeshNumbers, MeshNumbers]:
     limits, bands = dict[str, float](), dict[str, float]()
     kept = isinstance(levels[-1].runs[0].barrier.mass, Unknown)  # a massive barrier keeps its velocity
     for key in KEYS:
-        known_of = key.banded and not (kept and key.path[0] == "barrier")
-        means = [level.mean([key]) for level in levels] if known_of else [None, None]
+        changes = key.banded and not (kept and key.path[0] == "barrier")
+        means = [level.mean([key]) for level in levels] if changes else [None, None]
         if None in means[-2:]:
             continue
         # a number that a coarser level does not know changes by itself

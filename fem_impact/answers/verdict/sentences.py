@@ -147,9 +147,8 @@ def _anywhere(v: Verdict) -> str:
 
 
 def _vibration(effect: VibrationEffect) -> str:
-    share, half = with_band(
-        100 * max(effect.E_vib, 0.0), max(100 * effect.E_vib_band, LEAST_HALF / 100)
-    ).split(" +- ")
+    mean, band = 100 * max(effect.E_vib, 0.0), max(100 * effect.E_vib_band, LEAST_HALF / 100)
+    share, half = with_band(mean, band).split(" +- ")
     share = f"{share} % of the energy"
     if or_none(effect.free.energy.below_floor):
         return f"{share}, which is below the numerical floor of the model"
@@ -227,10 +226,8 @@ def _heat(effect: VibrationEffect) -> str:
         if isinstance(heat.bound, Unknown)
         else f"No spot exceeds {heat.bound:.0f} K, under the assumptions of the report"
     )
-    told, error = (
-        f"{heat.temperature:.0f}",
-        " The error of this mesh is not known: finer elements may give more.",
-    )
+    told = f"{heat.temperature:.0f}"
+    error = "The error of this mesh is not known: finer elements may give more. "
     if effect.heat is not None:
         ends = effect.free.ends_of(KEY_TABLE["flash_temperature_K"])
         told, error = with_band(*effect.heat, *ends).replace("+-", "±"), ""

@@ -105,6 +105,7 @@ def test_the_verdict_tells_how_hot_the_contact_becomes(short):
     assert told.startswith("not known: finite elements alone follow it") and "assess --for heat" in told
     told = heated(short)
     assert "431 K in the mean" in told and "No spot exceeds 1200 K" in told and "Tian & Kennedy" in told
+    assert "of the report. The error of this mesh is not known: finer elements may give more. Method" in told
     assert "What single spots reach is not resolved: why." in heated(
         short, bound=Unknown("not resolved: why")
     )
