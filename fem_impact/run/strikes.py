@@ -51,7 +51,7 @@ RULES = (
     f"A strike that brings along its normal less than {WEAKEST:g} ({LEAST:g} with a stated restitution) "
     "of the most energy with which one began does not rebound: its contact is held, and the body pivots, "
     "rolls or slides on it.",
-    "Two feet at one instant strike one after the other, the one that comes down first; a face or side that "
+    "Two feet that touch at the same instant strike one after the other; a face or side that "
     "comes down level and without spin strikes in its middle.",
 )
 LEVEL = (

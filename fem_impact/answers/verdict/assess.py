@@ -33,7 +33,7 @@ FIDELITIES = ("auto", "modal", "solid")
 ANGLES = tuple(np.radians(np.arange(5.0, 81.0, 5.0)))
 """Inclinations among which the worst one is looked for, rad."""
 ALONE = ", but no scene like it was computed both ways: finite elements are asked, too"
-WIDER = "Finite elements bear that out less narrowly: {}."
+WIDER = "Finite elements are less certain and do not contradict it: {}."
 SURE: tuple[vibration.Answer, ...] = ("yes", "no")
 WORST_FIRST: tuple[vibration.GradedAnswer, ...] = ("no", "probably no", "undecided", "probably yes", "yes")
 LACKING = "There is no reduced model of {}: finite elements alone answer."

@@ -330,7 +330,7 @@ def lines_of(titled: Iterable[Sequence[str]], indent: str) -> list[str]:
 def screening_lines(screening: Screening, scene: str) -> tuple[Line, ...]:
     """Return the closed-form screening of a scene and the command that gives the verdict on it."""
     return (
-        ("may rigid theory be used (estimate)", f"{screening.sentence}."),
+        ("rigid theory by the published limit (not a safe one)", f"{screening.sentence}."),
         ("the verdict", f"fem-impact assess {scene}"),
     )
 
