@@ -294,8 +294,8 @@ def _hardest(strikes: Strikes) -> list[str]:
     )
     told = []
     for (name, number, agree), (size, what) in zip((by_energy, by_force, by_heat), sizes, strict=True):
-        if isinstance(number, Unknown):
-            continue
+        if isinstance(number, Unknown) or size(each[number - 1]) <= ROUND_OFF * each[0].before:
+            continue  # no strike has any
         first, same = "", "" if isinstance(agree, Unknown) else f", the hardest in {agree} of 64 sequences"
         if agree == 0:
             same = ", in none of the 64 sequences of the reduced model that hold its errors"

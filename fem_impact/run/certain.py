@@ -189,7 +189,7 @@ def _by_stored(case: Case, body: Followed, begin: FlightState, one: StrikeRecord
     return Doubt(
         hypot(e * modal_error.widened_by(hypot(pair.v_n, pair.v_t), pair.approach), one.e_phase),
         hypot(mu, one.mu_phase),
-        hypot(friction * one.before, one.friction_phase),
+        hypot(friction * one.before, one.friction_phase) if pair.f else 0.0,
         hypot(vibration * vibrates, one.vibration_phase),
         hypot(force, louder),
     )

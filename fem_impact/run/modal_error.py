@@ -265,8 +265,9 @@ def with_barrier(struck: Barrier, outcome: Outcome, halves: Mapping[str, float])
         rod |= {key: rod[key] * base / (mass + base) for key in ways}
     n, t = (rod[key] * mass / base for key in ways)
     spin = base * (n * abs(struck.centre_offset) + t * abs(struck.centre_depth or 0.0))
-    spin /= struck.inertia or inf
-    moved = outcome.barrier
+    moved, inertia = outcome.barrier, struck.inertia or inf
+    most = sqrt(2.0 * outcome.energy.E_0 / inertia) - abs(or_none(moved.Omega_b) or 0.0)  # by the energy
+    spin = min(spin / inertia, max(most, 0.0))
     pairs = [(base, known(moved.V_bn) - moved.v_bn, n), (base, known(moved.V_bt) - moved.v_bt, t)]
     pairs.append((struck.inertia or 0.0, or_none(moved.Omega_b) or 0.0, spin))
     energy = sum(of * (abs(speed) + 0.5 * half) * half for of, speed, half in pairs)

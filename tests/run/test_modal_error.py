@@ -207,6 +207,10 @@ def test_speeds_spin_and_energy_of_a_free_barrier_are_as_open_as_momentum_leaves
     spin = 5 * (halves[0] * 0.05 + halves[1] * 0.03) / 0.02 * turns
     if turns:
         assert outcome.estimate("barrier_Omega_rad_per_s")[1] == pytest.approx(spin)
+        small = replace_all(load("t5b"), free | inertia | {"barrier.inertia": "4e-7 kg m2"})
+        light = simulate(small, "modal")
+        spun, wide = light.estimate("barrier_Omega_rad_per_s")
+        assert 0.5 * 4e-7 * (abs(spun) + wide) ** 2 <= light.energy.E_0 * (1 + 1e-9)
 
     def energy(sign):
         """Return what the barrier has where all of its speeds are larger by their half-widths."""

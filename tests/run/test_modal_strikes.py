@@ -50,6 +50,9 @@ def test_numbers_that_look_wrong_are_explained(rattle):
     s, first, *others = rattle.strikes, *rattle.strikes.each
     plain = " ".join(told(replace(s, each=(first,), left=1e-32)))
     assert "e below 0 or above 1" not in plain and "keeps 0 J" in plain
+    assert "Hardest by friction heat" in plain
+    smooth = replace(first, friction=0.0)
+    assert "Hardest by friction heat" not in " ".join(told(replace(s, each=(smooth,), hardest_heat=1)))
     given = replace(s, each=(first, replace(others[0], e=1.5), replace(others[1], e=-0.2)), hardest_agree=0)
     words = " ".join(told(given))
     assert "e below 0 or above 1 in strikes 2, 3:" in words

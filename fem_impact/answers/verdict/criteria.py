@@ -50,7 +50,7 @@ class Bound:
         """Say whether the number stays below a limit."""
         if self.low > limit:
             return "no"
-        return "yes" if self.high <= limit else "undecided"
+        return "yes" if self.high < limit else "undecided"
 
     def rank(self, limit: float) -> int:
         """Return how bad the answer is: 0 of a yes, 2 of a no."""
@@ -138,6 +138,7 @@ class Limited(Criterion):
     """A number of one run, which the reduced model tells within a factor."""
 
     column: str  # of the stored scenes, by which that factor is found
+    unknown_flat = ""  # why the reduced model does not tell it of what lands flat, empty where it does
 
     @abstractmethod
     def of_reduced(self, case: Case, result: ModalResult) -> float:
@@ -161,6 +162,8 @@ class Limited(Criterion):
         result = closed(case, recorded=True)
         if not result.finished:
             return Unknown(result.reason)
+        if result.laid and self.unknown_flat:
+            return Unknown(self.unknown_flat)
         outcome = reduce(case, result)
         place, value, base = place_of(case, outcome), self.of_reduced(case, result), self.base(scene)
         far = farness(place, outcome)
@@ -198,7 +201,8 @@ class Limited(Criterion):
 
 
 def _about(value: float, band: float, alike: bool = True) -> Bound:
-    return Bound(value, value - band, value + band, alike)
+    """Return a number that is not negative between its ends."""
+    return Bound(value, max(value - band, 0.0), value + band, alike)
 
 
 class HeatCriterion(Limited):
@@ -304,6 +308,10 @@ class ForceCriterion(Limited):
     """The largest normal force."""
 
     called, column = "the peak force", "peak_force_N"
+    unknown_flat = (
+        "a part of the body lands flat: its force follows from waves through the body, which the few modes "
+        "of the reduced model do not resolve"
+    )
     dimension, unit, per_unit = "force", "kN", 1e3
 
     def of_reduced(self, case: Case, result: ModalResult) -> float:
