@@ -141,10 +141,9 @@ class Reduction:
         )
         numbers = origin, self.motion, self.restitution, energy
         shown = () if withheld or cut else unusual(*numbers, case.contact)
-        again = strikes_again(case, end.leaving, end.Omega) if end.finished and not failed else ""
-        alone, near = case.scene.impact.until == FIRST, ""
-        if end.finished and not failed:
-            near = open_end(case, end.contacts, end.leaving, end.Omega)
+        over, alone = end.finished and not failed, case.scene.impact.until == FIRST
+        again = strikes_again(case, end.leaving, end.Omega) if over else ""
+        near = open_end(case, end.contacts, end.leaving, end.Omega) if over else ""
         named_again = named(again) if alone and not end.other_end else ""
         next_one = named_again or (end.reason if alone and again else "")
         of_result = limitations("result", *shown, gravity, next_one, f"{near}." * bool(near))

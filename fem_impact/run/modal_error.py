@@ -284,10 +284,9 @@ def with_waves(share: float, outcome: Outcome, halves: Mapping[str, float]) -> d
     e, wider = or_none(outcome.restitution.edge.e), dict(halves)
     if not share or e is None or "E_r_over_E_0" not in halves:
         return wider
-    v_n, v_t = (getattr(outcome.motion, v) - getattr(outcome.barrier, f"v_b{v[-1]}") for v in ("v_n", "v_t"))
-    slower = e - sqrt(max(e**2 - share, 0.0))
+    v_n, slower = outcome.motion.v_n - outcome.barrier.v_bn, e - sqrt(max(e**2 - share, 0.0))
     more = {"e_edge": slower, "V_n_m_per_s": slower * abs(v_n)}
-    more["E_r_over_E_0"] = share * v_n**2 / (v_n**2 + v_t**2)
+    more["E_r_over_E_0"] = share * (v_n / unit_of("V_n_m_per_s", outcome)) ** 2
     return wider | {key: halves[key] + by for key, by in more.items() if key in halves}
 
 
