@@ -77,9 +77,9 @@ def run(options: Options) -> int:
         raise KeyboardInterrupt(f"what was computed so far is kept. Results: {out}; {way}") from None
     if options.json:
         sys.stdout.write(outcome.to_json().rstrip("\n") + "\n")
-    else:
+    elif outcome.validity.finished:  # what a run has at an early stop is no result of the impact
         own_tests = (scene.measured or "").endswith(OWN)
-        spread = friction_spread(scene, case.fidelity, outcome) if outcome.validity.finished else None
+        spread = friction_spread(scene, case.fidelity, outcome)
         sys.stdout.write(f"{headed(outcome.provenance.scene_id, outcome.provenance.scene_title)}\n\n")
         if scene.impact.until != FIRST:  # what was asked for
             print_strikes(outcome, options)
@@ -108,7 +108,7 @@ def _say_comparison(scene: Scene, outcome: Outcome, options: Options) -> None:
     numbers = "measured_mean", "measured_sd"
     rows = [
         (row["quantity"], told(row), *(f"{row[key]:.3g}" for key in numbers), row["verdict"])
-        for row in (compare(outcome, tests) if outcome.validity.finished else [])
+        for row in compare(outcome, tests)
         if row["measured_mean"] is not None and row["model"] is not None
     ]
     measured = f"beside {count(tests)} measured tests ({shown_path(str(scene.measured))})"
@@ -183,8 +183,6 @@ def print_outcome(
     wrong = [one for one in outcome.validity.limitations if one.kind in WRONG_NUMBERS]
     lines += ["", *limitation_lines(wrong)] if wrong else []
     of = "" if isinstance(outcome.validity.mesh_limit, Unknown) else ", extrapolated from the levels"
-    if not outcome.validity.finished:
-        of = ", at the stop of this unfinished run"
     gravity = or_none(ADDED.of(outcome.energy))
     added = "" if gravity is None else f", to which gravity added {outcome.told(ADDED.key, 100.0)} %"
     seen = " as seen from the barrier" if moves(outcome) else ""

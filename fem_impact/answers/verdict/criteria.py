@@ -19,6 +19,7 @@ from fem_impact.modal.impact import ModalResult
 from fem_impact.modal.motion import ROW
 from fem_impact.outcome.keys import Num, Unknown
 from fem_impact.outcome.record import Outcome
+from fem_impact.outcome.shares import heat_ends
 from fem_impact.physics.contact_law import contact_law
 from fem_impact.physics.flash import flash
 from fem_impact.run.common import MELTS, part_of_last
@@ -152,8 +153,11 @@ class Limited(Criterion):
         """Return what of the number is known beforehand: of a temperature that of the surroundings."""
         return 0.0
 
-    def counts(self, told: Callable[[str], str]) -> str:
-        """Return what alone the number counts, empty if all; ``told`` gives shares of E_0 by key."""
+    def counts(self, told: Callable[[str], str], heats: str = "") -> str:
+        """Return what alone the number counts, empty if all.
+
+        ``told`` gives shares of E_0 by key; ``heats`` says between what W_skin lies where its error is not known.
+        """
         return ""
 
     def reduced(self, scene: Scene) -> Bound | Unknown:
@@ -169,7 +173,8 @@ class Limited(Criterion):
         far = farness(place, outcome)
         factor = factor_of(place, self.column, far)
         ends = base + value, base + value / factor, base + value * factor
-        return Bound(*ends, far == 0.0, counts=self.counts(lambda name: outcome.told(name, 100.0)))
+        counts = self.counts(lambda name: outcome.told(name, 100.0), heat_ends(outcome))
+        return Bound(*ends, far == 0.0, counts=counts)
 
     def meshed(self, scene: Scene) -> tuple[Scene, Scene | None]:
         """Return the scene without a film."""
@@ -212,13 +217,10 @@ class HeatCriterion(Limited):
     dimension, unit, per_unit = "temperature", "K", 1.0
     least_levels = LEVELS
 
-    def counts(self, told: Callable[[str], str]) -> str:
+    def counts(self, told: Callable[[str], str], heats: str = "") -> str:
         """Return the shares of friction, which is counted, and of all that can heat the contact."""
         sure = "its error is not known"
-        unsure = {
-            "W_friction_over_E_0": sure,
-            "W_skin_over_E_0": f"{sure}; finite elements had up to 8 times it",
-        }
+        unsure = {"W_friction_over_E_0": sure, "W_skin_over_E_0": f"{sure}: {heats}" if heats else sure}
         friction, skin = (
             share if share == "not known" else f"{share} % of E_0" + f" ({doubt})" * (" " not in share)
             for share, doubt in ((told(name), doubt) for name, doubt in unsure.items())

@@ -1,6 +1,7 @@
 """A number against its limit over intervals: answer, worst place, margin; heat, force and dent."""
 
 import json
+import re
 from dataclasses import replace
 from math import pi, sqrt
 from pathlib import Path
@@ -20,6 +21,7 @@ from fem_impact.cli.main import main
 from fem_impact.errors import SceneError, UsageError
 from fem_impact.modal.motion import ROW
 from fem_impact.outcome.keys import Unknown
+from fem_impact.outcome.shares import heat_ends
 from fem_impact.run.common import MELTS, part_of_last
 from fem_impact.run.modal import closed
 from fem_impact.run.modal_error import SPLIT
@@ -315,10 +317,12 @@ def test_heat_says_that_friction_alone_counts_and_what_more_can_heat(scene):
     assert "+-" in friction and f"Friction takes {friction} % of E_0." in counts
     assert (
         "+-" not in skin
-        and f"both surfaces, {skin} % of E_0 (its error is not known; finite elements had up to 8 times it)."
-        in counts
+        and f"both surfaces, {skin} % of E_0 (its error is not known: {heat_ends(run)})." in counts
     )
     assert "friction alone, over the mean of the patch, in the first strike" in counts
+    smooth = judge(fem_impact.replace(scene, "surface.friction", 0.0), LIMITED["heat"], 700.0, None, "modal")
+    flows = re.search(r"both surfaces, 0 % .* between 0 % \(friction\) and (\d+) % \(", smooth.bound.counts)
+    assert 20 <= int(flows[1]) <= 100
     force = judge(scene, LIMITED["force"], 5000.0, None, "modal")
     assert "It counts" not in dict(limit_document(force, "fem-impact assess t5b")["box"])
 
