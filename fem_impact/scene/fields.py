@@ -141,7 +141,7 @@ ANGLE, V_N, V_T, OMEGA, HEIGHT, SLOPE, SPEED = _numbers(_STATED["impact"])
 IMPACT = (ANGLE, V_N, V_T, OMEGA)  # as seen from the barrier
 MOTION = (ANGLE, replace(V_N, low=-500.0, high=500.0, remedy=""), V_T, OMEGA)
 TIP_SIZE = ACCURACY[0]
-LEVELS = int(_STATED["accuracy"]["levels"]["default"])
+LEVELS, MOST_LEVELS = (int(_STATED["accuracy"]["levels"][key]) for key in ("default", "high"))
 MESH = ("tip_size", "across", "grid_shift")  # keys of accuracy that a target replaces
 PLASTIC_STRAIN, FLOW_STRESS = _numbers(_STATED["flow_point"])
 FLOWS = {law: _numbers(tables) for law, tables in _STATED["flow"].items()} | {"table": ()}

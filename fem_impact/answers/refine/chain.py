@@ -32,6 +32,7 @@ from fem_impact.outcome.record import Outcome
 from fem_impact.outcome.strikes import levels_told
 from fem_impact.progress import Notice
 from fem_impact.run.simulate import begin
+from fem_impact.scene.fields import MOST_LEVELS
 from fem_impact.scene.impact import FIRST
 from fem_impact.scene.types import Scene, digest, to_toml
 from fem_impact.tables.text import plain
@@ -152,15 +153,21 @@ class LevelChain:
         ran, finest, record = self.done[-1].splits, self.finest, self.done[-1].record
         if record.crushed:  # smaller cells are crushed sooner
             return None
+        least = self.scene.accuracy.levels + self._unasked
+        stated = not self.meshes.is_sized and len(self.done) < least
         if self.decides or self.scene.accuracy.target:
             cut = 1 < len(self.done) > self.counted
-            if self._decided or cut or ran >= finest + MOST_FINER:
+            if self._decided or cut or (ran >= finest + MOST_FINER and not stated):
                 return None
-            finest = max(finest, ran + 1)
-        least = self.scene.accuracy.levels + (0 if record.resolved else MOST_FINER)
-        if not self.meshes.is_sized and len(self.done) < least:
+            stated = True
+        if stated:
             finest = max(finest, ran + 1)
         return next(iter(steps_between(ran, finest, self.scene.accuracy.levels - len(self.done))), None)
+
+    @property
+    def _unasked(self) -> int:
+        """How many levels more than stated may run: until one resolves the contact."""
+        return 0 if self.done[-1].record.resolved else MOST_FINER
 
     @property
     def _decided(self) -> bool:
@@ -380,8 +387,12 @@ class LevelChain:
             return "cells were crushed, and finer ones would be sooner: fidelity rigid or modal has none"
         if self.refused or self.following is not None:
             return "a finer level gave no result" if self.refused else "a larger budget adds a finer level"
-        levels = f"accuracy.levels = {1 + (now := self.scene.accuracy.levels)} in place of {now}"
-        return f"{'a smaller accuracy.tip_size' if self.meshes.is_sized else levels} adds a finer level"
+        if self.meshes.is_sized:
+            return "a smaller accuracy.tip_size adds a finer level"
+        more = 1 + max(now := self.scene.accuracy.levels, len(self.done) - self._unasked)
+        if more > MOST_LEVELS:
+            return f"accuracy.levels is at most {MOST_LEVELS}"
+        return f"accuracy.levels = {more} in place of {now} adds a finer level"
 
     def advice(self, before_s: float = 0.0, halvings: int = 1) -> tuple[str, int | None]:
         """Return what finer levels would take, or why none is made; the budget for them, s, or None.

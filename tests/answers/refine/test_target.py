@@ -112,9 +112,13 @@ def test_levels_end_some_splits_beyond_those_that_resolve_the_contact(ran):
     levels = LevelChain(Case(replace(ASKED, "accuracy", FINEST)), budget_s=1e9)
     outcome = levels.run()
     assert levels.done[-1].splits == levels.finest + chain.MOST_FINER
-    assert told(outcome)[0].endswith(
-        "No finer level is tried: accuracy.levels = 4 in place of 3 adds a finer level."
-    )
+    assert told(outcome)[0].endswith(end := "No finer level is tried: accuracy.levels is at most 6.")
+    del levels.done[4:]
+    levels.done[-1] = with_(levels.done[-1], splits=levels.finest + chain.MOST_FINER)
+    remedy = "accuracy.levels = 5 in place of 3 adds a finer level"
+    assert levels.following is None and levels.advice()[0] == f"{end.partition(':')[0]}: {remedy}."
+    stated = replace(replace(ASKED, "accuracy", FINEST), "accuracy.levels", 5)
+    assert LevelChain(Case(stated), done=levels.done).following == levels.done[-1].splits + 1
 
 
 def test_a_level_that_cannot_keep_the_budget_is_given_up(monkeypatch):
