@@ -86,16 +86,21 @@ def tail_picture(curve: tuple[Sequence[float], Sequence[float]], own: tuple[floa
 def accounts_picture(each: Sequence[StrikeRecord]) -> Picture:
     """Return where the energy is after each strike, J, stacked."""
     number = np.arange(1, len(each) + 1)
+    fallen = np.cumsum([0.0, *(then.before - one.after for one, then in pairwise(each))])
     sums = {
         "friction": ("green", np.cumsum([one.friction for one in each])),
         "plastic": ("vermilion", np.cumsum([one.plastic for one in each])),
         "damping and other": ("sand", np.cumsum([one.damping + one.other for one in each])),
         "vibration": ("night", np.array([one.vibration for one in each])),
         "motion": ("blue", np.array([one.after for one in each])),
+        "height": ("sky", fallen.max() - fallen),
     }
     areas = tuple(Series(name, number, values, "area", colour) for name, (colour, values) in sums.items())
     panel = Panel("", "strike", "energy, J", areas)
-    caption = "Energy after each strike; its sum grows by what gravity gives, less friction between strikes."
+    caption = (
+        "Energy after each strike. Height: over the strike at which the mass centre is lowest, "
+        "less friction between strikes."
+    )
     return Picture("strikes", caption, (panel,), 1)
 
 

@@ -61,6 +61,12 @@ def test_accounts_after_the_last_strike_are_the_totals(strikes):
     assert areas["friction"] == pytest.approx(sum(one.friction for one in strikes.each))
 
 
+def test_accounts_with_the_height_are_the_same_after_each_strike(strikes):
+    areas = [np.asarray(series.y) for series in accounts_picture(strikes.each).panels[0].series]
+    assert all((area >= 0.0).all() for area in areas)
+    assert np.ptp(sum(areas)) < 1e-3 * strikes.each[0].before
+
+
 def test_both_are_drawn_still_and_live(strikes, tmp_path):
     for picture in (path(strikes), accounts_picture(strikes.each)):
         assert draw(picture, tmp_path / f"{picture.name}.svg").stat().st_size > 5000
