@@ -56,7 +56,7 @@ def friction_spread(scene: Scene, fidelity: str, outcome: Outcome | None = None)
             )
             changes = _changes(nominal, ends)
             held = _held(outcome, changes) if outcome else changes
-            return FrictionSpread(f"At the right: what {interval} changes, by {by}.", held)
+            return FrictionSpread(f"At the right, in the unit of its line: what {interval} changes, by {by}.", held)
     return FrictionSpread("", {})
 
 

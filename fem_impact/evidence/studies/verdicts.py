@@ -31,6 +31,10 @@ COLUMNS = (
     *("scene", "family", "barrier", "answer", "by", "levels", "change", "half-width", "wall_s", "cpu_s"),
     *("truth", "its half-width", "judged", "clear", "tried", "missing", "next"),
 )
+LEGEND = (
+    "Every scene: change, of e by vibration, as assess told it; by, the model that it rests on, with so many "
+    "levels of finite elements tried; truth, the change by two levels more; clear, whether that one alone decides"
+)
 Results = Mapping[str, CoverageResult | Failure]
 
 
@@ -93,7 +97,7 @@ def conclude(request: Request, results: Results) -> StudyReport:
         sheets=[
             Sheet("by", "What was decided", Table.of((*BY, "scenes"), counted, left=(0, 1, 2))),
             Sheet("undecided", "What was not decided, or not surely", _table(words, lacking)),
-            Sheet("scenes", "Every scene", _table(shown, rows)),
+            Sheet("scenes", LEGEND, _table(shown, rows)),
         ],
         assumptions=[
             f"Scenes drawn with seed {request.seed or SEED}, on which no told error rests. A change of e by "
