@@ -21,7 +21,8 @@ class FrictionSpread:
 
     Attributes
     ----------
-    said : the interval and the model that computed its ends, as a sentence; empty where there is no interval
+    said : the interval and the model that computed its ends, as the end of a sentence; empty where there is
+        no interval
     changes : least and largest change of each number from that at the stated friction, in its unit
     """
 
@@ -56,7 +57,7 @@ def friction_spread(scene: Scene, fidelity: str, outcome: Outcome | None = None)
             )
             changes = _changes(nominal, ends)
             held = _held(outcome, changes) if outcome else changes
-            return FrictionSpread(f"At the right, in the unit of its line: what {interval} changes, by {by}.", held)
+            return FrictionSpread(f"what {interval} changes, by {by}.", held)
     return FrictionSpread("", {})
 
 

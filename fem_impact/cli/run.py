@@ -177,7 +177,11 @@ def print_outcome(
     ``spread``: what the interval of friction changes, told beside each number. ``named`` calls the body of a
     label what it is.
     """
-    lines = [*wrapped(spread.said), ""] if spread and spread.said else []
+    lines = (
+        [*wrapped(f"At the right, in the unit of its line: {spread.said}"), ""]
+        if spread and spread.said
+        else []
+    )
     rows = _motion_rows(outcome, own_tests)
     lines += [_motion_line(outcome, *row, spread) for row in rows]
     wrong = [one for one in outcome.validity.limitations if one.kind in WRONG_NUMBERS]

@@ -255,7 +255,7 @@ def _cards(outcome: Outcome, rigid: Outcome | None, friction: FrictionSpread | N
         numbers.append(sections.card(label, sections.estimated(outcome, key) + unit, note))
     residual = number(outcome.energy.residual, 2)
     last = sections.card("ledger residual", residual, "of E₀; a run must stay below 1e-4")
-    said = friction.said.replace("At the right, in the unit of its line", "Interval of f") if friction else ""
+    said = f"Interval of f: {friction.said}" if friction and friction.said else ""
     all_cards = sections.cards(*numbers, _vibration_card(outcome, rigid), last)
     return html.join([all_cards, html.paragraph(said, "note")])
 

@@ -86,7 +86,7 @@ def write_sheet(folder: Path, document: str = "", revision: str = "") -> Path:
             "Numbers of the first impact, with their errors",
             html.bullets(texts(limits, *WRONG_NUMBERS)),
             html.table(numbers, compact=True),
-            html.paragraph(spread.said.replace("At the right, in the unit of its line", "Last column"), "note"),
+            html.paragraph(f"Last column: {spread.said}" if spread.said else "", "note"),
             _dent(outcome),
             html.bullets(unknown),
         ),

@@ -156,7 +156,7 @@ class Limited(Criterion):
     def counts(self, told: Callable[[str], str], heats: str = "") -> str:
         """Return what alone the number counts, empty if all.
 
-        ``told`` gives shares of E_0 by key; ``heats`` says between what W_skin lies where its error is not known.
+        ``told`` gives shares of E_0 by key; ``heats`` says between what W_skin lies if its error is unknown.
         """
         return ""
 

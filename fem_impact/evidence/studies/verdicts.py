@@ -33,7 +33,8 @@ COLUMNS = (
 )
 LEGEND = (
     "Every scene: change, of e by vibration, as assess told it; by, the model that it rests on, with so many "
-    "levels of finite elements tried; truth, the change by two levels more; clear, whether that one alone decides"
+    "levels of finite elements tried; truth, the change by two levels more; clear, whether that one alone "
+    "decides"
 )
 Results = Mapping[str, CoverageResult | Failure]
 
