@@ -157,33 +157,31 @@ class Faceted:
         return mirrored_chord(np.vstack([around, around[:1]]), alpha, height)
 
     def section(self, alpha: float, height: float) -> float:
-        """Area, m2, of the convex hull of what lies in the plane at a `height`, m, over the lowest point."""
-        ends = np.stack([self.facets, np.roll(self.facets, -1, axis=1)], axis=-1).reshape(-1, 2)
+        """Area, m2, of the body in the plane at a `height`, m, over the lowest point, of all its pieces."""
+        ends = np.stack([self.facets, np.roll(self.facets, -1, axis=1)], axis=-1)
         over = self.heights(alpha)[ends] - height
-        crosses = (over.min(axis=1) < 0.0) & (over.max(axis=1) >= 0.0)
-        ends, over = ends[crosses], over[crosses]
+        crosses = (over.min(axis=2) < 0.0) & (over.max(axis=2) >= 0.0)
+        cut = crosses.sum(axis=1) == 2  # a plane cuts a facet along a line between two of its edges
+        ends, over = ends[cut][crosses[cut]], over[cut][crosses[cut]]
         share = (over[:, 0] / (over[:, 0] - over[:, 1]))[:, None]
         x, y, z = (self.points[ends[:, 0]] * (1.0 - share) + self.points[ends[:, 1]] * share).T
-        t = x * math.cos(alpha) + z * math.sin(alpha)
-        u, v = hull(np.column_stack([np.tile(t, 2), np.concatenate([y, -y])]), 0.0).T
-        return 0.5 * float(np.abs(u @ np.roll(v, -1) - v @ np.roll(u, -1)))
+        t = (x * math.cos(alpha) + z * math.sin(alpha)).reshape(-1, 2)
+        steps = np.unique(t)
+        return 2.0 * float(np.diff(steps) @ _inside(t, y.reshape(-1, 2), 0.5 * (steps[1:] + steps[:-1])))
 
     def half_widths(self, start: Floats, end: Floats, share: Floats) -> Floats:
         """Half widths across, m, of the flat side on a straight part of the outline from `start` to `end`.
 
-        Both are (x, z), m; `share` are shares of the way. 0 where an edge alone or nothing lies in it.
+        Both are (x, z), m; `share` are shares of the way. 0 where an edge alone or nothing lies in it. Gaps
+        between pieces of the side do not count.
         """
         way = end - start
         length = float(np.hypot(*way))
         x, z = ((self.points[:, [0, 2]] - start) @ np.array([way, [-way[1], way[0]]]).T / length).T
-        near = np.abs(z) < LEVEL * self.length
-        flat = np.column_stack([x[near], self.points[near, 1]])
-        if flat[:, 1].max(initial=0.0) < LEVEL * self.length:
-            return np.zeros_like(share)
-        line = hull(np.vstack([flat, flat * [1.0, -1.0]]), 0.0)
-        top = line[line[:, 1] >= 0.0]
-        top = top[np.lexsort((top[:, 1], top[:, 0]))]
-        return np.asarray(np.interp(share * length, *top.T))
+        flat = self.facets[(np.abs(z) < LEVEL * self.length)[self.facets].all(axis=1)]
+        edges = np.stack([flat, np.roll(flat, -1, axis=1)], axis=-1).reshape(-1, 2)
+        places = np.clip(share, LEVEL, 1.0 - LEVEL) * length
+        return _inside(x[edges], self.points[edges, 1], places)
 
     def curvature_around(self, alpha: float) -> float:
         """Radius of curvature, m, across the plane of motion at the lowest point; inf along a straight edge.
@@ -293,3 +291,15 @@ class Faceted:
             wide = np.where(level, np.maximum(np.abs(a), np.abs(b)), np.abs(a + share * (b - a)))
             width[k] = wide.max(initial=0.0)
         return z, width
+
+
+def _inside(t: Floats, y: Floats, places: Floats) -> Floats:
+    """How much of each line across, y from 0 up at a place, m, lies within lines (m, 2) that bound an area.
+
+    By the even-odd rule: a line that bounds two facets counts twice, and so not at all.
+    """
+    (a, b), (low, high) = t.T, y.T
+    crossed = (a > places[:, None]) != (b > places[:, None])
+    share = (places[:, None] - a) / np.where(a == b, 1.0, b - a)
+    heights = np.sort(np.where(crossed, low + share * (high - low), 0.0), axis=1)[:, ::-1]
+    return np.asarray(heights[:, ::2].sum(axis=1) - heights[:, 1::2].sum(axis=1))

@@ -51,6 +51,8 @@ def friction_spread(scene: Scene, fidelity: str, outcome: Outcome | None = None)
                 ends = [_at(scene, f, model) for f in (surface.friction_low, surface.friction_high)]
             except FemImpactError:
                 continue
+            if not all(one.validity.finished for one in (nominal, *ends)):
+                continue
             by = "rigid theory" if model == "rigid" else "the reduced model"
             interval = (
                 f"f = {surface.friction_low:g} to {surface.friction_high:g} instead of {surface.friction:g}"

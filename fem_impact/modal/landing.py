@@ -114,12 +114,7 @@ def _is_straight(case: Case, ends: list[tuple[float, float]], depth: float) -> b
     body, share = case.bodies.body, (np.arange(CELLS) + 0.5) / CELLS
     (x, z), (u, w) = ends
     if isinstance(body, Faceted):
-        start, way = np.array(ends[0]), np.subtract(ends[1], ends[0])
-        inwards = np.array([-way[1], way[0]]) / np.hypot(*way)
-        inwards *= np.sign(inwards @ (np.array([body.x_c, body.z_c]) - start))
-        inside = start + share[:, None] * way + depth * inwards
-        wide = body.half_widths(start, start + way, share)
-        return bool(body.within(*inside.T).all() and wide.min() > depth)
+        return bool(body.half_widths(np.array(ends[0]), np.array(ends[1]), share).min() > depth)
     if _is_face(ends):
         return True
     if x * u < 0.0:

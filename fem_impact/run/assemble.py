@@ -204,7 +204,7 @@ def _open_ledger(share: float, fidelity: str) -> str:
         return ""
     limit = f"more than {RESIDUAL_LIMIT:g}: do not use this run."
     remedy = " Give half the accuracy.step." * (fidelity == "solid")  # no other fidelity takes it
-    return f"{OPEN_LEDGER} {abs(share):.1e} of E_0, {limit}{remedy}"
+    return f"{OPEN_LEDGER} {abs(share):.2e} of E_0, {limit}{remedy}"
 
 
 def _gravity(case: Case, contacts: Array | None) -> tuple[str, str]:

@@ -109,7 +109,7 @@ def test_an_open_ledger_fails_a_run_of_the_reduced_model():
     result = solve(planned)
     spoiled = reduce(planned, replace(result, residual=-2e-4 * result.E_0)).validity
     assert not spoiled.finished
-    assert "ledger misses 2.0e-04" in spoiled.stopped_because
+    assert "ledger misses 2.00e-04" in spoiled.stopped_because
     assert "accuracy.step" not in spoiled.stopped_because  # which it does not take
     assert reduce(planned, replace(result, residual=0.9e-4 * result.E_0)).validity.finished
 

@@ -161,3 +161,36 @@ def test_the_width_of_a_chamfer_is_that_at_its_height():
     assert body.radius(np.array([0.0, 1.5e-3, 3e-3, 50e-3])) == pytest.approx(
         [7e-3, 8.5e-3, 1e-2, 1e-2], abs=1e-4
     )
+
+
+@pytest.fixture(scope="module")
+def channel():
+    """Half of a channel 24 mm x 24 mm x 3 mm, 200 mm long: a web at x = 0 to 3 mm, a flange at y = 9 to 12 mm."""
+    x, y, z = (1e-3 * np.array(places) for places in ([0.0, 3.0, 24.0], [0.0, 9.0, 12.0], [0.0, 200.0]))
+    points = np.array([[a, b, c] for a in x for b in y for c in z])
+    n = np.arange(18).reshape(3, 3, 2)
+    cells = [(0, 0), (0, 1), (1, 1)]  # of the grid of x and y
+    faces = [face for i, j in cells for face in _faces(n[i : i + 2, j : j + 2])]
+    outer = [face for face in faces if sum(set(face) == set(other) for other in faces) == 1]
+    quads = np.array([face for face in outer if points[list(face), 1].any()])  # the plane y = 0 is none
+    return Faceted(points, quads, np.array([[0.0, 0.2, 0.1, 9e-4, 0.01, 1e-5, 1.4e-3]]))
+
+
+def _faces(n):
+    ends = [[n[0, 0, k], n[1, 0, k], n[1, 1, k], n[0, 1, k]] for k in (0, 1)]
+    ring = [n[0, 0], n[1, 0], n[1, 1], n[0, 1]]
+    return ends + [[a[0], b[0], b[1], a[1]] for a, b in zip(ring, ring[1:] + ring[:1], strict=True)]
+
+
+def test_a_section_and_a_side_hold_no_gaps(channel):
+    """The ends of two flanges, 3 mm wide each, touch 18 mm apart; upright, the web 24 mm wide comes down too."""
+    alpha, height = np.radians(25.0), 1e-4
+    length = sum(channel.reaches(alpha, height))
+    assert channel.section(alpha, height) == pytest.approx(6e-3 * length)
+    assert channel.section(-alpha, height) == pytest.approx(24e-3 * length)
+    share = np.array([0.0, 0.1, 0.2, 0.9, 1.0])
+    ends = np.array([0.0, 0.0]), np.array([24e-3, 0.0])
+    assert channel.half_widths(*ends, share) == pytest.approx([12e-3, 12e-3, 3e-3, 3e-3, 3e-3])
+    along = np.array([24e-3, 0.0]), np.array([24e-3, 0.2])
+    assert channel.half_widths(*along, share) == pytest.approx(np.full(5, 3e-3))
+    assert not channel.half_widths(np.array([24e-3, 0.0]), np.array([3e-3, 0.2]), share).any()

@@ -355,7 +355,7 @@ def test_unmeasured_scenes_say_why_they_have_no_paper_arms(result):
 def test_an_open_ledger_fails_the_run(result):
     spoiled = reduce(replace(result, worst=2e-4 * result.E_0))
     assert spoiled.validity.finished is False
-    assert "ledger misses 2.0e-04" in spoiled.validity.stopped_because
+    assert "ledger misses 2.00e-04" in spoiled.validity.stopped_because
     assert spoiled.validity.stopped_because.endswith("do not use this run. Give half the accuracy.step.")
     assert spoiled.energy.vibration_floor == pytest.approx(2e-4)
     assert reduce(replace(result, worst=0.9e-4 * result.E_0)).validity.finished is True

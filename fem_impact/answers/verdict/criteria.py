@@ -14,7 +14,8 @@ from fem_impact.answers.verdict.levels import LEAST_LEVELS
 from fem_impact.answers.verdict.vibration import twins
 from fem_impact.case.case import Case
 from fem_impact.case.effects.heating import halves
-from fem_impact.case.effects.registry import NAMES
+from fem_impact.case.effects.registry import BARRIERS, NAMES
+from fem_impact.errors import SceneError
 from fem_impact.modal.impact import ModalResult
 from fem_impact.modal.motion import ROW
 from fem_impact.outcome.keys import Num, Unknown
@@ -164,11 +165,11 @@ class Limited(Criterion):
         """Return the number between those over and times its factor."""
         case = Case.of(scene, "modal")
         result = closed(case, recorded=True)
-        if not result.finished:
-            return Unknown(result.reason)
         if result.laid and self.unknown_flat:
             return Unknown(self.unknown_flat)
         outcome = reduce(case, result)
+        if not outcome.validity.finished:
+            return Unknown(outcome.validity.stopped_because)
         place, value, base = place_of(case, outcome), self.of_reduced(case, result), self.base(scene)
         far = farness(place, outcome)
         factor = factor_of(place, self.column, far)
@@ -331,6 +332,15 @@ LATER_BARRIER = Unknown(
 )
 
 
+RIGID = BARRIERS[0]
+
+
+def _deforming(scene: Scene) -> Scene:
+    """Return the scene with a barrier that deforms, however little of the contact's compliance is its own."""
+    rigid = RIGID in Case.of(scene, "modal").active
+    return replace(scene, effects=(*scene.effects, BARRIERS[1])) if rigid else scene
+
+
 class DentCriterion(Limited):
     """The largest indentation of the barrier."""
 
@@ -342,13 +352,24 @@ class DentCriterion(Limited):
 
         Where it yields first, the least is lower by the part that the projectile takes.
         """
-        case = Case.of(scene, "modal")
+        deforms = _deforming(scene)
+        case = Case.of(deforms, "modal")
         last = part_of_last(case)
         if last and case.contact.softer == case.contact.rod:
             return LATER_BARRIER
-        bound = super().reduced(scene)
+        bound = super().reduced(deforms)
         least = 1.0 - min((1.0 + SPLIT) * last, 1.0)
         return bound if isinstance(bound, Unknown) else replace(bound, low=least * bound.low)
+
+    def meshed(self, scene: Scene) -> tuple[Scene, Scene | None]:
+        """Return the scene with a barrier that deforms."""
+        return super().meshed(_deforming(scene))
+
+    def require(self, scene: Scene) -> None:
+        """Refuse a scene that states a rigid barrier (SceneError)."""
+        if RIGID in scene.effects:
+            remedy = "Take it out of effects: the barrier then deforms."
+            raise SceneError("does not let the barrier deform: it has no dent.", key="effects", value=RIGID, remedy=remedy)
 
     def of_reduced(self, case: Case, result: ModalResult) -> float:
         """Return the depth, m, at the place that is pressed deepest."""

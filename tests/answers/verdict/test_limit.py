@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import fem_impact
+from fem_impact.answers.friction_spread import friction_spread
 from fem_impact.answers.verdict import criteria, levels
 from fem_impact.answers.verdict import limit as module
 from fem_impact.answers.verdict.criteria import LIMITED, Bound, ForceCriterion, Limited
@@ -453,3 +454,36 @@ def test_heat_asks_for_the_budget_of_all_levels_that_it_needs():
     assert (asked, more) == ([2], {"budget_s": 90}) and "number from 3 levels on" in notes[1]
     levels._open(chain, None, 0.0, LIMITED["force"].least_levels)
     assert asked == [2, 1]
+
+
+NYLON = {
+    "projectile.material": "pa66",
+    "barrier.material": "s235",
+    "surface": {"state": "custom", "friction": 0.35, "source": "assumed"},
+}
+
+
+def test_a_barrier_that_auto_takes_as_rigid_has_a_dent_all_the_same(scene):
+    """Hertz: the barrier's share of the depth is that of the compliances, which is .014 under nylon."""
+    soft = fem_impact.replace_all(scene, NYLON)
+    assert "barrier-rigid" in Case.of(soft, "modal").active
+    bound = LIMITED["dent"].reduced(soft)
+    deforms = fem_impact.replace(soft, "effects", ["auto", "barrier-elastic"])
+    case = Case.of(deforms, "modal")
+    deepest = max(site.depth for site in closed(case, recorded=True).sites)
+    assert bound.value == pytest.approx(deepest) and 0.0 < bound.low < bound.value < bound.high
+    assert bound.value < 0.05 * case.contact.estimate.depth
+    meshed, _ = LIMITED["dent"].meshed(soft)
+    assert meshed.effects == ("auto", "barrier-elastic")
+    stated = fem_impact.replace(soft, "effects", ["auto", "barrier-rigid"])
+    with pytest.raises(SceneError, match="does not let the barrier deform: it has no dent"):
+        judge(stated, LIMITED["dent"], 1e-6, None, "modal")
+
+
+def test_a_reduced_model_whose_ledger_is_open_tells_no_number(scene, monkeypatch):
+    monkeypatch.setattr("fem_impact.run.common.RESIDUAL_LIMIT", -1.0)
+    monkeypatch.setattr("fem_impact.run.assemble.RESIDUAL_LIMIT", -1.0)
+    told = LIMITED["force"].reduced(scene)
+    assert isinstance(told, Unknown) and "The energy ledger misses" in told.reason
+    spread = friction_spread(fem_impact.replace(scene, "surface", {"state": "pair"}), "solid")
+    assert spread.said == "" or "rigid theory" in spread.said
