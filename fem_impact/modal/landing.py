@@ -10,13 +10,12 @@ from fem_impact.modal.motion import AT, SITE, ModalState, Touched
 from fem_impact.modal.rod import ModalRod
 from fem_impact.modal.sites import on_arc, skin
 from fem_impact.modal.touch import LAID
-from fem_impact.physics.contact import FLAT, ContactPair, impedance
+from fem_impact.physics.contact import FLAT, ON_SIDE, ContactPair, impedance
 from fem_impact.physics.contact_law import FULLY_PLASTIC, REPRESENTATIVE, FlowLaw, flow_law
 from rigid import Faceted
 
 NEAR = 0.5  # radii of gyration, beyond which a flank presses too far from its end to act there
 LEANS = 0.25  # rise over length beyond which a straight part that touches with an end does not land flat
-ON_SIDE = 0.25 * pi  # stiffness of a side over E* times its length (Popov 2010)
 RIGID = 1e-9  # share of the contact's give that a barrier which gives nothing is taken to have
 
 

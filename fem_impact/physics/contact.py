@@ -21,6 +21,7 @@ from rigid import Body, Faceted, Touch, point_arms, sliding_path
 
 LIMIT_PRESSURE = 2.8  # mean pressure of a fully plastic indentation over the yield stress
 SECTION = 1.8412  # first zero of J1': cut-off k R of shear modes within the round section
+ON_SIDE = 0.25 * pi  # stiffness of a lying cylinder over E* times its length (Popov 2010)
 FLAT = 2.0  # depths, within which a face or a flank lies flat on the barrier
 ROUNDS = 12  # of depth and width, each of which moves the depth a quarter of the last
 FLATTEST = 0.2 / 0.019  # diameters, upper limit of R2, which is infinite for a contact on a flat face

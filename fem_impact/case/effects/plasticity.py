@@ -1,12 +1,12 @@
 """Yielding of the rod's tip (J2, isotropic hardening)."""
 
-from math import atan, inf, sqrt
+from math import atan, inf, pi, sqrt
 
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.effects.slots import ModelSpec
 from fem_impact.errors import SceneError
 from fem_impact.physics import hardening
-from fem_impact.physics.contact import LIMIT_PRESSURE, ContactPair
+from fem_impact.physics.contact import FLATTEST, LIMIT_PRESSURE, ON_SIDE, ContactPair
 from fem_impact.scene.material import Material, RambergOsgoodFlow, TableFlow
 
 DEEP = 1.6  # peak Hertz pressure over yield stress at first yield, below the surface (Johnson 1985, eq 6.9)
@@ -35,10 +35,22 @@ def buried_yield_ratio(pair: ContactPair, material: Material, depth: float) -> f
 
 def _peak(pair: ContactPair, other: Material) -> float:
     """Return the peak pressure, Pa, of the elastic contact, or the limit pressure of ``other`` if less."""
-    peak = 1.5 * pair.elastic.estimate.pressure
+    peak = max(1.5 * pair.elastic.estimate.pressure, _on_side(pair))
     if pair.compliant:
         peak = min(peak, LIMIT_PRESSURE * strength_of(other))
     return peak
+
+
+def _on_side(pair: ContactPair) -> float:
+    """Return the peak pressure, Pa, of Hertz's line contact of a round side that lands all along, 0 of others.
+
+    The body is rigid on a bed as stiff as a lying cylinder's; p0^2 = F' E* / (pi R) (Johnson 1985, 4.2c).
+    """
+    radius, length = pair.principal_radii[1], pair.touch.length
+    if not length or not pair.angle or radius >= FLATTEST * pair.body.diameter:
+        return 0.0
+    force = pair.approach * sqrt(pair.effective_mass * ON_SIDE * pair.modulus * length)
+    return sqrt(force / length * pair.modulus / (pi * radius))
 
 
 def strength_of(material: Material) -> float:

@@ -208,3 +208,29 @@ def test_what_lands_flat_sends_waves_into_the_barrier_however_slow_it_comes():
     tilted = changed(flat, "impact.angle", "20 deg")
     assert number(tilted, "radiation") < 0.01
     assert ("radiation" in Case(flat).active, "radiation" in Case(tilted).active) == (True, False)
+
+
+def test_a_side_that_lands_all_along_yields_as_a_line_does():
+    """c45 on s275 at 1 m/s: finite elements of 200 mm x 20 mm have 42.9 kN, Hertz' line 890 MPa there.
+
+    A rigid body on a bed presses harder than one through which waves run; the tip's contact said 0.92.
+    """
+    scene = replace_all(
+        load("quick"),
+        {
+            "projectile.length": "200 mm",
+            "projectile.diameter": "20 mm",
+            "projectile.tip_radius": "1 mm",
+            "projectile.material": "c45",
+            "barrier.material": "s275",
+            "impact.angle": "90 deg",
+            "impact.v_n": "-1 m/s",
+            "impact.v_t": "0 m/s",
+        },
+    )
+    side = Case.of(scene, "modal")
+    measured = sqrt(42.9e3 / 0.198 * side.contact.modulus / (pi * 0.01))
+    assert measured == pytest.approx(890e6, rel=0.02)
+    at_first = min(1.6, 1 / (sqrt(3) * side.contact.f)) * side.contact.barrier.yield_stress
+    assert measured < number(scene, "barrier-elastoplastic") * at_first < 1.5 * measured
+    assert {"rod-plasticity", "barrier-elastoplastic"} <= set(side.active)
