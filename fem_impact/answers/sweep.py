@@ -59,6 +59,7 @@ UNMESHED = (
     "(fidelity solid keeps it)"
 )
 CELLS = ("tip_size_m", "barrier_size_m")
+FRICTION = "friction_f"
 
 
 def sweep(
@@ -186,6 +187,7 @@ def publish_sweep(
             *_not_known(results, columns or SHORT),
             *_no_error(results, columns or SHORT),
             *_cells(results),
+            *_friction(results),
             EXPLAINED,
         ],
         pictures=_pictures(results, drawn),
@@ -239,6 +241,21 @@ def _cells(results: Results) -> list[str]:
     return [
         f"The cells of the meshes differ between the cases ({', '.join(ends.values())}), as they follow the "
         "scene: a part of each difference is the mesh's. State accuracy.tip_size for equal cells."
+    ]
+
+
+def _friction(results: Results) -> list[str]:
+    """Return whether the friction differs from case to case though it is not varied."""
+    values = results.numbers(FRICTION)
+    if any(key.startswith("surface") for key in results.vary) or not np.isfinite(values).any():
+        return []
+    low, high = np.nanmin(values), np.nanmax(values)
+    if high - low < 1e-6:
+        return []
+    return [
+        f"The friction differs between the cases (`{FRICTION}` {low:.3g} to {high:.3g}), as it follows the "
+        "pair of materials: a part of each difference is the friction's. State surface.friction for an equal "
+        "one."
     ]
 
 

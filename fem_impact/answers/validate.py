@@ -303,7 +303,12 @@ def _about(scene: Scene, key: str, text: str) -> Interval:
     if isinstance(value, str) or isinstance(half, str) or not half > 0:
         where = f"value, {named(value_there)}" if value_there != "" else "value: it states none"
         problem = f"gives no interval about the scene's {where}."
-        raise UsageError(problem, key=key, value=text, remedy=f"Write {key}=LOW,HIGH with one unit.")
+        raise UsageError(
+            problem,
+            key=key,
+            value=text,
+            remedy=f"Write {key}=LOW,HIGH with one unit, if the scene takes that key.",
+        )
     return key, value - half, value + half, unit
 
 

@@ -73,11 +73,12 @@ def require_heavier(bodies: Bodies, zones: AnyZones) -> None:
 def lighter_than_block(whole: float, block: float) -> SceneError:
     """Return the refusal of a free barrier of a mass, kg, whose meshed block has more, kg."""
     return SceneError(
-        f"is less than the {block:.3g} kg of metal that deforms around the contact: so small a body does "
-        "not bear it as a half-space does.",
+        f"is less than the {block:.3g} kg of the block that finite elements mesh around the contact, whose "
+        "size follows their cells.",
         key="barrier.mass",
         value=f"{whole:.3g} kg",
-        remedy=f"Give more than {block:.3g} kg, or the effect barrier-rigid: it stays a rigid body.",
+        remedy=f"Give more than {block:.3g} kg; or smaller cells, such as twice the accuracy.across; or the "
+        "effect barrier-rigid: it stays a rigid body.",
     )
 
 

@@ -104,7 +104,7 @@ def too_thin(bodies: Bodies, meshed: bool) -> tuple[str, ...]:
     if rod.bore:
         (rho, z), (along, _, inner) = bodies.contact.touch_point, rod.wall()
         wall, width = float(np.hypot(along - z, inner - rho).min()), contact_width(bodies)
-        behind = f"the wall behind it {wall * 1e3:.2g} mm thick: that it buckles, folds or is pierced"
+        behind = f"the bore {wall * 1e3:.2g} mm behind it: that the wall buckles, folds or is pierced"
         if size.depth > wall:
             told.append(f"left out: {dent}, {behind}")
         elif width > wall and not meshed:

@@ -1,7 +1,7 @@
 """The command ``check``: all that a scene states and calls for, without computing it."""
 
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +10,7 @@ from fem_impact.answers.simulate import compiled, refused_by
 from fem_impact.answers.verdict.screening import screening
 from fem_impact.case.case import Case
 from fem_impact.case.cells import ADVISED, ERROR, advice, contact_radius, expected_cells, kind
+from fem_impact.case.effects.registry import BARRIERS, EFFECTS
 from fem_impact.case.size import FRAMES_SPAN, RunSize, about
 from fem_impact.cli.parser import Options
 from fem_impact.cli.paths import shown_path
@@ -178,8 +179,11 @@ def _short(case: Case, statement: dict[str, Any]) -> str:
     laws = (f"{place.removesuffix('.material')}: {law}" for place, law in statement["laws"].items())
     lines += ["", "Laws in force", *_wrapped(laws), "", "Effects"]
     lines += _wrapped(rod.named(f"on  {_named(one)}: {_decided(one)}") for one in case.choices if one.on)
-    off = [_off(one) for one in case.choices if not one.on]
-    lines += _wrapped([f"off {', '.join(off)}: not called for, or left out by the scene"])
+    off = [one for one in case.choices if not one.on]
+    called_for = [one for one in off if (one.number or 0.0) > one.threshold and one.name not in BARRIERS]
+    lines += _wrapped(rod.named(f"off {_off(one)}: {_lacking(one, off)}") for one in called_for)
+    others = ", ".join(_off(one) for one in off if one not in called_for)
+    lines += _wrapped([f"off {others}: not called for, or left out by the scene"])
     lines += [*_size_lines(case), *_end_lines(case, statement), ""]
     return "\n".join([*lines, *wrapped(LONG)]) + "\n"
 
@@ -313,6 +317,18 @@ def _off(effect: EffectChoice) -> str:
     close = threshold / CLOSE < number < threshold * CLOSE
     told = f" ({number:.2g}, threshold {threshold:g})" if close else ""
     return f"{_named(effect)}{told}"
+
+
+def _lacking(effect: EffectChoice, off: Sequence[EffectChoice]) -> str:
+    """Return why an effect is off though its number calls for it."""
+    needs, without = EFFECTS[effect.name].needs, {one.name for one in off}
+    if needs and without.issuperset(needs):
+        return (
+            f"needs {' or '.join(needs)}, which are off"
+            if len(needs) > 1
+            else f"needs {needs[0]}, which is off"
+        )
+    return "left out by the scene" if effect.forced else effect.sentence
 
 
 def _decided(effect: EffectChoice) -> str:

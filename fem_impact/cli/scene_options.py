@@ -24,6 +24,8 @@ TITLED = ("projectile", "barrier", "surface", "impact")
 USUAL_TIP = "B"
 SLOWED = 0.5
 """Share of the old speed of approach below which a fall along the axis is no other way to state it."""
+ALONG = 1e-6
+"""Angle, rad, between velocity and axis at most of a body that moves along its axis."""
 SHAPE = ("tip", "tip_radius")
 """Options of a steel rod that have a default."""
 
@@ -86,6 +88,8 @@ def _change(change: str) -> tuple[str, Any]:
         from fem_impact.scene.read import read_tables
 
         return key, read_tables(Path(text[1:]))
+    if re.fullmatch(r"[+-]?\.\d+", text):  # .36, which TOML refuses
+        return key, float(text)
     try:
         return key, tomllib.loads(f"value = {text}")["value"] if "\n" not in text else text
     except (ValueError, RecursionError):
@@ -150,6 +154,8 @@ def _say_fall(scene: Scene, changed: set[str], options: Options) -> None:
             f"v_n = {impact.v_n:.4g} m/s, v_t = {impact.v_t:.4g} m/s. To keep the old one: "
             f"--set impact.v_n='{old.v_n:.4g} m/s' --set impact.v_t='{old.v_t:.4g} m/s'"
         )
+    elif abs(impact.beside) < ALONG:  # it moves along its axis all the same
+        return
     else:
         sentence = "warning: v_n and v_t are those of the old angle."
         still = not (scene.barrier.v_n or scene.barrier.v_t)

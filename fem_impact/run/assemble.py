@@ -223,6 +223,9 @@ def _gravity(case: Case, contacts: Array | None) -> tuple[str, str]:
         remedy = "it is no impact any more. Give a higher speed, or leave out the gravity effect."
         return "", f"{gained}: {remedy}"
     if share > GRAVITY_TOLD:
-        why = "The contact bears the weight meanwhile: V_n, e and E_r change by about a tenth of that."
+        why = (
+            "The contact bears the weight meanwhile: V_n, e and E_r change by about a tenth of that, mu by "
+            "up to half of it."
+        )
         return f"{gained}. {why}", ""
     return "", ""

@@ -652,3 +652,17 @@ def test_finite_elements_of_a_sweep_run_on_levels_and_have_bands(monkeypatch, tm
 def test_the_name_of_a_scene_is_told_to_be_loaded(ask):
     with pytest.raises(UsageError, match=r"""scene="t5b": is not a scene\. Load one.*fem_impact\.load"""):
         ask("t5b")
+
+
+def test_a_friction_that_follows_the_materials_is_told(tmp_path):
+    scene = fem_impact.replace(fem_impact.load("t5b"), "surface", {"state": "pair"})
+    for key, values, told in (
+        ("projectile.material", ["pmma", "copper"], True),
+        ("impact.angle", ["30 deg", "40 deg"], False),
+    ):
+        found = fem_impact.sweep(scene, {key: values}, fidelity="rigid")
+        document = publish_sweep(found, "t", "fem-impact sweep", tmp_path / key).document
+        lines = [line for line in document["findings"] if line.startswith("The friction differs")]
+        assert len(lines) == told
+        low, high = sorted(found.numbers("friction_f"))
+        assert not told or f"`friction_f` {low:.3g} to {high:.3g}" in lines[0]

@@ -148,7 +148,7 @@ def test_it_is_told_what_a_dent_deep_beside_the_plate_leaves_out():
 def test_a_wall_thinner_than_its_contact_counts_as_massive_where_there_is_no_mesh():
     for fidelity, is_told in (("rigid", True), ("modal", True), ("solid", False)):
         sentences = texts(Case.of(load("tube"), fidelity).limitations, "model")
-        assert bool(about(sentences, "the wall behind it 2.5 mm thick: that it buckles")) == is_told
+        assert bool(about(sentences, "the bore 2.5 mm behind it: that the wall buckles")) == is_told
 
 
 def test_a_sharp_edge_is_told_to_be_crushed_itself():

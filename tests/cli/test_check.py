@@ -9,7 +9,7 @@ from fem_impact.case.case import Case
 from fem_impact.case.effects.registry import EFFECTS, NAMES
 from fem_impact.scene.library import materials, shipped
 from fem_impact.scene.read import read_dict
-from fem_impact.scene.shipped import load
+from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.types import digest, to_toml
 from fem_impact.solid.watchers import _schedule
 
@@ -231,3 +231,19 @@ def test_frames_are_told_over_the_time_that_they_are_spread_over(cli):
     early, later, parted = _schedule(case)
     first = round(parted / early)
     assert first + (3 * case.estimate.duration - parted) / later == pytest.approx(120, abs=1)
+
+
+def test_an_effect_that_is_off_though_its_number_calls_for_it_says_why(cli, tmp_path):
+    """Waves through nylon are worth following, and a barrier taken as rigid has none."""
+    nylon = {"projectile.material": "pa66", "barrier.material": "s235", "impact.speed": "3 m/s"}
+    pair = {"surface": {"state": "pair"}}
+    scene = replace_all(load("quick"), nylon | pair)
+    needs = "needs barrier-elastic or barrier-elastoplastic, which are off"
+    for changes, said in (
+        ({}, f"off radiation (0.013, threshold 0.01): {needs}"),
+        ({"effects": ["auto", "barrier-elastic", "-radiation"]}, "threshold 0.01): left out by the scene"),
+    ):
+        path = tmp_path / "nylon.toml"
+        path.write_text(to_toml(replace_all(scene, changes)))
+        code, out, _ = cli("check", str(path))
+        assert code == 0 and said in " ".join(out.split())

@@ -165,7 +165,7 @@ def test_the_width_of_a_chamfer_is_that_at_its_height():
 
 @pytest.fixture(scope="module")
 def channel():
-    """Half of a channel 24 mm x 24 mm x 3 mm, 200 mm long: a web at x = 0 to 3 mm, a flange at y = 9 to 12 mm."""
+    """Half of a channel 24 x 24 x 3 x 200 mm: a web at x = 0 to 3 mm, a flange at y = 9 to 12 mm."""
     x, y, z = (1e-3 * np.array(places) for places in ([0.0, 3.0, 24.0], [0.0, 9.0, 12.0], [0.0, 200.0]))
     points = np.array([[a, b, c] for a in x for b in y for c in z])
     n = np.arange(18).reshape(3, 3, 2)
@@ -183,7 +183,7 @@ def _faces(n):
 
 
 def test_a_section_and_a_side_hold_no_gaps(channel):
-    """The ends of two flanges, 3 mm wide each, touch 18 mm apart; upright, the web 24 mm wide comes down too."""
+    """The ends of two flanges, 3 mm wide each, touch 18 mm apart; the web is 24 mm wide."""
     alpha, height = np.radians(25.0), 1e-4
     length = sum(channel.reaches(alpha, height))
     assert channel.section(alpha, height) == pytest.approx(6e-3 * length)

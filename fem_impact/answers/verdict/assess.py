@@ -108,7 +108,7 @@ class Verdict:
         if self.here is None:
             return f"a model that tells how {self.of} changes: the notes say what was tried."
         if not self.here.is_known:
-            return f"a change of {self.of} that is known: the half-width told is as large as it can be."
+            return f"a change of {self.of} that is known: the half-width told holds every one there can be."
         size, band = abs(self.here.value), self.here.band
         margin, enough = abs(self.tolerance - size), size + band
         digits = digits_apart(margin, band)

@@ -51,7 +51,7 @@ UNCONFIRMED = (
     "number and its least, but as far as their upper end lies above it at one of them it may be too low at "
     "all places, and that passes the limit. Assess parts of the intervals, or a limit with more margin."
 )
-LEAST = " where the number is least and may be {} at most, to be below the limit everywhere"
+LEAST = ", where the number is least: above {} there it does not stay below the limit at all places"
 SOLIDS = "finite elements"
 ALONE = "finite elements where the reduced model has its least number, too: notes say why they tell none."
 UNLIKE = (
@@ -365,7 +365,7 @@ def limit_document(v: LimitVerdict, command: str) -> dict[str, Any]:
             "undecided": f", up to {size} above the limit" if size else "",
         }
         worst = "At the worst place" if v.reduced else "Where all have their middle values"
-        worst += " of finite elements" * bool(v.reduced and v.by == SOLIDS)
+        worst += " that finite elements computed" * bool(v.reduced and v.by == SOLIDS)
         place = f"{worst}, {at}:" if at else "Here:"
         box.append([place, f"{_told(of, bound)}{far[bound.answer(v.limit)]}, by {v.by}."])
     if bound is not None and bound.counts:

@@ -135,7 +135,7 @@ def _anywhere(v: Verdict) -> str:
         return "For other inclinations the answer is not known: change impact.angle and assess them, too."
     by = " by the reduced model" if v.fidelity == "solid" else ""
     everywhere = "; rigid theory may be used at every inclination" if v.worst_answer == "yes" else ""
-    known = " of those that are known" * bool(v.not_known[0])
+    known = " of those where the change is known" * bool(v.not_known[0])
     if v.worst is v.here:
         return f"No other inclination{known} has a larger change{by}{everywhere}."
     return (

@@ -228,7 +228,8 @@ class VibrationEffect:
     def told(self) -> str:
         """Value and band as text."""
         if not self.is_known:
-            return f"an amount that is not known: its half-width of {self.band:.2g} is as large as it can be"
+            half = f"the half-width told, {self.band:.2g}, holds every change there can be"
+            return f"an amount that is not known: {half}"
         return f"{self.value:+.3f} ± {self.band:.3f}"
 
     def answer(self, tolerance: float) -> Answer:

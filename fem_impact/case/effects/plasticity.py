@@ -42,7 +42,7 @@ def _peak(pair: ContactPair, other: Material) -> float:
 
 
 def _on_side(pair: ContactPair) -> float:
-    """Return the peak pressure, Pa, of Hertz's line contact of a round side that lands all along, 0 of others.
+    """Return the peak pressure, Pa, of Hertz's line contact of a round side that lands flat, 0 of others.
 
     The body is rigid on a bed as stiff as a lying cylinder's; p0^2 = F' E* / (pi R) (Johnson 1985, 4.2c).
     """

@@ -133,7 +133,7 @@ def test_finite_elements_go_on_at_the_mildest_place_until_their_error_there_deci
     solids(monkeypatch, {60: 50.0, 20: 10.0})
     steps = judge(scene, Sloped(), 65.0, ANGLE).steps
     assert [step.split(":")[0] for step in steps[1:]] == ["65", "25"]
-    assert "may be 0.025 kN at most" in steps[2] and "at most" not in steps[1]
+    assert "above 0.025 kN there" in steps[2] and "at most" not in steps[1]
 
 
 def test_a_limit_that_is_passed_at_the_mildest_place_is_told_by_the_number_there(monkeypatch, scene):
@@ -141,7 +141,7 @@ def test_a_limit_that_is_passed_at_the_mildest_place_is_told_by_the_number_there
     solids(monkeypatch, {60: 5.0, 20: 80.0})
     told = limit_document(judge(scene, Sloped(), 65.0, ANGLE), "")
     assert told["answer"] == "no" and told["margin"] == pytest.approx(-14.0)
-    assert told["box"][1][0] == "At the worst place of finite elements, impact.angle 20 deg:"
+    assert told["box"][1][0] == "At the worst place that finite elements computed, impact.angle 20 deg:"
     assert told["box"][2] == ["Of 21 places of the reduced model", "the least has 0.02 kN, the most 0.06 kN."]
 
 

@@ -158,7 +158,7 @@ def test_this_inclination_and_the_worst_one_are_two_sentences(short, at, value, 
     )
     assert may.partition("(allowed: 0.05). ")[2].startswith(words) or may.endswith(words)
     partly = box(replace(short, here=here, elsewhere=other, not_known=((0.5,), "why")))[0][1]
-    assert "inclination of those that are known" in partly
+    assert "inclination of those where the change is known" in partly
 
 
 def test_a_yes_tells_the_number_of_rigid_theory_where_its_closed_formula_has_another(short):
