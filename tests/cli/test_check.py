@@ -235,7 +235,8 @@ def test_frames_are_told_over_the_time_that_they_are_spread_over(cli):
 
 def test_an_effect_that_is_off_though_its_number_calls_for_it_says_why(cli, tmp_path):
     """Waves through nylon are worth following, and a barrier taken as rigid has none."""
-    nylon = {"projectile.material": "pa66", "barrier.material": "s235", "impact.speed": "3 m/s"}
+    nylon = {"projectile.material": "pa66", "barrier.material": "s235", "impact.angle": "10 deg"}
+    nylon["impact.speed"] = "3 m/s"
     pair = {"surface": {"state": "pair"}}
     scene = replace_all(load("quick"), nylon | pair)
     needs = "needs barrier-elastic or barrier-elastoplastic, which are off"
