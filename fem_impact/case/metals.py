@@ -72,12 +72,17 @@ def _unlike_solids(key: str, metal: materials.Material) -> str:
 
 
 def _breaking(metal: materials.Material, pressure: float) -> str:
-    """Return what breaks a brittle body: the contact's mean pressure, Pa, beside the strength it states.
+    """Return what breaks a body: the contact's mean pressure, Pa, beside the strength of a brittle one.
+
+    A metal or a plastic flows where a round contact presses it with three times its yield stress (Tabor).
 
     At its edge a round contact pulls the surface with (1 - 2 nu) / 3 of the largest pressure, 3/2 of the mean
     (Johnson 1985, Contact Mechanics, section 3.4, doi:10.1017/CBO9781139171731).
     """
     kind = kind_of(family_of(metal))
+    if kind in ("plastic", "metal"):
+        flows = "beyond three times its yield stress it flows, and e and the forces told are too high"
+        return f" The contact, estimated, presses it with {_MPa(pressure)} in the mean: {flows}."
     if kind not in ("ground", "brittle"):
         return ""
     of_edge = kind == "brittle"

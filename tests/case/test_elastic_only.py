@@ -1,5 +1,7 @@
 """What an elastic answer leaves out of a material, and the grounds that must be named as elastic."""
 
+from math import pi, sqrt
+
 import pytest
 
 from fem_impact.case.case import Case
@@ -157,3 +159,14 @@ def test_the_pressure_on_a_brittle_barrier_is_told_beside_its_strength():
 def test_a_note_calls_the_body_what_it_is():
     texts = [one.text for one in Case(read_dict(drop("s235", rod=OWN_STEEL))).limitations]
     assert any(text.startswith("The ball (own steel) has no yield stress") for text in texts)
+
+
+@pytest.mark.parametrize("metal", ["pa66", "own"])
+def test_the_pressure_on_what_would_flow_is_told(metal):
+    """By Hertz: 3/2 of the mean is the largest."""
+    rod = OWN_STEEL if metal == "own" else metal
+    bodies = Case(read_dict(drop("alumina", rod=rod))).bodies
+    size, modulus = bodies.estimate, bodies.contact.modulus
+    largest = 2 / pi * modulus * sqrt(size.depth / sqrt(size.R1 * size.R2))
+    told = f"presses it with {largest / 1.5e6:.4g} MPa in the mean: beyond three times its yield stress"
+    assert told in " ".join(unknowns(bodies))
