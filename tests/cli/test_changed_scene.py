@@ -7,7 +7,7 @@ import pytest
 from fem_impact.cli.paths import shown_path
 from fem_impact.cli.scene_options import changed_scene
 from fem_impact.errors import SceneError
-from fem_impact.scene.shipped import load, replace
+from fem_impact.scene.shipped import load, replace, replace_all
 from fem_impact.scene.types import to_toml
 
 
@@ -126,3 +126,16 @@ barrier = { material = "plate-steel" }
 surface = { state = "machined" }
 impact = { angle = "30 deg", speed = "3 m/s" }
 """
+
+
+def test_velocities_along_the_axis_at_the_new_angle_need_no_warning(cli, tmp_path):
+    velocities = {"impact.angle": "25 deg", "impact.v_n": "-2 m/s", "impact.v_t": "0 m/s"}
+    (tmp_path / "down.toml").write_text(to_toml(replace_all(load("t5b"), velocities)))
+    path = str(tmp_path / "down.toml")
+    assert "those of the old angle" in cli("check", path, "--set", "impact.angle=1 deg")[2]
+    assert not cli("check", path, "--set", "impact.angle=0 deg")[2]
+
+
+def test_a_number_may_begin_with_its_point():
+    assert changed_scene("t5b", ["surface.friction=.36"]).surface.friction == 0.36
+    assert changed_scene("t5b", ["accuracy.grid_shift=+.5"]).accuracy.grid_shift == 0.5
