@@ -764,7 +764,7 @@ def test_a_change_known_no_better_than_it_can_be_is_no_number(monkeypatch):
     found = assess(load("t5b"), "modal", tolerance=0.2)
     assert math.degrees(found.worst.angle) < 72 and found.worst.band < 1
     assert [round(math.degrees(angle)) for angle in found.not_known[0]] == [75, 80]
-    assert "an amount that is not known: its half-width of 1.7" in found.not_known[1]
+    assert "an amount that is not known: the half-width told, 1.7," in found.not_known[1]
     steep = assess(replace_all(load("t5b"), {"impact.angle": "75 deg"}), "modal")
     told = document(steep)
     assert "-0.871" not in str(told["box"]) + told["missing"] and told["here"]["change"] is None
