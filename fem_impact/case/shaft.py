@@ -92,4 +92,4 @@ def lands_on_ridge(bodies: Bodies) -> bool:
     if not isinstance(body, Faceted) or touch.length <= RIDGE * body.diameter:
         return False
     middle, half = np.array(touch[:2]), 0.5 * touch.length * np.array([cos(angle), sin(angle)])
-    return not body.half_widths(middle - half, middle + half, np.array([0.5])).any()
+    return not body.half_widths(middle - half, middle + half, np.array([0.02, 0.5, 0.98])).any()

@@ -16,6 +16,7 @@ from rigid import Faceted
 
 NEAR = 0.5  # radii of gyration, beyond which a flank presses too far from its end to act there
 LEANS = 0.25  # rise over length beyond which a straight part that touches with an end does not land flat
+FINE = 11  # places in each cell at which the width of a flat side is looked at
 RIGID = 1e-9  # share of the contact's give that a barrier which gives nothing is taken to have
 
 
@@ -113,7 +114,8 @@ def _is_straight(case: Case, ends: list[tuple[float, float]], depth: float) -> b
     body, share = case.bodies.body, (np.arange(CELLS) + 0.5) / CELLS
     (x, z), (u, w) = ends
     if isinstance(body, Faceted):
-        return bool(body.half_widths(np.array(ends[0]), np.array(ends[1]), share).min() > depth)
+        wide = body.half_widths(np.array(ends[0]), np.array(ends[1]), share)
+        return bool(min(wide[0], wide[-1]) > depth)  # feet at both ends, with or without a gap between
     if _is_face(ends):
         return True
     if x * u < 0.0:
@@ -148,11 +150,15 @@ def _set_face(
 def _set_facet(
     case: Case, held: Touched, f: int, ends: list[tuple[float, float]], pair: ContactPair, flow: FlowLaw
 ) -> None:
-    """Enter the law of a flat side of a mesh, as stiff as a round punch of its area."""
-    body, share = case.bodies.body, (np.arange(CELLS) + 0.5) / CELLS
+    """Enter the law of a flat side of a mesh, as stiff as a round punch of its area; gaps bear nothing."""
+    body, fine = case.bodies.body, (np.arange(FINE * CELLS) + 0.5) / (FINE * CELLS)
     assert isinstance(body, Faceted), "a facet is one of a mesh"
-    length, half = dist(*ends), body.half_widths(np.array(ends[0]), np.array(ends[1]), share)
-    held.flats.share[f], held.flats.base[f] = share, half**2
+    wide = body.half_widths(np.array(ends[0]), np.array(ends[1]), fine)
+    there = np.flatnonzero(wide)
+    length = dist(*ends) * len(there) / len(fine)
+    at = there[len(there) * (2 * np.arange(CELLS) + 1) // (2 * CELLS)]
+    half = wide[at]
+    held.flats.share[f], held.flats.base[f] = fine[at], half**2
     stiffness = 2 * pair.modulus * sqrt(2 * float(half.mean()) * length / pi) / length
     _set_row(case, held, f, pair, flow, stiffness, _of_face(flow), length / CELLS, 0.0)
 

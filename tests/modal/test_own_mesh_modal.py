@@ -129,3 +129,26 @@ def test_a_channel_that_lands_on_its_end_lands_flat(tmp_path):
     assert result.finished and result.laid
     one_wave = case.contact.rod.rho * np.sqrt(case.contact.rod.E / case.contact.rod.rho) * 198e-6 * 2.0
     assert one_wave < result.force < 2 * one_wave
+
+
+def test_two_feet_with_a_gap_between_bear_what_they_are_wide(tmp_path):
+    """Feet of 4 mm at both sides of a bar of 12 x 12 mm, 3 mm high: finite cells of the gap bear nothing."""
+    points, cells = box(6, 3, 20, (-6e-3, 0.0, 0.0), (6e-3, 6e-3, 60e-3))
+    middle = points[cells].mean(axis=1)
+    cells = cells[(np.abs(middle[:, 0]) > 2e-3) | (middle[:, 2] > 3e-3)]
+    used, cells = np.unique(cells, return_inverse=True)
+    whole = scene(tmp_path, "square bar", 0)
+    table = to_dict(whole)
+    del table["projectile"]["mesh_content"]
+    table["projectile"]["mesh"] = str(write(tmp_path / "feet.vtu", points[used], cells.reshape(-1, 8)))
+    elastic = ["auto", "-rod-plasticity", "barrier-elastic"]
+    found = []
+    for one in (read_dict(table), whole):
+        case = Case.of(replace(one, "effects", elastic), "modal")
+        result = closed(case, recorded=True)
+        assert result.finished and result.laid
+        (site,) = result.sites
+        found.append((result.force, site.high_t - site.low_t))
+    (feet, reach), (full, wide) = found
+    assert reach == pytest.approx(wide, rel=1e-3)  # from the one foot's outer edge to the other's
+    assert np.sqrt(2 / 3) * 0.8 < feet / full < 1.0
