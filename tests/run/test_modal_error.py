@@ -8,6 +8,8 @@ import pytest
 from scipy.stats import binom
 
 from fem_impact import load, replace, simulate
+from fem_impact.answers.verdict.criteria import LIMITED
+from fem_impact.answers.verdict.vibration import known_error
 from fem_impact.case.case import Case
 from fem_impact.case.measured import CONFIDENCE
 from fem_impact.outcome.groups import texts
@@ -175,6 +177,21 @@ def test_a_light_barrier_shares_the_doubt_by_momentum_and_one_too_light_has_no_e
     rigid = {"barrier.mass": "0.3 g", "effects": ["auto", "barrier-rigid"]}
     assert "V_bn_m_per_s" in simulate(replace_all(load("t5b"), rigid), "modal").half_widths
     assert "of the block that finite elements mesh" in tiny.half_widths.reason
+
+
+def test_a_thin_layer_far_softer_than_what_lies_under_it_has_no_error_and_decides_nothing():
+    """60 x 20 mm on 4 mm of rubber over steel: friction 0.0 %, by finite elements 29.6 +- 3.3 % of E_0."""
+    rubber = {"name": "soft", "E": "5 MPa", "nu": 0.48, "rho": "1100 kg/m3", "source": "assumed"}
+    changes = {"barrier.layers": [{"thickness": "4 mm", "material": rubber}], "impact.speed": "0.5 m/s"}
+    thin = replace_all(load("quick"), changes)
+    found = simulate(thin, "modal")
+    assert "times as soft as what lies under it" in found.half_widths.reason
+    assert known_error(Case.of(thin, "modal"), found, "e", 0.0)[0] >= 1.0
+    assert LIMITED["force"].reduced(thin) == found.half_widths
+    thick = {**changes, "barrier.layers": [{"thickness": "60 mm", "material": rubber}]}
+    metals = {**changes, "barrier.layers": [{"thickness": "4 mm", "material": "copper"}]}
+    for other in (thick, metals):
+        assert not isinstance(simulate(replace_all(load("quick"), other), "modal").half_widths, Unknown)
 
 
 def test_half_widths_hold_the_waves_that_leave_through_a_soft_barrier():

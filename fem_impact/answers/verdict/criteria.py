@@ -170,6 +170,8 @@ class Limited(Criterion):
         outcome = reduce(case, result)
         if not outcome.validity.finished:
             return Unknown(outcome.validity.stopped_because)
+        if isinstance(outcome.half_widths, Unknown):
+            return outcome.half_widths
         place, value, base = place_of(case, outcome), self.of_reduced(case, result), self.base(scene)
         far = farness(place, outcome)
         factor = factor_of(place, self.column, far)

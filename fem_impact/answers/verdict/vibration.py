@@ -57,7 +57,7 @@ def known_error(case: Case, whole: Outcome, of: str, change: float) -> tuple[flo
     """
     at, table = place_of(case, whole), stored()
     half = inf
-    if not digs_in(whole):
+    if not (digs_in(whole) or isinstance(whole.half_widths, Unknown)):
         half = table.half_width(np.array(at), [*CHANGED].index(of), farness(at, whole, table))
         if of == "e":
             half *= widened_by(unit_of("V_n_m_per_s", whole), case.contact.approach)
