@@ -32,7 +32,6 @@ from fem_impact.outcome.record import Outcome
 from fem_impact.outcome.strikes import levels_told
 from fem_impact.progress import Notice
 from fem_impact.run.simulate import begin
-from fem_impact.scene.fields import MOST_LEVELS
 from fem_impact.scene.impact import FIRST
 from fem_impact.scene.types import Scene, digest, to_toml
 from fem_impact.tables.text import plain
@@ -41,8 +40,7 @@ from fem_impact.tables.text import plain
 GRID_OFFSETS = (0.0, 0.5)
 MOST_REPEATS = 2  # of a level, each with twice the room
 BUDGET = 600.0  # s of wall time for all levels, unless stated
-# of the budget, beyond which a level is given up: all ends within 1.3, as set-up does not look at the clock
-LATE = 1.2
+LATE = 1.2  # of the budget, beyond which a level is given up: set-up looks at no clock, and all ends by 1.3
 LEAST_BUDGET = 5.0  # s: a smaller budget still gives a quick scene its first level
 MOST_FINER = 3  # splits beyond a resolved contact, where a band decides, or levels more until it is resolved
 Decides = Callable[[Sequence[LevelRun]], bool]
@@ -153,8 +151,7 @@ class LevelChain:
         ran, finest, record = self.done[-1].splits, self.finest, self.done[-1].record
         if record.crushed:  # smaller cells are crushed sooner
             return None
-        least = self.scene.accuracy.levels + self._unasked
-        stated = not self.meshes.is_sized and len(self.done) < least
+        stated = not self.meshes.is_sized and self._asked < self.scene.accuracy.levels
         if self.decides or self.scene.accuracy.target:
             cut = 1 < len(self.done) > self.counted
             if self._decided or cut or (ran >= finest + MOST_FINER and not stated):
@@ -165,9 +162,9 @@ class LevelChain:
         return next(iter(steps_between(ran, finest, self.scene.accuracy.levels - len(self.done))), None)
 
     @property
-    def _unasked(self) -> int:
-        """How many levels more than stated may run: until one resolves the contact."""
-        return 0 if self.done[-1].record.resolved else MOST_FINER
+    def _asked(self) -> int:
+        """How many levels ran, less those that more than stated may until one resolves the contact."""
+        return len(self.done) - (0 if self.done[-1].record.resolved else MOST_FINER)
 
     @property
     def _decided(self) -> bool:
@@ -211,10 +208,7 @@ class LevelChain:
 
     @property
     def counted(self) -> int:
-        """The number, from 1, of the level whose outcome counts: the finest that saw the bodies part.
-
-        It is the last one where none did.
-        """
+        """The number, from 1, of the level that counts: the finest that saw the bodies part, or the last."""
         parted = [n for n, level in enumerate(self.done, 1) if not level.cut_off]
         return parted[-1] if parted else len(self.done)
 
@@ -387,12 +381,7 @@ class LevelChain:
             return "cells were crushed, and finer ones would be sooner: fidelity rigid or modal has none"
         if self.refused or self.following is not None:
             return "a finer level gave no result" if self.refused else "a larger budget adds a finer level"
-        if self.meshes.is_sized:
-            return "a smaller accuracy.tip_size adds a finer level"
-        more = 1 + max(now := self.scene.accuracy.levels, len(self.done) - self._unasked)
-        if more > MOST_LEVELS:
-            return f"accuracy.levels is at most {MOST_LEVELS}"
-        return f"accuracy.levels = {more} in place of {now} adds a finer level"
+        return self.meshes.remedy(self._asked)
 
     def advice(self, before_s: float = 0.0, halvings: int = 1) -> tuple[str, int | None]:
         """Return what finer levels would take, or why none is made; the budget for them, s, or None.

@@ -11,7 +11,7 @@ from fem_impact.case.mesh import SLICES
 from fem_impact.case.record import ContactRecord, expected_record
 from fem_impact.case.recorded import patch_radius
 from fem_impact.errors import SceneError
-from fem_impact.scene.fields import LEVELS
+from fem_impact.scene.fields import LEVELS, MOST_LEVELS
 from fem_impact.scene.types import Scene
 
 # least and most processor time of all levels of a run over what its last one takes by the estimated contact:
@@ -107,6 +107,15 @@ class LevelMeshes:
             last_s = self.case.size.time
         least, most = WHOLE
         return least * last_s, most * last_s
+
+    def remedy(self, asked: int) -> str:
+        """Say what in the scene adds a finer level to the ``asked`` ones that ran, or why nothing does."""
+        if self.is_sized:
+            return "a smaller accuracy.tip_size adds a finer level"
+        more = 1 + max(now := self._levels, asked)
+        if more > MOST_LEVELS:
+            return f"accuracy.levels is at most {MOST_LEVELS}"
+        return f"accuracy.levels = {more} in place of {now} adds a finer level"
 
     def lacking(self, splits: int, contact: ContactRecord, finest: int) -> str:
         """Say how often cells that are split so often would be halved for the contact found; empty: never."""

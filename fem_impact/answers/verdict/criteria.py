@@ -371,9 +371,7 @@ class DentCriterion(Limited):
         """Refuse a scene that states a rigid barrier (SceneError)."""
         if RIGID in scene.effects:
             remedy = "Take it out of effects: the barrier then deforms."
-            raise SceneError(
-                "does not let the barrier deform: it has no dent.", key="effects", value=RIGID, remedy=remedy
-            )
+            raise SceneError("leaves the barrier no dent.", key="effects", value=RIGID, remedy=remedy)
 
     def of_reduced(self, case: Case, result: ModalResult) -> float:
         """Return the depth, m, at the place that is pressed deepest."""
