@@ -139,7 +139,7 @@ def _fall(scene: Scene) -> str:
     if abs(impact.beside) <= BESIDE or impact != scene.relative:
         return ""
     beside, angle = (math.degrees(a) for a in (abs(impact.beside), impact.angle))
-    why = f"; the measured rods moved along theirs. Along it, v_n and v_t differ at {angle:.4g} deg"
+    why = f"; the measured rods moved along theirs. Are v_n and v_t those of {angle:.4g} deg?"
     if impact.slope is not None and abs(impact.beside + impact.angle - impact.slope) <= BESIDE:
         why = ", as it falls straight down on the slope stated; the measured rods fell along theirs"
     return f"outside the measured range: the body moves {beside:.2g} deg beside its axis{why}"

@@ -114,8 +114,8 @@ def _is_straight(case: Case, ends: list[tuple[float, float]], depth: float) -> b
     body, share = case.bodies.body, (np.arange(CELLS) + 0.5) / CELLS
     (x, z), (u, w) = ends
     if isinstance(body, Faceted):
-        wide = body.half_widths(np.array(ends[0]), np.array(ends[1]), share)
-        return bool(min(wide[0], wide[-1]) > depth)  # feet at both ends, with or without a gap between
+        # feet at both ends, with or without a gap between
+        return bool(body.half_widths(np.array(ends[0]), np.array(ends[1]), share[[0, -1]]).min() > depth)
     if _is_face(ends):
         return True
     if x * u < 0.0:

@@ -151,13 +151,13 @@ class LevelChain:
         ran, finest, record = self.done[-1].splits, self.finest, self.done[-1].record
         if record.crushed:  # smaller cells are crushed sooner
             return None
-        stated = not self.meshes.is_sized and self._asked < self.scene.accuracy.levels
+        one_more = not self.meshes.is_sized and self._asked < self.scene.accuracy.levels
         if self.decides or self.scene.accuracy.target:
             cut = 1 < len(self.done) > self.counted
-            if self._decided or cut or (ran >= finest + MOST_FINER and not stated):
+            if self._decided or cut or (ran >= finest + MOST_FINER and not one_more):
                 return None
-            stated = True
-        if stated:
+            one_more = True
+        if one_more:
             finest = max(finest, ran + 1)
         return next(iter(steps_between(ran, finest, self.scene.accuracy.levels - len(self.done))), None)
 
