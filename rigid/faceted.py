@@ -158,16 +158,29 @@ class Faceted:
 
     def section(self, alpha: float, height: float) -> float:
         """Area, m2, of the body in the plane at a `height`, m, over the lowest point, of all its pieces."""
-        ends = np.stack([self.facets, np.roll(self.facets, -1, axis=1)], axis=-1)
-        over = self.heights(alpha)[ends] - height
-        crosses = (over.min(axis=2) < 0.0) & (over.max(axis=2) >= 0.0)
-        cut = crosses.sum(axis=1) == 2  # a plane cuts a facet along a line between two of its edges
-        ends, over = ends[cut][crosses[cut]], over[cut][crosses[cut]]
-        share = (over[:, 0] / (over[:, 0] - over[:, 1]))[:, None]
-        x, y, z = (self.points[ends[:, 0]] * (1.0 - share) + self.points[ends[:, 1]] * share).T
-        t = (x * math.cos(alpha) + z * math.sin(alpha)).reshape(-1, 2)
+        x, y, z = np.moveaxis(self._cut(self.heights(alpha) - height), 2, 0)
+        t = x * math.cos(alpha) + z * math.sin(alpha)
         steps = np.unique(t)
-        return 2.0 * float(np.diff(steps) @ _inside(t, y.reshape(-1, 2), 0.5 * (steps[1:] + steps[:-1])))
+        return 2.0 * float(np.diff(steps) @ _inside(t, y, 0.5 * (steps[1:] + steps[:-1])))
+
+    def strips(self, z: float) -> Floats:
+        """Least and greatest x, m, (k, 2) of each piece of the section at `z`, m; gaps along x part them."""
+        low, high = np.sort(self._cut(self.points[:, 2] - z)[:, :, 0], axis=1).T
+        order = np.argsort(low)
+        low, reached = low[order], np.maximum.accumulate(high[order])
+        parts = np.flatnonzero(low[1:] > reached[:-1] + LEVEL * self.length)
+        return np.column_stack([low[np.append(0, parts + 1)], reached[np.append(parts, len(low) - 1)]])
+
+    def _cut(self, over: Floats) -> Floats:
+        """Return the lines (m, 2, 3), m, in which a plane cuts facets; its nodes are ``over`` it, (k,) m."""
+        ends = np.stack([self.facets, np.roll(self.facets, -1, axis=1)], axis=-1)
+        heights = over[ends]
+        crosses = (heights.min(axis=2) < 0.0) & (heights.max(axis=2) >= 0.0)
+        cut = crosses.sum(axis=1) == 2  # a plane cuts a facet along a line between two of its edges
+        ends, heights = ends[cut][crosses[cut]], heights[cut][crosses[cut]]
+        share = (heights[:, 0] / (heights[:, 0] - heights[:, 1]))[:, None]
+        places = self.points[ends[:, 0]] * (1.0 - share) + self.points[ends[:, 1]] * share
+        return np.asarray(places.reshape(-1, 2, 3))
 
     def half_widths(self, start: Floats, end: Floats, share: Floats) -> Floats:
         """Half widths across, m, of the flat side on a straight part of the outline from `start` to `end`.

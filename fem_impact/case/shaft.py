@@ -5,12 +5,14 @@ from math import cos, pi, sin, sqrt
 import numpy as np
 
 from fem_impact.case.bodies import Bodies
+from fem_impact.physics.beam import prongs
 from fem_impact.physics.contact import section_frequency
 from fem_impact.physics.stepped_beam import sections
 from meshes import shoulders
 from rigid import Faceted, Turned
 
 RIDGE = 0.25  # of the diameter, length of the shortest edge of a mesh that lands along a line
+PRONG = 0.5  # of the first bending period: the shortest period of prongs that counts
 THIN = 3.0  # middle radius over wall from which on a wall bends as a thin ring
 
 
@@ -59,7 +61,16 @@ def wall_is_flattened(bodies: Bodies) -> str:
 
 def gives_elsewhere(bodies: Bodies) -> str:
     """Say what of a body gives way besides its contact, and in no beam; empty if nothing does."""
-    return shaft_flows(bodies) or wall_is_flattened(bodies) or rings_through(bodies)
+    return shaft_flows(bodies) or wall_is_flattened(bodies) or rings_through(bodies) or pronged(bodies)
+
+
+def pronged(bodies: Bodies) -> str:
+    """Say that a body parts into prongs that swing on their own, as a fork does; empty if it does not."""
+    found = prongs(bodies.rod)
+    if found.period < PRONG * bodies.bending_period:
+        return ""
+    size = f"{1e3 * found.length:.2g} mm long and {1e3 * found.width:.2g} mm wide"
+    return f"prongs {size}, which bend on their own"
 
 
 def rings_through(bodies: Bodies) -> str:

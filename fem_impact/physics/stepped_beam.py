@@ -61,8 +61,6 @@ def shear_coefficient(nu: Array, hollow: Array) -> Array:
 
 def sections(rod: ProjectileSpec) -> Sections:
     """Return the elements of a projectile, ends of segments and bore among their ends."""
-    from rigid import Faceted
-
     body, parts = rod.body(), rod.segments
     ends = np.array([part.to for part in parts]) if parts else np.array([rod.length])
     steels = [part.material for part in parts] or [rod.material]
