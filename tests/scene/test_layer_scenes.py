@@ -61,9 +61,9 @@ def test_a_written_scene_reads_back_equal_and_layers_are_part_of_it():
         ([PLATE], {"thickness": "10 mm", "support": "infinite"}, "lie on a plate that bends"),
         ([PLATE], {"mass": "5 kg"}, "free to move: only a massive one"),
         (
-            [{**PLATE, "thickness": "0.6 mm"}],
+            [{**PLATE, "thickness": "0.3 mm"}],
             {},
-            r"layers\[1\].thickness = .0.6 mm.: fits no row of .* cells, 2.38 mm wide: .*across = \d+",
+            r"layers\[1\].thickness = .0.3 mm.: fits no row of .* cells, 2.38 mm wide: .*across = \d+",
         ),
     ],
 )
@@ -74,7 +74,7 @@ def test_what_cannot_be_layered_is_refused_with_what_to_do(layers, more, reason)
 
 def test_the_advised_cells_take_the_thin_layer():
     data = to_dict(load("layered"))
-    data["barrier"]["layers"][0]["thickness"] = "0.6 mm"
+    data["barrier"]["layers"][0]["thickness"] = "0.2 mm"
     with pytest.raises(SceneError) as told:
         Case.of(read_dict(data))
     data["accuracy"]["across"] = int(told.value.remedy.split("across = ")[1].split(",")[0])

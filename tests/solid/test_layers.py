@@ -211,10 +211,12 @@ def test_each_material_that_yields_has_its_own_zone_and_law():
 
 
 @pytest.mark.long
-def test_a_layer_of_the_base_s_own_material_changes_nothing():
-    plain, layered = (simulate(scene(layers)) for layers in ((), [("2.375 mm", "aluminium-6061-t6")]))
-    assert layered.restitution.impulse.e == pytest.approx(plain.restitution.impulse.e, abs=4e-3)
-    assert layered.energy.plastic_barrier == pytest.approx(plain.energy.plastic_barrier, rel=0.01)
+@pytest.mark.parametrize(("thickness", "near"), [("2.375 mm", 4e-3), ("0.6 mm", 0.015)])
+def test_a_layer_of_the_base_s_own_material_changes_nothing(thickness, near):
+    """The thin one is a quarter as high as its cells are wide."""
+    plain, layered = (simulate(scene(layers)) for layers in ((), [(thickness, "aluminium-6061-t6")]))
+    assert layered.restitution.impulse.e == pytest.approx(plain.restitution.impulse.e, abs=near)
+    assert layered.energy.plastic_barrier == pytest.approx(plain.energy.plastic_barrier, rel=2.5 * near)
 
 
 @pytest.mark.slow
