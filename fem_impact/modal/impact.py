@@ -75,7 +75,7 @@ class ModalResult:
     sites : what touched, in the order of its first touch
     laid : whether a straight part landed flat
     finished, reason : whether the impact is over, and why the march ended
-    other_end : whether it ended because the other end strikes next
+    other_end : s, how much later the other end strikes, for which it ended; infinite where it did not
     last, time : motion and modes at the end, gravity in them, and its time, s
     dents, met : that it leaves, and those of the arrival that it met, in whose place they stand
     record : (m, 17) what moved over time, see `fem_impact.modal.motion`; no rows where none was wanted
@@ -110,7 +110,7 @@ class ModalResult:
     force: float
     finished: bool
     reason: str
-    other_end: bool
+    other_end: float
     last: ModalState
     time: float
     dents: tuple[Dent, ...]
@@ -369,7 +369,7 @@ def _result(
         force=float(tally[SUM.force]),
         finished=over,
         reason=_reason(ended, bounds, float(clock[CLOCK.free])),
-        other_end=ended == NEXT,
+        other_end=float(clock[CLOCK.free]) if ended == NEXT else inf,
         last=now,
         time=float(clock[CLOCK.time]),
         dents=dents[0],

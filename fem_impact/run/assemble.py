@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from math import cos
+from math import cos, inf
 from typing import Self
 
 from fem_impact.arrays import Array
@@ -55,7 +55,7 @@ class ImpactEnd:
     missing : what the energy ledger misses, of E_0
     finished : whether the impact is over
     reason : why the computation ended, a sentence
-    other_end : whether it ended because the other end strikes next
+    other_end : s, how much later the other end strikes, for which it ended; infinite where it did not
     turn : of a barrier that turns: its spin, rad/s, and the rod's mass centre from its own (n, t), m, before
         and after
     """
@@ -71,7 +71,7 @@ class ImpactEnd:
     missing: float
     finished: bool
     reason: str
-    other_end: bool = False
+    other_end: float = inf
     turn: tuple[float, tuple[float, float], tuple[float, float]] | None = None
 
 
@@ -143,8 +143,8 @@ class Reduction:
         shown = () if withheld or cut else unusual(*numbers, case.contact)
         over, alone = end.finished and not failed, case.scene.impact.until == FIRST
         again = strikes_again(case, end.leaving, end.Omega) if over else ""
-        near = open_end(case, end.contacts, end.leaving, end.Omega) if over else ""
-        named_again = named(again) if alone and not end.other_end else ""
+        near = open_end(case, end.contacts, end.leaving, end.Omega, end.other_end) if over else ""
+        named_again = named(again) if alone and end.other_end == inf else ""
         next_one = named_again or (end.reason if alone and again else "")
         of_result = limitations("result", *shown, gravity, next_one, f"{near}." * bool(near))
         outcome = Outcome(

@@ -44,6 +44,7 @@ DEEP = 0.2  # plastic strain at a wedge, that of an indentation as deep as wide 
 SQUARE = 0.8
 ROUND = 0.25
 """Turn of an outline within the contact, over 90 degrees, up to which it bears as a half-space does."""
+SOON = 0.25  # of a contact's time: the other end may have come down before its end in another model
 NEAR_END = 1.5  # of the time that parts two impacts, up to which a gap may lie on its other side
 ROUND_OFF = 1e-6  # a moment impulse over that of the normal impulse at arm d_d: below it there is none
 
@@ -85,13 +86,20 @@ def strikes_again(case: Case, V_n: float, Omega: float) -> str:
     return f"The rod turns another part down faster than it rises, so that it strikes again {when}."
 
 
-def open_end(case: Case, contacts: Array | None, V_n: float, Omega: float) -> str:
+def open_end(case: Case, contacts: Array | None, V_n: float, Omega: float, other_end: float = inf) -> str:
     """Return that it is open whether a next contact belongs to the impact, nothing where it is not.
 
-    ``contacts`` (k, 2) are start and end, s, of each; V_n, m/s, and Omega, rad/s, those after the last one.
+    ``contacts`` (k, 2) are start and end, s, of each; V_n, m/s, and Omega, rad/s, those after the last one;
+    ``other_end``, s, is how much later the other end strikes, for which the impact ended.
     """
     if contacts is None or not len(contacts):
         return ""
+    took = float((contacts[:, 1] - contacts[:, 0]).max())
+    if other_end < SOON * took:
+        return (
+            f"The other end strikes {1e6 * other_end:.0f} us after a contact of {1e6 * took:.0f} us. So soon "
+            "another model, or another mesh, may count it as the same impact"
+        )
     limit, gaps = case.one_impact, [float(gap) for gap in contacts[1:, 0] - contacts[:-1, 1]]
     after = next_strike(case, V_n, Omega)
     # it leaves turned and moved by about what it would be after half of the contact's time

@@ -44,12 +44,12 @@ class ContactWatch:
         self.barrier = np.zeros(0, np.int64)
         if isinstance(contact, SurfaceContact):
             places = contact.rod.places
-            self.barrier = _nodes(layout.barrier, contact.barrier.places)
+            self.barrier = nodes_of(layout.barrier, contact.barrier.places)
             self.border = border(contact.barrier) if moves else np.zeros(0, np.int64)
         else:
             assert contact is not None, "a run has a contact"
             places = contact.nodes
-        self.rod = _nodes(layout.rod, places)
+        self.rod = nodes_of(layout.rod, places)
         self.first, self.last = np.full(len(self.rod), np.inf), np.full(len(self.rod), -np.inf)
         self.impulse = np.zeros((len(self.rod), 2))
         self.pressed, self.deepest = np.zeros(len(self.barrier), bool), np.zeros(len(self.barrier))
@@ -151,7 +151,7 @@ class ContactWatch:
         return float(np.max(self.deepest, where=inside, initial=0.0))
 
 
-def _nodes(layout: Ints, places: Ints) -> Ints:
+def nodes_of(layout: Ints, places: Ints) -> Ints:
     """Return the nodes (k,) of a mesh whose unknowns in ``layout`` (n, 3) are ``places`` (k, 3)."""
     order = np.argsort(layout[:, 2])
     return np.asarray(order[np.searchsorted(layout[order, 2], places[:, 2])])

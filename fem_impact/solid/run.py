@@ -113,7 +113,7 @@ class SolidResult:
     vibration_check: tuple[float, float] | None
     finished: bool
     reason: str
-    other_end: bool
+    other_end: float
     cost: LoopCost
     limitations: tuple[Limitation, ...]
     record: ContactRecord

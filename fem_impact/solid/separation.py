@@ -1,11 +1,12 @@
 """The end of the impact: the rod's exact free flight has no further contact."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
 import numpy as np
 
-from fem_impact.arrays import Array, Ints
+from fem_impact.arrays import Array, Bools, Ints
 from fem_impact.case.case import before_other_end
 from fem_impact.fem.flight import FreeVibration, RigidMotion
 from fem_impact.solid.contact.surface import SurfaceContact
@@ -24,7 +25,10 @@ class Separation:
     The free flight, rigid drift plus all modes, must keep the rod above the barrier for the ``horizon``, s.
     As long as its surface may be lower than the barrier's highest node, the tip in flight is compared with
     the barrier's surface, with its crater, node by node. Where only the tip can touch in the model, ``tail``
-    (k, 3), m, holds the corners of the other end at the start: their strike is another impact.
+    (k, 3), m, holds the corners of the other end at the start: their strike is another impact. Where all of
+    the rod can touch, ``behind`` (m,) marks nodes of the rim in the half of the other end: its strike is
+    another impact as long as none of it has ``touched`` in this one. ``other_end`` is how much later, s, it
+    comes.
     """
 
     moving: ClassVar[tuple[str, ...]] = ()
@@ -33,10 +37,12 @@ class Separation:
     limit: float
     horizon: float
     tail: Array = field(default_factory=lambda: np.zeros((0, 3)))
+    behind: Bools = field(default_factory=lambda: np.zeros(0, bool))
+    touched: Callable[[], bool] = lambda: False
     every: int = 100
     reason: str = ""
     finished: bool = False
-    other_end: bool = False
+    other_end: float = np.inf
 
     @property
     def _sample(self) -> float:
@@ -56,16 +62,15 @@ class Separation:
             return False
         motion, (u_n, u_t) = self.view.rigid(state), self.model.ground.speed(state.v)
         motion = replace(motion, V_n=motion.V_n - u_n, V_t=motion.V_t - u_t)  # as seen from the barrier
-        ahead = min(self.horizon, self._tail_strikes(state, motion))
+        ahead = min(self.horizon, self._tail_strikes(state, motion), self._half_strikes(state, motion))
         if not self._stays_away(state, motion, max(ahead, self._sample)):
             return False
         self.finished = True
         self.reason = (
             f"The rod does not touch again within the next {self.horizon * 1e3:.3g} ms of free flight."
         )
-        self.other_end = ahead < self.horizon
-        if self.other_end:
-            self.reason = before_other_end(ahead)
+        if ahead < self.horizon:
+            self.other_end, self.reason = ahead, before_other_end(ahead)
         return True
 
     def _tail_strikes(self, state: State, motion: RigidMotion) -> float:
@@ -81,6 +86,16 @@ class Separation:
             heights = ground.levelled(along, heights, state.x, ground.spin(state.v) * t)
         down = heights.min(axis=0) < ground.risen(state.x)
         return float(t[np.argmax(down)]) if down.any() else np.inf
+
+    def _half_strikes(self, state: State, motion: RigidMotion) -> float:
+        """Return the time, s from now, until the half of the other end is first to touch; infinite if not."""
+        if not self.behind.any() or self.touched():
+            return np.inf
+        t, ahead = np.arange(0.0, self.horizon, self._sample), self.view.flight(state, self.model)
+        down = self._rim_heights(state, motion, ahead, t) <= self.model.ground.risen(state.x)
+        first = int(np.argmax(down.any(axis=0)))
+        alone = down[self.behind, first].any() and not down[~self.behind, first].any()
+        return float(t[first]) if alone else np.inf
 
     def _stays_away(self, state: State, motion: RigidMotion, until: float) -> bool:
         """Return whether the flight of the next ``until``, s, has no contact."""

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Protocol
 
 import numpy as np
 
-from fem_impact.arrays import Array
+from fem_impact.arrays import Array, Bools, Ints
 from fem_impact.case.cells import body_cell
 from fem_impact.case.size import FRAMES_SPAN
 from fem_impact.fem.geometry import tail_corners
@@ -18,7 +19,7 @@ from fem_impact.files.fields_write import FieldWriter
 from fem_impact.scene.impact import FIRST
 from fem_impact.solid.checkpoint import Moving
 from fem_impact.solid.contact.surface import SurfaceContact
-from fem_impact.solid.contact_watch import ContactWatch
+from fem_impact.solid.contact_watch import ContactWatch, nodes_of
 from fem_impact.solid.fine_zone import SkinWatch
 from fem_impact.solid.march import Observer
 from fem_impact.solid.model import Model
@@ -120,7 +121,6 @@ class Watchers:
         kept = out is not None and scene.save.strain_samples > 0
         if sliced and (kept or scene.save.gauge is not None):
             strain = [StrainWatch.of(case, model, out / "waves.h5" if out and kept else None)]
-        stop = Separation(model, view, case.max_time, case.one_impact, _far_tail(case, model))
         skin, peak = SkinWatch(model, case.slots.bending is not None), PeakForce(model.book)
         added = AddedMass(model.added_mass)
         heat = None
@@ -132,6 +132,9 @@ class Watchers:
         barrier = case.scene.barrier
         moves = barrier.mass is not None or barrier.bends
         contact = ContactWatch(model, case.bodies.stretching_period, moves)
+        tail, behind = _far_tail(case, model), _far_half(case, model, view)
+        touched = partial(_has_touched, contact, case, model)
+        stop = Separation(model, view, case.max_time, case.one_impact, tail, behind, touched)
         # a level is run again without thin cells, a strike of a body that is followed is not
         again = case.record is not None and not case.record.crushed and scene.impact.until == FIRST
         rows = case.zones.skin_rows + case.zones.rod_rows
@@ -174,6 +177,23 @@ def _far_tail(case: Case, model: Model) -> Array:
     touching = model.start[0][contact.rod.places]
     gap = np.linalg.norm(tail[:, None] - touching[None], axis=2).min(axis=1)
     return np.asarray(tail[gap > body_cell(case.bodies)])
+
+
+def _far_half(case: Case, model: Model, view: RodState) -> Bools:
+    """Return which nodes of the rim lie in the half of the tail, where all of a rod may touch a plane."""
+    whole = not isinstance(model.contact, SurfaceContact) and model.rod_stiffness is not None
+    if not whole or case.scene.impact.until != FIRST:  # strikes of a body that is followed go on
+        return np.zeros(0, bool)
+    return _lies_behind(case, model, nodes_of(model.layout.rod, view.rim))
+
+
+def _has_touched(contact: ContactWatch, case: Case, model: Model) -> bool:
+    """Return whether a node in the half of the tail was seen pressed."""
+    return bool(_lies_behind(case, model, contact.rod[contact.last >= 0.0]).any())
+
+
+def _lies_behind(case: Case, model: Model, nodes: Ints) -> Bools:
+    return np.asarray(model.geometry.rod.mesh.points[nodes, 2] > 0.5 * case.bodies.body.length)
 
 
 def _frames(case: Case, model: Model, view: RodState, out: Path, go_on: bool) -> Frames:
