@@ -253,6 +253,8 @@ def _not_compared(value: Num, band: float | None, fidelity: str) -> str:
         return value.reason
     if band is None and fidelity == "modal":
         return "how far the reduced model is off in it is not known; use fidelity solid."
+    if band is None and fidelity == "solid":
+        return "how far the mesh is off in it is not known; accuracy.levels above 1 tells it of most numbers."
     return ""
 
 
@@ -260,7 +262,8 @@ def _not_varied(value: Num, quick: str) -> str:
     """Return why the inputs cannot be varied for a number, empty where they can."""
     if not isinstance(value, Unknown):
         return ""
-    return f"the inputs are varied in the {quick} model, which does not know it: {value.reason}. Take solid."
+    remedy = "--inputs-by solid varies them by finite elements."
+    return f"the inputs are varied in the {quick} model, which does not know it: {value.reason}. {remedy}"
 
 
 def _friction(scene: Scene) -> dict[str, Ends]:

@@ -11,7 +11,7 @@ from fem_impact.evidence.paper.own_data import own_coefficients
 from fem_impact.run.tests import other_impacts
 from fem_impact.scene.own_tests import Camera, read_camera
 from fem_impact.scene.units import option_quantity
-from rigid import Arms, Body, RigidError
+from rigid import Arms, Body, RigidError, point_arms
 
 TESTED = ("length", "diameter", "angle")
 """Options of a tested steel rod that must be given where no scene is."""
@@ -55,4 +55,6 @@ def _arms(stated: Arms | None, rod: Body, alpha: float, camera: Camera) -> tuple
         return stated, "as stated"
     if camera.arms:
         return Arms(*map(np.asarray, camera.arms)), "as the file states"
-    return rod.arms(alpha), "lowest point of the tip's shape"
+    touch = rod.touch(alpha)
+    source = "middle of what lands flat" if touch.length else "lowest point of the tip's shape"
+    return point_arms(rod.z_c, touch.x - rod.x_c, touch.z, alpha), source

@@ -1,6 +1,6 @@
 """The strikes after the first impact, by rigid theory: each with the restitution of its own contact."""
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import copysign, cos, hypot, inf, pi, remainder, sin
@@ -274,7 +274,7 @@ class Followed:
             time_factor=self._time_factor(finish),
             way=end.along,
             hardest_energy=_hardest([one.lost for one in each]),
-            hardest_force=_hardest([one.force for one in each]),
+            hardest_force=_hardest_force(each),
             hardest_heat=_hardest([one.friction for one in each]),
             other_end=other_end(each, case.contact.body.length),
             gravity=self.gravity,
@@ -381,7 +381,19 @@ class Followed:
         return "tip" if place[1] + body.z_c < 0.5 * body.length else "tail"
 
 
-def _hardest(values: Iterable[float | None]) -> int | Unknown:
-    """Return the number, from 1, of the largest value that is known."""
-    known_ones = [(value, -number) for number, value in enumerate(values, 1) if value is not None]
-    return -max(known_ones)[1] if known_ones else NO_FORCE
+def _hardest(values: Sequence[float]) -> int:
+    """Return the number, from 1, of the largest value."""
+    return 1 + max(range(len(values)), key=lambda at: values[at])
+
+
+def _hardest_force(each: Sequence[StrikeRecord]) -> int | Unknown:
+    """Return the number, from 1, of the strike with the largest force; unknown if a faster one has none."""
+    if all(one.force is None for one in each):
+        return NO_FORCE
+    number = _hardest([-1.0 if one.force is None else one.force for one in each])
+    faster = [
+        n for n, one in enumerate(each, 1) if one.force is None and one.approach > each[number - 1].approach
+    ]
+    if faster:
+        return Unknown(f"strike {faster[0]}, which is faster, is one without duration, and has no force")
+    return number
