@@ -13,6 +13,7 @@ from fem_impact.scene.own_tests import Camera, read_camera
 from fem_impact.scene.units import option_quantity
 from rigid import Arms, Body, RigidError, point_arms
 
+ROUND_OFF = 1e-12  # of the length: an arm below is 0
 TESTED = ("length", "diameter", "angle")
 """Options of a tested steel rod that must be given where no scene is."""
 
@@ -29,7 +30,8 @@ def coefficients(options: Options) -> int:
     camera = read_camera(options.file)
     arms, source = _arms(stated, rod, alpha, camera)
     try:
-        document = own_coefficients(camera, rod, tip, alpha, arms, source)
+        with np.errstate(divide="ignore", invalid="ignore"):  # no moment coefficient without an arm
+            document = own_coefficients(camera, rod, tip, alpha, arms, source)
     except RigidError as error:
         raise SceneError(f"{error}.", source=str(options.file), remedy="Check signs and arms.") from None
     document = {"file": str(options.file), **document}
@@ -57,4 +59,6 @@ def _arms(stated: Arms | None, rod: Body, alpha: float, camera: Camera) -> tuple
         return Arms(*map(np.asarray, camera.arms)), "as the file states"
     touch = rod.touch(alpha)
     source = "middle of what lands flat" if touch.length else "lowest point of the tip's shape"
-    return point_arms(rod.z_c, touch.x - rod.x_c, touch.z, alpha), source
+    arms = point_arms(rod.z_c, touch.x - rod.x_c, touch.z, alpha)
+    least = ROUND_OFF * rod.length
+    return Arms(*(np.where(np.abs(arm) < least, 0.0, arm) for arm in arms)), source

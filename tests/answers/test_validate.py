@@ -5,7 +5,7 @@ import pytest
 
 from fem_impact.answers.compare import compare, measured_value
 from fem_impact.answers.v_and_v import joint
-from fem_impact.answers.validate import interval_of, validate
+from fem_impact.answers.validate import _not_compared, interval_of, validate
 from fem_impact.cli.main import main
 from fem_impact.errors import ResultError, SceneError, UsageError
 from fem_impact.run import tests as own_tests
@@ -98,6 +98,11 @@ def test_inputs_are_varied_in_the_fidelity_asked_for_and_a_number_that_it_lacks_
     assert "varied in the rigid model, which does not know it" in found.unknown["E_vib_over_E_0"]
     with pytest.raises(UsageError, match="is no fidelity"):
         validate(scene, UNCERTAIN, inputs_by="coarse")
+
+
+def test_a_number_of_meshes_without_a_band_is_not_compared():
+    assert "how far the mesh is off in it is not known" in _not_compared(1.5e-4, None, "solid")
+    assert _not_compared(1.5e-4, 1e-6, "solid") == ""
 
 
 def test_any_number_of_an_outcome_may_be_measured(tmp_path):

@@ -14,7 +14,7 @@ from fem_impact.options import RunOptions
 from fem_impact.outcome.groups import texts
 from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.record import Outcome
-from fem_impact.run.common import NO_PUSH, barrier_motion, motion, restitution
+from fem_impact.run.common import NO_PUSH, barrier_motion, motion, open_end, restitution
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.read import read_dict, read_toml
 from fem_impact.scene.shipped import load, replace_all
@@ -253,3 +253,21 @@ def test_a_scene_in_another_size_has_the_same_answer(angle):
     here, there = (simulate(replace_all(load("t5b"), changes | size), "modal") for size in ({}, small))
     for key in ("e_edge", "mu", "E_vib_over_E_0", "W_friction_over_E_0"):
         assert there.estimate(key)[0] == pytest.approx(here.estimate(key)[0], rel=1e-4)
+
+
+@pytest.mark.long
+def test_an_impact_ends_before_the_other_end_strikes_on_a_plane_too():
+    """All skin of a rod that deforms may touch a rigid plane: its other end comes 0.8 ms later."""
+    changed = {"projectile.length": "0.24 m", "impact.angle": "89 deg", "impact.v_n": "-2 m/s"}
+    elastic = {"effects": ["vibration", "barrier-rigid"], "impact.v_t": "0 m/s", "accuracy.levels": 1}
+    scene = replace_all(load("t5b"), changed | elastic)
+    modal, solid = (simulate(scene, fidelity) for fidelity in ("modal", "solid"))
+    assert "other end strikes 0.7" in solid.validity.stopped_because
+    assert len(solid.contact.intervals) == len(modal.contact.intervals) == 2
+    assert solid.motion.Omega == pytest.approx(modal.motion.Omega, rel=0.05)
+
+
+def test_an_other_end_that_strikes_at_once_leaves_the_end_of_the_impact_open():
+    case, contacts = Case.of(load("t5b"), "modal"), np.array([[0.0, 100e-6]])
+    assert open_end(case, contacts, 1.0, 0.0, 20e-6).startswith("The other end strikes 20 us after")
+    assert open_end(case, contacts, 1.0, 0.0, 30e-6) == ""

@@ -297,15 +297,14 @@ def sequence_verdict(scene: Scene, tolerance: float) -> list[str]:
     """Return sentences: rigid theory beside the reduced model in the hardest strike and in all of them.
 
     ``tolerance`` is the share of a speed and of E_0 that may be neglected. Strikes that are not of the same
-    part in all of the sequences that hold the reduced model's errors decide nothing.
-
-    Raises
-    ------
-    SceneError
-        A model cannot compute the scene.
+    part in all of the sequences that hold the reduced model's errors decide nothing; nor does a sequence that
+    one of the models cannot follow.
     """
     plain = replace(scene, strikes=replace(scene.strikes, fidelity=Following().fidelity))
-    rigid, modal = (simulate(plain, fidelity).strikes for fidelity in ("rigid", "modal"))
+    try:
+        rigid, modal = (simulate(plain, fidelity).strikes for fidelity in ("rigid", "modal"))
+    except SceneError as error:
+        return [f"The sequence is not known: {error}"]
     for strikes in (rigid, modal):
         if isinstance(strikes.each, Unknown):
             return [f"The sequence is not known: {strikes.each.reason}."]

@@ -205,3 +205,15 @@ def test_text_names_arms_intervals_and_sources(cli, camera_file):
         "from the contact point",
     ):
         assert words in out
+
+
+def test_a_face_that_lands_flat_is_met_in_its_middle(cli, camera_file):
+    """V_n of -2 and 0.8 m/s, and a spin of 10 rad/s that has no arm there: e = 0.4."""
+    flat = [option if option != "45 deg" else "0 deg" for option in ROD]
+    path = camera_file(*(f"{test},-2,0,0.8,0,10" for test in (1, 2, 3)))
+    code, out, err = cli("coefficients", path, *flat, "--tip", "plain", "--json")
+    assert (code, err) == (0, "")
+    document = json.loads(out)
+    assert document["arms"]["d_c_m"] == 0.0
+    assert document["arms"]["source"] == "middle of what lands flat"
+    assert document["coefficients"]["e"]["value"] == pytest.approx(0.4, rel=1e-12)

@@ -52,3 +52,10 @@ def test_the_speed_of_the_other_end_is_told_beside_the_first(angle, ends):
         return
     modal = simulate(scene, "modal").strikes
     assert f"strikes {modal.other_end:.3g} times as fast" in sequence_verdict(scene, 0.05)[-1]
+
+
+def test_a_sequence_that_a_model_refuses_does_not_refuse_the_verdict_on_the_first_strike():
+    flank = {"impact.angle": "60 deg", "projectile.tip": "A", "projectile.tip_radius": "10 mm"}
+    flank["projectile.diameter"] = "20 mm"
+    (told,) = sequence_verdict(replace_all(load("quick"), FLOOR | flank), 0.05)
+    assert told.startswith("The sequence is not known: impact.angle") and "straight side" in told
