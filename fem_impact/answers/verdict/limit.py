@@ -355,7 +355,8 @@ def limit_document(v: LimitVerdict, command: str) -> dict[str, Any]:
     of, bound = v.criterion, v.bound
     over = " and ".join(f"{key} from {ends}" for key, ends in v.intervals.items())
     where = f", {over}" if over else ""
-    box = [[f"Does {of.called} stay below {_in_unit(of, v.limit)}{where}?", f"{v.answer.upper()}."]]
+    question = f"Does {of.called} stay below {_in_unit(of, v.limit)} in the first impact{where}?"
+    box = [[question, f"{v.answer.upper()}."]]
     if bound is not None:
         at = ", ".join(f"{key} {value}" for key, value in v.worst.items())
         size = "" if v.margin is None else _apart(of, abs(v.margin))
