@@ -337,6 +337,6 @@ def _totals(strikes: Strikes) -> str:
     came = f"{before:.3g} J before the first strike"
     came += f" and {gave:.3g} J from gravity" if abs(gave) > least else ""
     left = strikes.left if isinstance(strikes.left, Unknown) or strikes.left > least else 0.0
-    kept = "" if isinstance(left, Unknown) else f" the body keeps {left:.3g} J;"
+    kept = "" if isinstance(left, Unknown) else f" the body keeps {left:.3g} J, vibration included;"
     ends = "The last of them" if strikes.end in ("bounces on", "loses nothing") else "The end"
     return f"{ends} comes{time}. Of {came}{kept} the rest: {sums or 'nothing'}.{rubbed}"
