@@ -171,6 +171,7 @@ SIGNED = "alpha", "mu"
 KEYS = {key.path[-1]: key.name for key in keys_of(StrikeRecord)}
 PAST_ENDS = 1e-3  # of e, beyond 0 and 1, that is told
 ROUND_OFF = 1e-9  # of the energy before the first strike, below which nothing is told
+AGREED = 32  # of 64 sequences, in which a strike is the hardest at least to be named as it without doubt
 SHOWN = 12
 """Strikes that are listed where nothing says how many are certain; all of them stand in strikes.csv."""
 SPREAD = ("strike", "tip", "tail", "other", "none", "time, ms", "approach, m/s")
@@ -297,6 +298,8 @@ def _hardest(strikes: Strikes) -> list[str]:
         if isinstance(number, Unknown) or size(each[number - 1]) <= ROUND_OFF * each[0].before:
             continue  # no strike has any
         first, same = "", "" if isinstance(agree, Unknown) else f", the hardest in {agree} of 64 sequences"
+        if not isinstance(agree, Unknown) and agree < AGREED:
+            first = " not certain;"
         if agree == 0:
             same = ", in none of the 64 sequences of the reduced model that hold its errors"
         if certain is not None and number > certain:

@@ -61,6 +61,7 @@ def test_numbers_that_look_wrong_are_explained(rattle):
     words = " ".join(told(given))
     assert "e below 0 or above 1 in strikes 2, 3:" in words
     assert "in 0 of 64" not in words and "in none of the 64 sequences" in words
+    assert "not certain; strike" in words
 
 
 def test_more_strikes_than_modes_compute_are_those_of_a_rigid_body(monkeypatch):
