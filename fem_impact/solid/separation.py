@@ -62,8 +62,10 @@ class Separation:
             return False
         motion, (u_n, u_t) = self.view.rigid(state), self.model.ground.speed(state.v)
         motion = replace(motion, V_n=motion.V_n - u_n, V_t=motion.V_t - u_t)  # as seen from the barrier
-        ahead = min(self.horizon, self._tail_strikes(state, motion), self._half_strikes(state, motion))
-        if not self._stays_away(state, motion, max(ahead, self._sample)):
+        flight = self.view.flight(state, self.model)
+        half = self._half_strikes(state, motion, flight)
+        ahead = min(self.horizon, self._tail_strikes(state, motion), half)
+        if not self._stays_away(state, motion, flight, max(ahead, self._sample)):
             return False
         self.finished = True
         self.reason = (
@@ -87,22 +89,21 @@ class Separation:
         down = heights.min(axis=0) < ground.risen(state.x)
         return float(t[np.argmax(down)]) if down.any() else np.inf
 
-    def _half_strikes(self, state: State, motion: RigidMotion) -> float:
+    def _half_strikes(self, state: State, motion: RigidMotion, flight: FreeVibration) -> float:
         """Return the time, s from now, until the half of the other end is first to touch; infinite if not."""
         if not self.behind.any() or self.touched():
             return np.inf
-        t, ahead = np.arange(0.0, self.horizon, self._sample), self.view.flight(state, self.model)
-        down = self._rim_heights(state, motion, ahead, t) <= self.model.ground.risen(state.x)
+        t = np.arange(0.0, self.horizon, self._sample)
+        down = self._rim_heights(state, motion, flight, t) <= self.model.ground.risen(state.x)
         first = int(np.argmax(down.any(axis=0)))
         alone = down[self.behind, first].any() and not down[~self.behind, first].any()
         return float(t[first]) if alone else np.inf
 
-    def _stays_away(self, state: State, motion: RigidMotion, until: float) -> bool:
+    def _stays_away(self, state: State, motion: RigidMotion, flight: FreeVibration, until: float) -> bool:
         """Return whether the flight of the next ``until``, s, has no contact."""
-        ahead, contact = self.view.flight(state, self.model), self.model.contact
-        t = np.arange(0.0, until, self._sample)
+        t, contact = np.arange(0.0, until, self._sample), self.model.contact
         ground, x = self.model.ground, state.x
-        lowest, risen = self._rim_heights(state, motion, ahead, t).min(axis=0), ground.risen(x)
+        lowest, risen = self._rim_heights(state, motion, flight, t).min(axis=0), ground.risen(x)
         if not isinstance(contact, SurfaceContact):
             return bool(lowest.min() > risen)
         surface = contact.barrier.places
@@ -115,7 +116,7 @@ class Separation:
         places, spin = contact.rod.places, ground.spin(state.v)
 
         def clearance(s: float) -> float:
-            moved = flown(x, places, motion, ahead, s)
+            moved = flown(x, places, motion, flight, s)
             moved[places[:, 2]] -= base
             moved[surface] = ground.turned_on(moved[surface], x, spin * s)
             return contact.clearance(moved)

@@ -169,8 +169,8 @@ class Watchers:
 def _far_tail(case: Case, model: Model) -> Array:
     """Return the corners (k, 3), m, of the rod's tail at the start that no skin of the contact reaches."""
     contact = model.contact
-    if not isinstance(contact, SurfaceContact) and model.rod_stiffness is not None:
-        return np.zeros((0, 3))  # all skin of a rod that deforms may touch a plane
+    if _all_touches(model):
+        return np.zeros((0, 3))
     tail = tail_corners(case.bodies)
     if not isinstance(contact, SurfaceContact):
         return tail
@@ -180,11 +180,15 @@ def _far_tail(case: Case, model: Model) -> Array:
 
 
 def _far_half(case: Case, model: Model, view: RodState) -> Bools:
-    """Return which nodes of the rim lie in the half of the tail, where all of a rod may touch a plane."""
-    whole = not isinstance(model.contact, SurfaceContact) and model.rod_stiffness is not None
-    if not whole or case.scene.impact.until != FIRST:  # strikes of a body that is followed go on
+    """Return which nodes of the rim lie in the half of the tail, where all of a rod may touch."""
+    if not _all_touches(model) or case.scene.impact.until != FIRST:  # strikes of a followed body go on
         return np.zeros(0, bool)
     return _lies_behind(case, model, nodes_of(model.layout.rod, view.rim))
+
+
+def _all_touches(model: Model) -> bool:
+    """Return whether all skin of the rod may touch: of one that deforms, on a plane."""
+    return not isinstance(model.contact, SurfaceContact) and model.rod_stiffness is not None
 
 
 def _has_touched(contact: ContactWatch, case: Case, model: Model) -> bool:
