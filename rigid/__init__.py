@@ -9,7 +9,7 @@ Equation numbers are those of Averill, Ingram, Holborn and Battersby (see ``expe
 """
 
 from . import shapes
-from .arms import Arms, corner_arms, point_arms
+from .arms import Arms, corner_arms, point_arms, touch_arms
 from .coefficients import Coefficients, coefficients, impulse_centre, impulse_ratio, restitution
 from .drop import GRAVITY, drop_velocities
 from .faceted import Faceted
@@ -93,5 +93,6 @@ __all__ = [
     "sliding_path",
     "solve",
     "solve_free",
+    "touch_arms",
     "worst_case",
 ]

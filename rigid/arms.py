@@ -5,7 +5,10 @@ from typing import NamedTuple
 import numpy as np
 
 from .inputs import ArrayLike, Floats, floats
-from .touch import on_side
+from .touch import Touch, on_side
+
+ROUND_OFF = 1e-12
+"""Share of its distance from the mass centre below which an arm of a point is 0."""
 
 
 class Arms(NamedTuple):
@@ -20,6 +23,13 @@ def point_arms(z_c: float, x: ArrayLike, z: ArrayLike, alpha: ArrayLike) -> Arms
     x, z = floats(x, z)
     sin, cos = np.sin(alpha), np.cos(alpha)
     return Arms((z_c - z) * sin - x * cos, (z_c - z) * cos + x * sin)
+
+
+def touch_arms(touch: Touch, x_c: float, z_c: float, alpha: float) -> Arms:
+    """Arms, m, of the middle of what touches first about a mass centre (x_c, z_c), m; 0 below `ROUND_OFF`."""
+    arms = point_arms(z_c, touch.x - x_c, touch.z, alpha)
+    least = ROUND_OFF * np.hypot(*arms)
+    return Arms(*(np.where(np.abs(arm) < least, 0.0, arm) for arm in arms))
 
 
 def corner_arms(length: ArrayLike, diameter: ArrayLike, alpha: ArrayLike) -> Arms:

@@ -11,9 +11,8 @@ from fem_impact.evidence.paper.own_data import own_coefficients
 from fem_impact.run.tests import other_impacts
 from fem_impact.scene.own_tests import Camera, read_camera
 from fem_impact.scene.units import option_quantity
-from rigid import Arms, Body, RigidError, point_arms
+from rigid import Arms, Body, RigidError, touch_arms
 
-ROUND_OFF = 1e-12  # of the length: an arm below is 0
 TESTED = ("length", "diameter", "angle")
 """Options of a tested steel rod that must be given where no scene is."""
 
@@ -59,6 +58,4 @@ def _arms(stated: Arms | None, rod: Body, alpha: float, camera: Camera) -> tuple
         return Arms(*map(np.asarray, camera.arms)), "as the file states"
     touch = rod.touch(alpha)
     source = "middle of what lands flat" if touch.length else "lowest point of the tip's shape"
-    arms = point_arms(rod.z_c, touch.x - rod.x_c, touch.z, alpha)
-    least = ROUND_OFF * rod.length
-    return Arms(*(np.where(np.abs(arm) < least, 0.0, arm) for arm in arms)), source
+    return touch_arms(touch, rod.x_c, rod.z_c, alpha), source

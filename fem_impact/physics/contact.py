@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 from fem_impact.arrays import Array
 from fem_impact.scene.material import Material
-from rigid import Body, Faceted, Touch, point_arms, sliding_path
+from rigid import Body, Faceted, Touch, sliding_path, touch_arms
 
 LIMIT_PRESSURE = 2.8  # mean pressure of a fully plastic indentation over the yield stress
 SECTION = 1.8412  # first zero of J1': cut-off k R of shear modes within the round section
@@ -133,8 +133,7 @@ class ContactPair:
     @cached_property
     def arms(self) -> tuple[float, float]:
         """(d_c, d_d), m, of the middle of what touches first."""
-        x, z = self.touch_point
-        d_c, d_d = point_arms(self.body.z_c, x - self.body.x_c, z, self.angle)
+        d_c, d_d = touch_arms(self.touch, self.body.x_c, self.body.z_c, self.angle)
         return float(d_c), float(d_d)
 
     @property

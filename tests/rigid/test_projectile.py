@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from rigid import Projectile, ShapeError, corner_arms
+from rigid import Projectile, ShapeError, corner_arms, touch_arms
 
 SIZES = [(0.24, "A", 0.007), (0.24, "B", 0.003), (0.08, "B", 0.003), (0.08, "plain", 0.0)]
 
@@ -78,6 +78,14 @@ def test_edge_arms_closed_form():
     d_c, d_d = p.arms(a)
     np.testing.assert_allclose(d_c, (p.z_c - r) * np.sin(a) - (0.0095 - r) * np.cos(a), rtol=1e-12)
     np.testing.assert_allclose(d_d, (p.z_c - r) * np.cos(a) + (0.0095 - r) * np.sin(a) + r, rtol=1e-12)
+
+
+def test_what_lands_flat_acts_at_its_middle_and_an_arm_of_round_off_is_none():
+    pin = rod(tip="plain", tip_radius=0.0)
+    for angle, height in ((0.0, 0.04), (-np.pi / 2, 0.0095), (np.pi / 2, 0.0095)):
+        d_c, d_d = touch_arms(pin.touch(angle), pin.x_c, pin.z_c, angle)
+        assert d_c == 0.0
+        assert d_d == pytest.approx(height, rel=1e-12)
 
 
 def test_edge_arms_of_the_published_rod():
