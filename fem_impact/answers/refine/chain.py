@@ -381,7 +381,7 @@ class LevelChain:
             return "cells were crushed, and finer ones would be sooner: fidelity rigid or modal has none"
         if self.refused or self.following is not None:
             return "a finer level gave no result" if self.refused else "a larger budget adds a finer level"
-        return self.meshes.remedy(self._asked)
+        return self.meshes.remedy(self._asked, forecast.about_s(self.forecast_s(self.done[-1].splits + 1)))
 
     def advice(self, before_s: float = 0.0, halvings: int = 1) -> tuple[str, int | None]:
         """Return what finer levels would take, or why none is made; the budget for them, s, or None.

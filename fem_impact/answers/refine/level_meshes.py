@@ -108,14 +108,17 @@ class LevelMeshes:
         least, most = WHOLE
         return least * last_s, most * last_s
 
-    def remedy(self, asked: int) -> str:
-        """Say what in the scene adds a finer level to the ``asked`` ones that ran, or why nothing does."""
+    def remedy(self, asked: int, takes: str) -> str:
+        """Say what in the scene adds a finer level to the ``asked`` ones that ran, or why nothing does.
+
+        ``takes`` is the wall time of that level, as text.
+        """
         if self.is_sized:
-            return "a smaller accuracy.tip_size adds a finer level"
+            return f"a smaller accuracy.tip_size adds a finer level (half of it: about {takes} more)"
         more = 1 + max(now := self._levels, asked)
         if more > MOST_LEVELS:
             return f"accuracy.levels is at most {MOST_LEVELS}"
-        return f"accuracy.levels = {more} in place of {now} adds a finer level"
+        return f"accuracy.levels = {more} in place of {now} adds a finer level (about {takes} more)"
 
     def lacking(self, splits: int, contact: ContactRecord, finest: int) -> str:
         """Say how often cells that are split so often would be halved for the contact found; empty: never."""
