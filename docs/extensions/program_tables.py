@@ -46,6 +46,10 @@ _PLACES = {"material": "`[projectile.material]` and `[barrier.material]`", "top"
 _PLACES |= {
     "tube": "`[projectile]`, of a tube",
     "motion": "`[impact]` on a barrier that moves",
+    "point": "A point of `projectile.profile` or `projectile.bore`",
+    "shape": "`[projectile]`, of a `shape`",
+    "sliding": "`surface.sliding_law`, a table",
+    "layer": "A layer of `barrier.layers`",
 }
 _LAWS = {"rate": fields.RATES, "flow": fields.FLOWS}
 _PLACES["skin"] = "`skin` of a material"
@@ -69,7 +73,6 @@ def _groups() -> Iterator[tuple[str, tuple[Parameter, ...]]]:
     for name, value in vars(fields).items():
         if _parameters(value):
             yield name.strip("_").lower(), value
-    yield "skin", fields.SKIN
     for key, laws in _LAWS.items():
         yield from ((f"{key} {law}", numbers) for law, numbers in laws.items() if numbers)
 

@@ -3,7 +3,7 @@
 A point force F moves an infinite thin plate at F / Z, Z = 8 sqrt(D rho h), D = E h^3 / (12 (1 - nu^2)): the
 plate takes energy like a dashpot, for bending waves carry it away (drive-point mobility of an infinite plate,
 Cremer, Heckl & Petersson 2005, Structure-Borne Sound, doi:10.1007/b137728). A striker of mass m and Hertz
-stiffness k at speed v touches for about T = (m / (k sqrt(v)))^(2/5), and lambda = m / (Z T) says how much of
+stiffness k at speed v touches for 3.2 T, T = (m / (k sqrt(v)))^(2/5), and lambda = m / (Z T) says how much of
 its energy goes that way (Zener 1941, doi:10.1103/PhysRev.59.669; derived in the open in Mathematics 2021, 9,
 2222).
 """

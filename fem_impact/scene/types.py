@@ -101,6 +101,10 @@ class Heating:
 
     def __post_init__(self) -> None:
         fields.check_numbers(self, fields.HEATING)
+        if self.ambient >= self.ignition:
+            problem = f"must lie below the temperature that the contact must not reach, {self.ignition:g} K."
+            remedy = "A lower ambient, or a higher ignition."
+            raise SceneError(problem, key="ambient", value=f"{self.ambient:g} K", remedy=remedy)
 
 
 @dataclass(frozen=True, slots=True)

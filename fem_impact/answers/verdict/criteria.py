@@ -229,9 +229,9 @@ class HeatCriterion(Limited):
             for share, doubt in ((told(name), doubt) for name, doubt in unsure.items())
         )
         return (
-            f"the power of friction alone, over the mean of the patch, in the first strike. Friction takes "
-            f"{friction}. More can heat the contact: W_skin, friction and the plastic work down to "
-            f"0.1 mm below both surfaces, {skin}."
+            f"the power of friction alone, over the mean of the patch, in the first strike; spots in it may "
+            f"be hotter. Friction takes {friction}. More can heat the contact: W_skin, friction and the "
+            f"plastic work down to 0.1 mm below both surfaces, {skin}."
         )
 
     def of_reduced(self, case: Case, result: ModalResult) -> float:

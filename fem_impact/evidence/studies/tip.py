@@ -170,7 +170,7 @@ def _report(runs: Runs) -> StudyReport:
         "Table 3: tip A or tip B?",
         sentences,
         sheets=[_momentum_sheet(), *([_model_sheet(rows)] if {*TIPS} <= {*rows.get("tip", ())} else [])],
-        assumptions=["Tip A is shown beside the thirteen sets, which have tip B, and counted nowhere."],
+        assumptions=["Runs with tip A in place of B are shown beside the sets, and counted nowhere."],
         conclusions=[("", sentence) for sentence in sentences],
     )
 
