@@ -10,6 +10,8 @@ class FemImpactError(ValueError):
     """Anything a user can cause and mend; the message names the cause and the remedy, in printable text."""
 
     exit_code: ClassVar[int] = 1
+    lasting: ClassVar[bool] = False
+    """Whether the same computation, made again, would end so again."""
 
     def __init__(self, message: str = "") -> None:
         super().__init__(printable(message))
@@ -59,6 +61,7 @@ class SceneError(StatementError):
     """A scene, a rod or a parameter that is understood and cannot be run as stated."""
 
     exit_code: ClassVar[int] = 3
+    lasting: ClassVar[bool] = True
 
     def under(self, prefix: str, source: str = "") -> "SceneError":
         """Return the same complaint, with its key placed below ``prefix`` and its file named."""
@@ -90,6 +93,7 @@ class RunError(FemImpactError):
     """A run that began and could not be finished or trusted."""
 
     exit_code: ClassVar[int] = 6
+    lasting: ClassVar[bool] = True
 
 
 class MissingLibraryError(FemImpactError):

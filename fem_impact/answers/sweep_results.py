@@ -149,7 +149,7 @@ class Results(Sequence[SweepRow]):
         """
         import numpy as np
 
-        plain = name.removesuffix(LOW).removesuffix(HIGH)
+        plain = name if name in COLUMNS else name.removesuffix(LOW).removesuffix(HIGH)
         table = self.table((plain,) if plain in COLUMNS else ())
         if name not in table.names:
             names = (*table.names, *COLUMNS)

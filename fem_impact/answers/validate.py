@@ -42,6 +42,11 @@ FRICTION = "surface.friction"
 TERMS = ("S", "D", "E", "u_num", "u_input", "u_D")
 ERRORS = ("number", "model S", "tests D", "S - D", "u_num", "u_input", "u_D", "verdict")
 """Attributes of a `Comparison` and the words of its table."""
+# of the correlations of the errors: below it, one of them follows from the others as far as is known
+LEAST_EIGENVALUE = 1e-6
+NOT_APART = Unknown(
+    "is not known: the tests and the uncertain inputs are too few to tell how these numbers vary apart"
+)
 CORNERS = 256  # of the intervals, tried before any run
 Ends = tuple[Any, Any] | str
 Interval = tuple[str, float, float, str]
@@ -60,7 +65,7 @@ class Validation:
     total : (inputs, numbers) Sobol's total indices
     joined : numbers of the joint statement
     distance, p : Mahalanobis' distance squared of their errors, and the probability of a larger one if the
-        model has no error
+        model has no error, or why there are none
     varied : fidelity in which the inputs were varied
     doubtful : numbers in which that one is off the compared one by more than `COVERAGE` u_val
     runs : of that
@@ -71,8 +76,8 @@ class Validation:
     inputs: tuple[str, ...]
     total: Array
     joined: tuple[str, ...]
-    distance: float
-    p: float
+    distance: Num
+    p: Num
     varied: str
     doubtful: tuple[str, ...]
     runs: int
@@ -87,8 +92,9 @@ class Validation:
     @property
     def _jointly(self) -> str:
         better, part = self.better
+        p = self.p.reason if isinstance(self.p, Unknown) else f"p = {self.p:.2g}"
         return (
-            f"jointly ({', '.join(self.joined)}) p = {self.p:.2g}; "
+            f"jointly ({', '.join(self.joined)}) {p}; "
             f"measure better: {better}, {100 * part:.0f} % of u_val squared"
         )
 
@@ -151,10 +157,16 @@ def validate(
     >>> found.inputs, found.joined
     (('surface.friction',), ('Omega', 'e', 'mu'))
     """
+    if samples < 2 or samples & (samples - 1):
+        remedy = "Write 16, 32, 64 or 128."
+        raise UsageError("is no power of two.", key="samples", value=samples, remedy=remedy)
     tests = tests_of(scene)
     if tests is None:
         raise SceneError("is missing: there is nothing to compare with.", key="measured", remedy=_TESTS)
     uncertainties = _friction(scene) if uncertain is None else uncertain
+    if not uncertainties:
+        remedy = 'Give one, such as {"impact.angle": ("44 deg", "46 deg")}.'
+        raise UsageError("names no interval.", key="uncertain", remedy=remedy)
     intervals = [interval_of(scene, key, ends) for key, ends in uncertainties.items()]
     for corner in islice(product((0.0, 1.0), repeat=len(intervals)), CORNERS):
         at_place(scene, intervals, np.array(corner))
@@ -166,7 +178,7 @@ def validate(
     keys = [KEYS.get(name, name) for name in names]
     with watched(options.progress) as meter:
         options = replace(options, progress=meter)
-        compared, nominal = (simulate(scene, by, options) for by in (fidelity, quick))
+        compared, nominal = (simulate(_for(scene, by), by, options) for by in (fidelity, quick))
         computed = [measured_value(compared, key) for key in keys]
         varied = [measured_value(nominal, key)[0] for key in keys]
         unknown = {
@@ -179,7 +191,8 @@ def validate(
             raise SceneError("state nothing that the model knows.", key="measured", remedy=_TESTS)
 
         def numbers(place: Array) -> list[float]:
-            outcome = simulate(at_place(scene, intervals, place), quick, RunOptions(progress=silent))
+            one = at_place(_for(scene, quick), intervals, place)
+            outcome = simulate(one, quick, RunOptions(progress=silent))
             return [known(measured_value(outcome, keys[i])[0]) for i in seen]
 
         total, drawn = sobol(numbers, len(intervals), samples, meter)
@@ -194,7 +207,7 @@ def validate(
     C = moved[free] @ moved[free].T / moved.shape[1]
     C += np.diag([comparisons[j].u_num ** 2 for j in free])
     C += tests.covariance([names[seen[j]] for j in free])
-    distance, p = joint(np.array([comparisons[j].E for j in free]), C)
+    distance, p = _together(np.array([comparisons[j].E for j in free]), C)
     return Validation(
         comparisons=comparisons,
         unknown=unknown,
@@ -245,6 +258,19 @@ def sobol(
 
 
 _TESTS = 'Name a file of tests in the scene: measured = "my_tests.csv".'
+
+
+def _for(scene: Scene, fidelity: str) -> Scene:
+    """Return the scene for a fidelity: only finite elements have a mesh that could be refined to an error."""
+    return scene if fidelity == "solid" else replace(scene, accuracy=replace(scene.accuracy, target=None))
+
+
+def _together(E: Array, C: Array) -> tuple[Num, Num]:
+    """Return what `joint` does of errors (k,) and their covariance (k, k), or why it says nothing."""
+    u = np.sqrt(np.diag(C))
+    if not u.all() or np.linalg.eigvalsh(C / np.outer(u, u))[0] < LEAST_EIGENVALUE:
+        return NOT_APART, NOT_APART
+    return joint(E, C)
 
 
 def _not_compared(value: Num, band: float | None, fidelity: str) -> str:

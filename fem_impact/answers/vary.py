@@ -74,13 +74,23 @@ def cases(scene: Scene, vary: Mapping[str, Iterable[Any]]) -> list[Variation]:
     return every
 
 
+def quantity(text: str) -> tuple[str, str] | None:
+    """Return number and unit of a text, that empty where it has none; None of a name such as 42crmo4."""
+    match = QUANTITY.fullmatch(text)
+    if match is None:
+        return None
+    unit = (match[2] or "").strip()
+    is_known = unit in ("", "%") or any(kind.unit(unit) for kind in DIMENSIONS.values())
+    return (match[1], unit) if is_known else None
+
+
 def measure(value: Any) -> tuple[float | str, str]:
     """Return number and unit of a stated value, a text and no unit where it is none."""
     if isinstance(value, bool) or not isinstance(value, int | float | str):
         return named(value), ""
-    match = QUANTITY.fullmatch(value) if isinstance(value, str) else None
     if isinstance(value, str):
-        return (float(match[1]), (match[2] or "").strip()) if match else (value, "")
+        found = quantity(value)
+        return (float(found[0]), found[1]) if found else (value, "")
     return float(value), ""
 
 

@@ -18,7 +18,7 @@ from fem_impact.cli import scene_options
 from fem_impact.cli.parser import Options, stated_budget
 from fem_impact.cli.paths import checked_out
 from fem_impact.cli.terminal import print_answer
-from fem_impact.cli.values import read_values
+from fem_impact.cli.values import read_all
 from fem_impact.errors import SceneError, UsageError
 from fem_impact.figures.panels import Picture
 from fem_impact.files.run_directory import refuse_other_scene
@@ -104,7 +104,7 @@ def _limited(options: Options, scene: Scene) -> tuple[dict[str, Any], None]:
             remedy = f'Give what it must stay below, such as --limit "{EXAMPLES[criterion.dimension]}".'
             raise UsageError(f"is missing beside --for {options.question}.", key="--limit", remedy=remedy)
         limit = option_quantity(options.limit, criterion.dimension, "--limit")
-    uncertain: dict[str, Any] = dict(read_values(text) for text in options.uncertain)
+    uncertain: dict[str, Any] = read_all(options.uncertain, "--uncertain")
     means = options.fidelity, *_means(options)
     found = judge(scene, criterion, limit, uncertain, *means, tell=_telling(options))
     given = "question", "limit", "uncertain", "within", "workers"

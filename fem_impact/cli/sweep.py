@@ -15,7 +15,7 @@ from fem_impact.cli.parser import Options
 from fem_impact.cli.paths import checked_out, told_kept
 from fem_impact.cli.scene_options import asked_scene, command_line, read_changes
 from fem_impact.cli.terminal import chosen_meter, print_json, print_markdown
-from fem_impact.cli.values import read_values
+from fem_impact.cli.values import read_all
 from fem_impact.errors import RunError, SceneError, UsageError
 from fem_impact.files.atomic import read_text
 from fem_impact.jobs.executors import cores, on_scheduler
@@ -27,12 +27,7 @@ def sweep(options: Options) -> int:
     """Compute all combinations, write table and figures, and print the findings."""
     columns = [name.strip() for name in options.columns.split(",")] if options.columns else []
     require_columns(columns)
-    pairs = [read_values(text) for text in options.vary]
-    keys = [key for key, _ in pairs]
-    twice = next((key for key in keys if keys.count(key) > 1), "")
-    if twice:
-        raise UsageError("is varied twice.", key="--vary", value=twice, remedy="Give all its values at once.")
-    vary = dict(pairs)
+    vary = read_all(options.vary, "--vary")
     _refuse_both(read_changes(options.changes), vary)
     scene = asked_scene(options)
     every = cases(scene, vary)  # refuses what cannot run before a directory is made

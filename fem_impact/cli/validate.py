@@ -4,15 +4,15 @@ from contextlib import closing
 from typing import Any
 
 from fem_impact.answers.refine.level_meshes import LevelMeshes
-from fem_impact.answers.validate import TERMS, Validation
+from fem_impact.answers.validate import NOT_APART, TERMS, Validation
 from fem_impact.answers.validate import validate as validated
 from fem_impact.case.case import Case
 from fem_impact.cli.parser import Options
 from fem_impact.cli.scene_options import asked_scene, command_line
 from fem_impact.cli.terminal import chosen_meter, print_answer
-from fem_impact.cli.values import read_values
-from fem_impact.errors import UsageError
+from fem_impact.cli.values import read_all
 from fem_impact.options import RunOptions
+from fem_impact.outcome.keys import Unknown, or_none
 from fem_impact.progress import range_text
 from fem_impact.tables.table import Table
 from fem_impact.tables.text import wrapped
@@ -21,11 +21,7 @@ from fem_impact.tables.text import wrapped
 def validate(options: Options) -> int:
     """Compare a scene with its tests and print errors, their uncertainties and what these are made of."""
     scene = asked_scene(options)
-    pairs = [read_values(text) for text in options.uncertain]
-    intervals: dict[str, Any] = dict(pairs)
-    if options.samples < 2 or options.samples & (options.samples - 1):
-        remedy = "Write 16, 32, 64 or 128."
-        raise UsageError("is no power of two.", key="--samples", value=options.samples, remedy=remedy)
+    intervals: dict[str, Any] = read_all(options.uncertain, "--uncertain")
     with closing(chosen_meter(options)) as meter:
         kept = RunOptions(progress=meter)
         fidelities = {"fidelity": options.fidelity, "inputs_by": options.inputs_by}
@@ -46,7 +42,12 @@ def _document(found: Validation) -> dict[str, Any]:
         ],
         "not_known": dict(found.unknown),
         "shares": {key: dict(zip(names, row, strict=True)) for key, row in shares.items()},
-        "joint": {"numbers": found.joined, "distance": found.distance, "p": found.p},
+        "joint": {
+            "numbers": found.joined,
+            "distance": or_none(found.distance),
+            "p": or_none(found.p),
+            "reason": found.p.reason if isinstance(found.p, Unknown) else None,
+        },
         "measure_better": found.better[0],
         "inputs_by": found.varied,
     }
@@ -58,10 +59,12 @@ def _text(found: Validation, fidelity: str, solid: tuple[str, str]) -> str:
         for key, row in zip((*found.inputs, "tests", "model"), found.shares.tolist(), strict=True)
     ]
     names = tuple(one.quantity for one in found.comparisons)
-    joint = (
-        f"Jointly ({', '.join(found.joined)}): distance squared {found.distance:.3g}, p = {found.p:.2g} that "
-        "a model without error would be as far away."
-    )
+    joint = f"Jointly ({', '.join(found.joined)}): "
+    if isinstance(found.distance, Unknown) or isinstance(found.p, Unknown):
+        joint += f"the distance {NOT_APART.reason}."
+    else:
+        joint += f"distance squared {found.distance:.3g}, p = {found.p:.2g} that "
+        joint += "a model without error would be as far away."
     doubt = (
         f"{', '.join(found.doubtful)}: the {found.varied} model, in which the inputs were varied, is off the "
         f"{fidelity} one by more than 2 u_val, so that u_input may be wrong. Give another --inputs-by."

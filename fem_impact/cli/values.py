@@ -2,14 +2,15 @@
 
 import re
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
-from fem_impact.answers.vary import MOST, NUMBER, QUANTITY
+from fem_impact.answers.vary import MOST, NUMBER, quantity
 from fem_impact.errors import UsageError
 from fem_impact.scene.read import read_tables
+from fem_impact.scene.shipped import bare
 
 MOST_DIGITS = 6
 """Most digits of a step that is proposed."""
@@ -51,6 +52,16 @@ def read_values(text: str) -> tuple[str, list[Any]]:
     return key.strip(), _steps(match, text) if match else _listed(listed)
 
 
+def read_all(texts: Iterable[str], option: str) -> dict[str, list[Any]]:
+    """Return the values of a repeated option, by key; a key given twice is refused (UsageError)."""
+    values = dict[str, list[Any]]()
+    for key, listed in map(read_values, texts):
+        if bare(key) in map(bare, values):
+            raise UsageError("is given twice.", key=option, value=key, remedy="Give all its values at once.")
+        values[key] = listed
+    return values
+
+
 def _steps(match: re.Match[str], text: str) -> list[Any]:
     first, last, step = (Decimal(part) for part in match.group(1, 2, 3))
     if step == 0 or (last - first) / step < 0 or (last - first) / step >= MOST:
@@ -80,8 +91,7 @@ def _no_step(match: re.Match[str], text: str, count: int) -> UsageError:
 def _listed(text: str) -> list[Any]:
     """Return the values of a list; a unit after the last one is that of those before without one."""
     parts = [part.strip() for part in _split(text)]
-    last = QUANTITY.fullmatch(parts[-1])
-    unit = last[2] if last else None
+    _, unit = quantity(parts[-1]) or ("", "")
     return [_value(part, unit) for part in parts]
 
 
@@ -109,10 +119,10 @@ def _value(text: str, unit: str | None) -> Any:
             remedy = f"Write it as TOML in one pair of quotes, such as {_TABLE}."
             problem = f"is no table or list in TOML ({error})."
             raise UsageError(problem, key=f'"{text}"', remedy=remedy) from None
-    match = QUANTITY.fullmatch(text)
-    if match is None:
+    found = quantity(text)
+    if found is None:
         return text.strip("\"'")
-    return _with_unit(match[1], match[2] or unit)
+    return _with_unit(found[0], found[1] or unit)
 
 
 def _with_unit(number: str, unit: str | None) -> Any:

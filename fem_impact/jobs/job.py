@@ -215,7 +215,7 @@ def compute(job: Work[object]) -> Answer:
     try:
         text = job.run()
     except FemImpactError as error:
-        reason, lasting = str(error), error.exit_code in (3, 6)  # the scene or the run, not the disk
+        reason, lasting = str(error), error.lasting
     except Exception as error:  # whatever went wrong, the other jobs of the study go on
         reason = repr(error)
     return Answer(program, text, reason, lasting, time.perf_counter() - begun)

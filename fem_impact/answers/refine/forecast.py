@@ -133,6 +133,8 @@ def budget_of(refused: SceneError | RunError | None, before_s: float = 0.0) -> i
 class OverBudgetError(RunError):
     """A level that takes longer than its budget allows; ``enough_s`` is one, s, that holds it, if known."""
 
+    lasting = False  # it depends on how busy the machine was
+
     def __init__(self, reason: str, enough_s: int | None = None) -> None:
         super().__init__(reason)
         self.enough_s = enough_s
@@ -196,7 +198,7 @@ def require_pilot(
 
     It is told where the budget, s, may hold the pilot alone, whose numbers have no error.
     """
-    pilot_s, enough = pilot.size.time, for_two_s(pilot.size.time)
+    pilot_s, enough = pilot.size.time, for_levels_s(pilot.size.time)
     reason, more = f"The coarsest level would take about {about_s(pilot_s)}", FOR_TWO.format(enough)
     if max(PILOT * pilot_s, SURELY * setup_of(pilot)) > limit_s:
         raise OverBudgetError(f"{reason}: it is not begun. {more}", enough)
@@ -242,9 +244,10 @@ def advice(number: int, used_s: float, each_s: Sequence[float]) -> tuple[str, in
 FOR_TWO = "For it and a finer one, which tell the error of each number, give a budget of {} s."
 
 
-def for_two_s(pilot_s: float) -> int:
-    """Return a budget, s, that holds two levels, by the time of the first, s."""
-    return enough_s(pilot_s, MIDDLE * pilot_s)
+def for_levels_s(pilot_s: float, count: int = 2, places: int = 1) -> int:
+    """Return a budget, s, that holds levels at each of some places, by the time of a first level, s."""
+    times = [pilot_s * MIDDLE**level for level in range(count)]
+    return enough_s(places * sum(times) - times[-1], times[-1])
 
 
 @dataclass
@@ -363,7 +366,7 @@ class LevelProgress:
         if spent_s + least_s <= self.limit_s:
             return
         whole_s = spent_s + left_s
-        enough = enough_s(self.used_s, whole_s, LONGER) if self.duration_s else for_two_s(whole_s)
+        enough = enough_s(self.used_s, whole_s, LONGER) if self.duration_s else for_levels_s(whole_s)
         level, more = "It", f"For it give a budget of {enough} s."
         if not self.duration_s:
             level, more = "The coarsest level", f"It gave no number. {FOR_TWO.format(enough)}"

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import degrees, isclose
+from math import degrees, inf, isclose
 
 import numpy as np
 
@@ -23,7 +23,7 @@ from fem_impact.scene.impact import Following
 from fem_impact.scene.types import Scene, require_scene
 from fem_impact.scene.units import parse_change
 from fem_impact.tables.table import Table
-from fem_impact.tables.text import digits_apart, plain
+from fem_impact.tables.text import digits_apart, plain, plain_above
 
 TOLERANCE = 0.05
 """Change of e that may be neglected, unless stated."""
@@ -35,7 +35,6 @@ ANGLES = tuple(np.radians(np.arange(5.0, 81.0, 5.0)))
 ALONE = ", but no scene like it was computed both ways: finite elements are asked, too"
 WIDER = "Finite elements are less certain and do not contradict it: {}."
 SURE: tuple[vibration.Answer, ...] = ("yes", "no")
-WORST_FIRST: tuple[vibration.GradedAnswer, ...] = ("no", "probably no", "undecided", "probably yes", "yes")
 LACKING = "There is no reduced model of {}: finite elements alone answer."
 
 
@@ -51,7 +50,8 @@ class Verdict:
     fidelity : modal or solid, of ``here``; none
     screening : closed-form estimates
     here : the change at the scene's inclination, None where no model tells it
-    elsewhere : the largest change of the reduced model over other inclinations, None where none is known
+    elsewhere : the change of the reduced model that answers worst over other inclinations, None where none
+        is known
     not_known : inclinations, rad, where the reduced model has no answer, with the reason of the first
     over_friction : smallest and largest change of e within the stated interval of f by the reduced model;
         None where f has no interval or no effect
@@ -119,21 +119,21 @@ class Verdict:
             missing += ", which no model tells here"
         if enough >= 1.0:  # no change that may be neglected
             return f"{missing}."
-        wider = plain(enough, digits_apart(self.tolerance, enough))
+        wider = plain_above(enough, digits_apart(self.tolerance, enough))
         return f"{missing}; or a change of {wider} that may be neglected."
 
     @property
     def worst(self) -> vibration.VibrationEffect | None:
-        """The largest change over all inclinations, None where only this one is known."""
+        """The change that answers worst over all inclinations, None where only this one is known."""
         here = [self.here] if self.here and self.here.is_known else []
-        return self.elsewhere and vibration.largest([*here, self.elsewhere])
+        return self.elsewhere and vibration.worst([*here, self.elsewhere], self.tolerance)
 
     @property
     def worst_answer(self) -> vibration.GradedAnswer:
         """May it be used at any inclination: the worst of the answers here and elsewhere."""
         both = {self.answer, self.elsewhere.graded(self.tolerance) if self.elsewhere else "undecided"}
         both |= {"undecided"} if self.not_known[0] else set()
-        return next(answer for answer in WORST_FIRST if answer in both)
+        return next(answer for answer in vibration.WORST_FIRST if answer in both)
 
 
 def assess(
@@ -215,7 +215,7 @@ def assess(
     else:
         more = finite_elements(twins(vibration.untargeted(scene))[0], budget_s) if open_still else {}
     off = 0.0 if quick is None or effect is None else abs(quick.value - effect.value)
-    others, not_known = _over_angles(scene, of, off) if reduced else (None, ((), ""))
+    others, not_known = _over_angles(scene, of, tolerance, off) if reduced else (None, ((), ""))
     return Verdict(
         scene,
         tolerance,
@@ -255,9 +255,9 @@ def check_means(fidelity: str, budget_s: float) -> None:
 
 
 def _over_angles(
-    scene: Scene, of: str, off: float
+    scene: Scene, of: str, tolerance: float, off: float
 ) -> tuple[vibration.VibrationEffect | None, tuple[tuple[float, ...], str]]:
-    """Return the largest change of the reduced model over other inclinations, and where it has no answer.
+    """Return the worst change of the reduced model over other inclinations, and where it has no answer.
 
     ``off`` is its error at the scene's own inclination, as far as finite elements show it.
     """
@@ -277,7 +277,7 @@ def _over_angles(
             why = why or failed
         else:
             changes.append(change)
-    return (vibration.largest(changes) if changes else None), (tuple(missing), why)
+    return (vibration.worst(changes, tolerance) if changes else None), (tuple(missing), why)
 
 
 def _over_friction(scene: Scene, of: str) -> tuple[float, float] | None:
@@ -308,17 +308,22 @@ def sequence_verdict(scene: Scene, tolerance: float) -> list[str]:
     for strikes in (rigid, modal):
         if isinstance(strikes.each, Unknown):
             return [f"The sequence is not known: {strikes.each.reason}."]
-    number, E_0 = known(modal.hardest_energy), known(modal.each)[0].before
+    number, allowed = known(modal.hardest_energy), tolerance * known(modal.each)[0].before
     ours, theirs = (known(one.each)[:number] for one in (rigid, modal))
-    hardest = [one.part for one in ours] == [one.part for one in theirs]
-    if hardest:
-        hardest = abs(ours[-1].approach - theirs[-1].approach) <= tolerance * theirs[-1].approach
-        hardest &= abs(ours[-1].lost - theirs[-1].lost) <= tolerance * E_0
-    certain, half = or_none(modal.certain) or 0, or_none(modal.friction_half) or 0.0
+    certain, last = or_none(modal.certain) or 0, len(known(modal.each))
+    hardest: vibration.Answer = "no"
+    if [one.part for one in ours] == [one.part for one in theirs]:
+        one, other = ours[-1], theirs[-1]
+        faster = abs(one.approach - other.approach), tolerance * other.approach
+        loses = abs(one.lost - other.lost), allowed
+        halves = _half(modal, number, "approach_m_per_s"), _half(modal, number, "E_after_J")
+        hardest = _all_within([(*faster, halves[0]), (*loses, halves[1])])
+    hardest = hardest if number <= certain else "undecided"
     lost = [(known(one.friction), _all_lost(one)) for one in (rigid, modal)]
-    apart = [abs(a - b) for a, b in zip(*lost, strict=True)]
-    whole = hardest and max(apart) <= tolerance * E_0
-    surely = len(known(modal.each)) <= certain or apart[0] > tolerance * E_0 + half
+    rubs, all_ = (abs(a - b) for a, b in zip(*lost, strict=True))
+    half = _half(modal, last, "E_after_J") if last <= certain else inf
+    whole = _all_within([(rubs, allowed, or_none(modal.friction_half) or 0.0), (all_, allowed, half)])
+    whole = hardest if whole == "yes" else whole
     rigidly, by_modes = (f"{lost_all:.3g} J, {rubbed:.3g} J of it by friction" for rubbed, lost_all in lost)
     ratios = modal.other_end, rigid.other_end
     ends = ("not by itself" if isinstance(one, Unknown) else f"{one:.3g} times" for one in ratios)
@@ -327,17 +332,26 @@ def sequence_verdict(scene: Scene, tolerance: float) -> list[str]:
         agree = or_none(modal.hardest_agree)
         which += f" (not certain{f', in {agree} of 64 sequences' if agree else ''})"
     return [
-        f"{_answer(hardest, number <= certain)}: rigid theory for the hardest strike, {which}: "
+        f"{hardest.upper()}: rigid theory for the hardest strike, {which}: "
         f"{_struck(theirs, number)}; by rigid theory {_struck(ours, number)}.",
-        f"{_answer(whole, surely)}: rigid theory for the whole sequence, which loses {by_modes} by the "
+        f"{whole.upper()}: rigid theory for the whole sequence, which loses {by_modes} by the "
         f"reduced model and {rigidly} by rigid theory (allowed: {tolerance:g} of a speed and of E_0).",
         "The other end strikes {} as fast as the first strike came by the reduced model, by rigid theory "
         "{}.".format(*ends),
     ]
 
 
-def _answer(holds: bool, surely: bool) -> str:
-    return ("YES" if holds else "NO") if surely else "UNDECIDED"
+def _half(strikes: Strikes, number: int, name: str) -> float:
+    """Return the half-width of a number of a strike, infinite where it is not known."""
+    half = strikes.half_width(number, name)
+    return inf if isinstance(half, Unknown) else half
+
+
+def _all_within(differences: Sequence[tuple[float, float, float]]) -> vibration.Answer:
+    """Say whether each of some differences, with what is allowed and its half-width, lies within that."""
+    if any(apart - half > allowed for apart, allowed, half in differences):
+        return "no"
+    return "yes" if all(apart + half <= allowed for apart, allowed, half in differences) else "undecided"
 
 
 def _all_lost(strikes: Strikes) -> float:

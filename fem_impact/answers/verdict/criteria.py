@@ -54,9 +54,10 @@ class Bound:
             return "no"
         return "yes" if self.high < limit else "undecided"
 
-    def rank(self, limit: float) -> int:
-        """Return how bad the answer is: 0 of a yes, 2 of a no."""
-        return ("yes", "undecided", "no").index(self.answer(limit))
+    def rank(self, limit: float) -> tuple[int, float, float]:
+        """Return how bad the answer is, 0 of a yes, 2 of a no; then the end that decides it; the number."""
+        bad = ("yes", "undecided", "no").index(self.answer(limit))
+        return bad, self.low if bad == 2 else self.high, self.value
 
     def graded(self, limit: float) -> vibration.Answer:
         """Return the answer: of a limit none is probable."""

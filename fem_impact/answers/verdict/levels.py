@@ -6,7 +6,7 @@ from math import ceil, log2
 from typing import Any, Protocol, TypeVar
 
 from fem_impact.answers.refine.chain import MOST_FINER, LevelChain
-from fem_impact.answers.refine.forecast import about_s, for_two_s, turns
+from fem_impact.answers.refine.forecast import about_s, for_levels_s, turns
 from fem_impact.answers.refine.level import LevelRun
 from fem_impact.answers.refine.level_meshes import LevelMeshes
 from fem_impact.answers.refine.places import run_elsewhere
@@ -157,8 +157,8 @@ def with_budget(budget_s: int | None) -> Means:
     return {} if budget_s is None else {"budget_s": budget_s}
 
 
-def finite_elements(scene: Scene, budget_s: float) -> Means:
-    """Return the means that let finite elements answer: a wall time, s, that holds two levels of twins.
+def finite_elements(scene: Scene, budget_s: float, levels: int = LEAST_LEVELS, places: int = 1) -> Means:
+    """Return the means that let finite elements answer: a wall time, s, that holds levels of twins at places.
 
     None help where finite elements cannot compute the scene.
     """
@@ -167,7 +167,7 @@ def finite_elements(scene: Scene, budget_s: float) -> Means:
     except SceneError:
         return {}
     both_s = pilot_s * turns(2, min(AT_ONCE, cores()))
-    return {"fidelity": "solid", "budget_s": max(budget_s, for_two_s(both_s))}
+    return {"fidelity": "solid", "budget_s": max(budget_s, for_levels_s(both_s, levels, places))}
 
 
 def next_step(command: str, more: Means) -> str | None:

@@ -4,7 +4,7 @@ The reduced model looks at places over the intervals, and finite elements at the
 where its error leaves the answer open.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
 from itertools import product
@@ -38,8 +38,9 @@ from fem_impact.outcome.record import installed_versions
 from fem_impact.progress import tell_cell
 from fem_impact.scene.types import Scene, digest
 from fem_impact.scene.units import parse_change, parse_quantity
-from fem_impact.tables.text import digits_apart, plain
+from fem_impact.tables.text import digits_apart, plain, plain_above
 
+Write = Callable[[float, int], str]
 PLACES = {1: 21, 2: 7, 3: 5, 4: 3}
 """Values of each of so many intervals at which the reduced model looks."""
 CONFIRMED = (
@@ -112,12 +113,12 @@ class LimitVerdict:
         if self.hopeless and self.bound is not None:
             return f"a limit that can be judged: {self.bound.beyond}."
         if self.bound is not None and self.bound.answer(self.limit) == "undecided":
+            lies = "a smaller error: the limit lies within that of the number"
             if self.bound.beyond:
-                return "a smaller error: the limit lies within that of the number."
-            high = _in_unit(self.criterion, self.bound.high, digits_apart(self.limit, self.bound.high, 3))
-            return (
-                f"a smaller error: the limit lies within that of the number; or a limit of at least {high}."
-            )
+                return f"{lies}."
+            digits = digits_apart(self.limit, self.bound.high, 3)
+            high = _in_unit(self.criterion, self.bound.high, digits, plain_above)
+            return f"{lies}; or a limit of at least {high}."
         if self.not_known:
             return f"an answer: {self.not_known}"
         if self.bound is None:
@@ -180,8 +181,8 @@ def judge(
     why = next((one.reason for one in bounds.values() if isinstance(one, Unknown)), "")
     why = LACKING.format(lacking) if lacking and bounds else why
     worst = max(known, key=lambda at: (known[at].value, known[at].low), default=(0.5,) * len(intervals))
-    mildest = min(known, key=lambda place: known[place].value, default=worst)
-    shown = max(known, key=lambda at: (known[at].rank(limit), known[at].value), default=worst)
+    mildest = min(known, key=lambda at: (known[at].value, known[at].low), default=worst)
+    shown = max(known, key=lambda at: known[at].rank(limit), default=worst)
     bound, by, solids = known.get(shown), "the reduced model", dict[Place, Bound]()
     every = [one.answer(limit) for one in known.values()]  # the told error holds no body that lacks the model
     answer = "undecided" if lacking else _together(every, bool(why) or not known)
@@ -200,7 +201,7 @@ def judge(
         more = {"fidelity": fidelity, **more} if more and fidelity == "solid" else more
         quick = known.get(worst) if fidelity == "auto" and answer == "undecided" else None
         if worst in solids and not (quick and quick.holds_against(solids[worst], limit)):
-            shown = max(solids, key=lambda at: (solids[at].rank(limit), solids[at].value))
+            shown = max(solids, key=lambda at: solids[at].rank(limit))
             bound, by = solids[shown], SOLIDS
             answer = _together([one.answer(limit) for one in solids.values()], mildest not in solids)
             if answer == "yes" and intervals:
@@ -208,7 +209,8 @@ def judge(
                 within = worst in known and known[worst].value + max(low) <= limit and not why
                 answer, notes = ("yes", [*notes, CONFIRMED]) if within else ("undecided", notes)
     else:
-        more = finite_elements(criterion.meshed(scene)[0], budget_s) if answer == "undecided" else {}
+        means = criterion.meshed(scene)[0], budget_s, criterion.least_levels, 1 + bool(intervals)
+        more = finite_elements(*means) if answer == "undecided" else {}
     return LimitVerdict(
         scene,
         criterion,
@@ -323,15 +325,15 @@ def _together(answers: Sequence[Answer], missing: bool) -> Answer:
     return "yes" if {*answers} == {"yes"} and not missing else "undecided"
 
 
-def _in_unit(criterion: Criterion, number: float, digits: int = 3) -> str:
+def _in_unit(criterion: Criterion, number: float, digits: int = 3, write: Write = plain) -> str:
     """Return a number in the unit of its criterion, a temperature in degC, too."""
-    celsius = f" = {plain(number - CELSIUS, digits)} degC" if criterion.dimension == "temperature" else ""
-    return f"{_apart(criterion, number, digits)}{celsius}"
+    celsius = f" = {write(number - CELSIUS, digits)} degC" if criterion.dimension == "temperature" else ""
+    return f"{_apart(criterion, number, digits, write)}{celsius}"
 
 
-def _apart(criterion: Criterion, number: float, digits: int = 3) -> str:
+def _apart(criterion: Criterion, number: float, digits: int = 3, write: Write = plain) -> str:
     """Return the distance between two numbers of a criterion in its unit."""
-    return f"{plain(number / criterion.per_unit, digits)} {criterion.unit}".rstrip()
+    return f"{write(number / criterion.per_unit, digits)} {criterion.unit}".rstrip()
 
 
 def _told(criterion: Criterion, bound: Bound, where: str = "") -> str:

@@ -1,11 +1,11 @@
 """A verdict in words: the three lines of its box, what it rests on, what it does not cover; and as JSON."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from math import degrees, isclose
+from math import copysign, degrees, isclose
 from typing import Any
 
 from fem_impact.answers.simulate import refused_by
-from fem_impact.answers.verdict.assess import Verdict
+from fem_impact.answers.verdict.assess import ANGLES, Verdict
 from fem_impact.answers.verdict.levels import next_step
 from fem_impact.answers.verdict.screening import Screening
 from fem_impact.answers.verdict.vibration import (
@@ -52,6 +52,7 @@ THERE: Mapping[GradedAnswer, str] = {
     "probably no": "rigid theory may probably not be used there",
     "undecided": "whether rigid theory may be used there is undecided",
 }
+ALL_OVER = "; rigid theory may be used at all of them"
 FORMULA = "its restitution is a closed formula; give it a measured or computed one, the key restitution"
 WHY: Mapping[str, str] = {
     "e": FORMULA,
@@ -134,15 +135,19 @@ def _anywhere(v: Verdict) -> str:
     if v.worst is None:
         return "For other inclinations the answer is not known: change impact.angle and assess them, too."
     by = " by the reduced model" if v.fidelity == "solid" else ""
-    everywhere = "; rigid theory may be used at every inclination" if v.worst_answer == "yes" else ""
+    least, most = (copysign(degrees(angle), v.scene.impact.angle) for angle in (ANGLES[0], ANGLES[-1]))
+    over = f"from {least:.0f} to {most:.0f} degrees"
+    holds = v.worst_answer == "yes"
     known = " of those where the change is known" * bool(v.not_known[0])
     if v.worst is v.here:
-        return f"No other inclination{known} has a larger change{by}{everywhere}."
+        return f"At no other inclination {over}{known} is the answer worse{by}{ALL_OVER * holds}."
+    there = f"rigid theory may be used at every inclination {over}"
+    there = there if holds else THERE[v.worst.graded(v.tolerance)]
     return (
         f"At the worst inclination{known}, {degrees(v.worst.angle):.0f} degrees (rod and velocity turned "
         f"together), it changes {v.of} by "
         f"{v.worst.told}"
-        f"{doubt(v.worst)}{by}{everywhere or f'; {THERE[v.worst.graded(v.tolerance)]}'}."
+        f"{doubt(v.worst)}{by}; {there}."
     )
 
 

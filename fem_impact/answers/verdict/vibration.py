@@ -172,6 +172,7 @@ GradedAnswer = Literal["yes", "no", "probably yes", "probably no", "undecided"]
 # its other numbers and on levels (.14 to .29). On levels of 44 drawn scenes (seeds 20262801 to 20262803),
 # with limits of .01 to .1, one to three levels more confirm 150 of 158 probable answers and all 350 sure ones
 PROBABLE = 0.45
+WORST_FIRST: tuple[GradedAnswer, ...] = ("no", "probably no", "undecided", "probably yes", "yes")
 PROBABLY: Mapping[Answer, GradedAnswer] = {"yes": "probably yes", "no": "probably no"}
 """Probable answers, by the sure one that the smaller half-width would give."""
 Pair = tuple[Outcome, Outcome]
@@ -369,9 +370,13 @@ def difference(pair: Pair, of: str) -> float:
     return float(known(key.of(pair[0])) - known(key.of(pair[1])))
 
 
-def largest(effects: Sequence[VibrationEffect]) -> VibrationEffect:
-    """Return the largest change of several inclinations."""
-    return max(effects, key=lambda effect: abs(effect.value))
+def worst(effects: Sequence[VibrationEffect], tolerance: float) -> VibrationEffect:
+    """Return the change of several inclinations that answers worst, and of these the largest."""
+
+    def order(effect: VibrationEffect) -> tuple[int, float]:
+        return WORST_FIRST.index(effect.graded(tolerance)), -abs(effect.value)
+
+    return min(effects, key=order)
 
 
 def untargeted(scene: Scene) -> Scene:

@@ -335,7 +335,7 @@ def test_a_budget_that_may_hold_the_pilot_alone_is_told_before_it_runs(monkeypat
     with pytest.raises(KeyboardInterrupt):
         levels.refine()
     notices = [one.text for one in told if isinstance(one, Notice)]
-    advice = f"may hold it alone. {forecast.FOR_TWO.format(forecast.for_two_s(pilot_s))}"
+    advice = f"may hold it alone. {forecast.FOR_TWO.format(forecast.for_levels_s(pilot_s))}"
     assert len(notices) == is_told and all(advice in one for one in notices)
 
 

@@ -140,11 +140,12 @@ def test_levels_tell_the_heat_of_a_patch_that_they_resolve(short, across):
         ),
         (80.0, 0.054, "± 0.010; whether rigid theory may be used there is undecided."),
         (80.0, 0.055, "± 0.010; rigid theory may probably not be used there."),
-        (80.0, 0.02, "± 0.010; rigid theory may be used at every inclination."),
+        (80.0, 0.02, "± 0.010; rigid theory may be used at every inclination from 5 to 80 degrees."),
         (
             80.0,
             0.005,
-            "No other inclination has a larger change; rigid theory may be used at every inclination.",
+            "At no other inclination from 5 to 80 degrees is the answer worse; rigid theory may be used at "
+            "all of them.",
         ),
     ],
 )
@@ -158,7 +159,7 @@ def test_this_inclination_and_the_worst_one_are_two_sentences(short, at, value, 
     )
     assert may.partition("(allowed: 0.05). ")[2].startswith(words) or may.endswith(words)
     partly = box(replace(short, here=here, elsewhere=other, not_known=((0.5,), "why")))[0][1]
-    assert "inclination of those where the change is known" in partly
+    assert " of those where the change is known" in partly
 
 
 def test_a_yes_tells_the_number_of_rigid_theory_where_its_closed_formula_has_another(short):
