@@ -277,14 +277,19 @@ def _arriving(case: Case, rod: ModalRod, arrival: Arrival | None) -> ModalState:
         rigid[AT.turn], q, rate = arrival.turn, arrival.q.copy(), arrival.rate.copy()
     low_t, low_n = lowest_place(rod.sites, rigid[AT.turn], q)
     rigid[AT.height] = -low_n
-    rigid[AT.away_n], rigid[AT.away_t] = (struck.centre_depth or 0.0) - low_n, -low_t - struck.centre_offset
+    d_c, d_d = case.contact.arms if arrival is None else (-low_t, -low_n)  # of the middle of what lands flat
+    rigid[AT.away_n], rigid[AT.away_t] = (struck.centre_depth or 0.0) + d_d, d_c - struck.centre_offset
     return ModalState(rigid, q, rate)
 
 
 def _touching(rod: ModalRod, now: ModalState) -> list[int]:
-    """Return the sites that touch as a strike begins: those that are lowest."""
-    height = float(now.rigid[AT.height])
-    return [s for s in range(len(rod.sites.along_t)) if height + height_of(rod, now, s) < LEVEL]
+    """Return the sites that touch as a strike begins, those that are lowest, the fastest one first.
+
+    The first one gives a part that lands flat its law.
+    """
+    height, Omega = float(now.rigid[AT.height]), float(now.rigid[AT.Omega])
+    low = [s for s in range(len(rod.sites.along_t)) if height + height_of(rod, now, s) < LEVEL]
+    return sorted(low, key=lambda s: -Omega * skin(rod.sites, s, float(now.rigid[AT.turn]))[0])
 
 
 def _of_tail(case: Case, rod: ModalRod, s: int) -> bool:

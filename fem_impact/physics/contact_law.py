@@ -168,11 +168,13 @@ def flow_law(pair: ContactPair, rod: HardeningLaw | None, barrier: HardeningLaw 
     """Return the law of two bodies and their flow curves, None of one that does not yield.
 
     The softer body flows, at the strain rate of the indentation, if the first contact reaches the pressure at
-    which a round one begins to yield. A table of its flow stress is stood for by the nearest power law.
+    which a round one begins to yield; the curve of a body that does not yield here does not count. A table
+    of its flow stress is stood for by the nearest power law.
     """
     size, soft, E_star = pair.estimate, pair.softer, pair.modulus
     R1, R2, flows = size.R1, size.R2, begins_to_yield(pair)
-    both = [(law.power, metal == soft) for law, metal in ((barrier, pair.barrier), (rod, pair.rod)) if law]
+    flowing = [(barrier, pair.barrier)] * pair.barrier_yields + [(rod, pair.rod)] * pair.rod_yields
+    both = [(law.power, metal == soft) for law, metal in flowing if law]
     both.sort(key=lambda one: not one[1])
     curve, other, *_ = (*(power for power, _ in both), *2 * [Hardening(inf, 0.0, 0.0)])
     faster, other_faster = (rate_factor(of.rate, strain_rate(size)) for of in (curve, other))

@@ -5,6 +5,8 @@ from dataclasses import dataclass, replace
 from math import cos, inf
 from typing import Self
 
+import numpy as np
+
 from fem_impact.arrays import Array
 from fem_impact.case.case import Case
 from fem_impact.case.effects.registry import EFFECTS
@@ -89,9 +91,10 @@ class Reduction:
     def of(cls, case: Case, end: ImpactEnd) -> Self:
         """Return the motions, and the coefficients of the relative motion."""
         rod = motion(case, end.V_n, end.V_t, end.Omega, end.mass, end.k2)
-        flight = 0.0 if end.contacts is None else between(end.contacts[:, :2])
-        fallen = (case.slots.gravity or 0.0) * flight
-        barrier = barrier_motion(case, *end.base, momentum_error(case, rod, *end.base, fallen))
+        touched = np.zeros((0, 2)) if end.contacts is None else end.contacts[:, :2]
+        g = case.slots.gravity or 0.0
+        fallen, borne = g * between(touched), g * float(np.diff(touched).sum())
+        barrier = barrier_motion(case, *end.base, momentum_error(case, rod, end.base, fallen, borne))
         if end.turn is not None:
             error = angular_momentum_error(case, rod, barrier, *end.turn)
             barrier = replace(barrier, Omega_b=end.turn[0], angular_momentum_error=error)

@@ -173,15 +173,18 @@ def barrier_motion(case: Case, base_n: float, base_t: float, error: Num) -> Barr
     )
 
 
-def momentum_error(case: Case, motion: RodMotion, base_n: float, base_t: float, fallen: float = 0.0) -> float:
+def momentum_error(
+    case: Case, motion: RodMotion, base: tuple[float, float], fallen: float = 0.0, borne: float = 0.0
+) -> float:
     """Return the change of the momentum of rod and free barrier over that of the rod before.
 
-    ``fallen``, m/s, is what gravity gave the rod in flights between contacts, which is taken out.
+    What gravity gave the rod is taken out, m/s: ``fallen`` in flights between contacts, and ``borne`` while it
+    touched, of which the motion has the part along the barrier taken out already.
     """
     before, alpha, M = case.scene.relative, case.scene.impact.vertical, case.scene.barrier.mass or 0.0
     V_n, V_t, _ = after(motion)
-    gained_n = motion.mass * (V_n - motion.v_n + fallen * cos(alpha)) + M * base_n
-    gained_t = motion.mass * (V_t - motion.v_t + fallen * sin(alpha)) + M * base_t
+    gained_n = motion.mass * (V_n - motion.v_n + (fallen + borne) * cos(alpha)) + M * base[0]
+    gained_t = motion.mass * (V_t - motion.v_t + fallen * sin(alpha)) + M * base[1]
     return hypot(gained_n, gained_t) / (motion.mass * hypot(before.v_n, before.v_t))
 
 
