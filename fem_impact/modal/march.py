@@ -28,7 +28,7 @@ from fem_impact.modal.motion import (
     Touched,
 )
 from fem_impact.modal.touch import look, meet, spent, strikes, turn_surface, unknown_site
-from fem_impact.physics.contact_law import FAINT, MERGE_GAP
+from fem_impact.physics.contact_law import FAINT, MERGE_GAP, MERGED
 
 
 @inlined
@@ -233,7 +233,7 @@ def march(
     """
     dt, rigid = bounds.step, now.rigid
     turns = np.cos(modes.omega * dt), np.sin(modes.omega * dt)
-    gap = max(MERGE_GAP, 1.5 * dt)
+    gap = max(min(MERGE_GAP, MERGED * bounds.horizon), 1.5 * dt)
     while clock[CLOCK.time] - clock[CLOCK.last] < bounds.horizon:
         time, pressed = clock[CLOCK.time], clock[CLOCK.pressed] > 0.0
         new = unknown_site(now, modes, sites, held, clock[CLOCK.steps], dt, pressed)

@@ -35,6 +35,8 @@ from fem_impact.physics.viscous import relaxation
 
 # s: contacts with a shorter gap count as one; a few passages of a wave across the tip
 MERGE_GAP = 10e-6
+# of the time within which what touches again is one impact: the longest gap in a small scene
+MERGED = 0.1
 # least impulse of a step, over the largest of the run, that counts as contact
 FAINT = 1e-3
 

@@ -21,10 +21,14 @@ from numpy.typing import ArrayLike
 
 from fem_impact.arrays import Array
 from fem_impact.physics.contact import ContactPair
+from fem_impact.physics.hardening import rate_gain, strain_rate
+from fem_impact.scene.material import Material
 
 HARDNESS = 3.0  # hardness over ultimate stress: largest mean pressure on an asperity of the softer body
+VICKERS = 9.80665e6 / 0.927  # Pa, mean pressure on the projected area of the print over Vickers' number
 ASSUMPTIONS = (
-    "every touching spot carries the hardness of the softer body, three times its ultimate stress",
+    "every touching spot carries the hardness of the softer body: three times its ultimate stress, or its "
+    "stated Vickers hardness if that is more, times what strain rate and skin add",
     "it slides at the sum of the tip's tangential speed and its normal speed for three contact times",
     "all heat stays in the one body that is heated more, and none leaves sideways or to the air",
     "the properties are those at room temperature; melting, chemical heat and grit are left out",
@@ -139,11 +143,20 @@ def flash_bound(pair: ContactPair, friction: float, halves: Halves) -> float:
 
     It is infinite between two bodies that never yield: no hardness limits the pressure of a spot.
     """
-    softer = min(metal.ultimate_stress for metal in (pair.rod, pair.barrier))
+    rate = strain_rate(pair.estimate)
+    softer = min(_hardness(metal, rate) for metal in (pair.rod, pair.barrier))
     if not friction or isinf(softer):
         return inf if friction else 0.0
     speed = max(
         abs(pair.sliding) + pair.approach, pair.most_sliding
     )  # what the impact turns of it counts, too
-    q, t = friction * HARDNESS * softer * speed, 3 * pair.estimate.duration
+    q, t = friction * softer * speed, 3 * pair.estimate.duration
     return max(float(short_rise([0.0, t], [q], body)[-1]) for body in halves)
+
+
+def _hardness(metal: Material, rate: float) -> float:
+    """Return the mean pressure, Pa, that a spot of a body bears at most at a strain rate, 1/s."""
+    tensile = HARDNESS * metal.ultimate_stress
+    stated = VICKERS * (metal.hardness or 0.0)
+    slow = stated if isinf(tensile) and stated else max(tensile, stated)
+    return slow * (1 + rate_gain(metal, rate)) * (metal.skin.factor if metal.skin else 1.0)

@@ -178,7 +178,7 @@ def momentum_error(
 ) -> float:
     """Return the change of the momentum of rod and free barrier over that of the rod before.
 
-    What gravity gave the rod is taken out, m/s: ``fallen`` in flights between contacts, and ``borne`` while it
+    What gravity gave the rod is taken out, m/s: ``fallen`` in flights between contacts, ``borne`` while it
     touched, of which the motion has the part along the barrier taken out already.
     """
     before, alpha, M = case.scene.relative, case.scene.impact.vertical, case.scene.barrier.mass or 0.0

@@ -1,5 +1,6 @@
 """Bodies that have struck before: what of their last runs goes into the model of the next strike."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from math import cos, sin
 
@@ -11,6 +12,7 @@ from fem_impact.fem.hexmodes import LANES
 from fem_impact.solid.model import Model
 from fem_impact.solid.rodview import RodState
 from fem_impact.solid.run import SolidResult
+from fem_impact.solid.stepguard import zone_step
 
 NOW = np.zeros(1)
 
@@ -82,16 +84,33 @@ def carry(
     v[rod] = _of_all(model, vibration.modes.shape @ (vibration.modes.omega * vibration.b))[rod]
     v[rod[:, 0]] += motion.V_t + motion.Omega * arm[:, 2]
     v[rod[:, 2]] += motion.V_n - motion.Omega * arm[:, 0]
+    whole = _zone_steps(model, "rod", model.start[0])
     _take_over(model, last.model, "rod", angle)
-    return replace(model, start=(x, v))
+    return _begun_at(model, "rod", (x, v), whole)
 
 
 def dented(model: Model, last: SolidResult) -> Model:
     """Return a model whose barrier is that of an earlier run on the same mesh, at rest with its dents."""
     x, block = model.start[0].copy(), model.layout.barrier_slice
     x[block] = last.state.x[last.model.layout.barrier_slice]
+    whole = _zone_steps(model, "barrier", model.start[0])
     _take_over(model, last.model, "barrier", 0.0)
-    return replace(model, start=(x, model.start[1]))
+    return _begun_at(model, "barrier", (x, model.start[1]), whole)
+
+
+def _zone_steps(model: Model, body: str, x: Array) -> list[float]:
+    return [zone_step(zone, model, x) for zone in model.zones if zone.body == body]
+
+
+def _begun_at(model: Model, body: str, start: tuple[Array, Array], whole: Sequence[float]) -> Model:
+    """Return a model that starts from another shape of a body, at the step that its deformed zones allow.
+
+    ``whole`` are the stable steps of these zones, s, in the shape that the step of the body was found for.
+    """
+    deformed = _zone_steps(model, body, start[0])
+    shares = [now / before for now, before in zip(deformed, whole, strict=True)]
+    steps = {**model.steps, body: min([1.0, *shares]) * model.steps[body]}
+    return replace(model, start=start, steps=steps)
 
 
 def _take_over(model: Model, earlier: Model, body: str, angle: float) -> None:

@@ -13,7 +13,7 @@ from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
 from meshes import SKIN
 
-WINDOW = 0.5e-6  # s, of the means of power and patch: single nodes open and close from step to step
+HEAT_WINDOW = 0.5e-6  # s, of the means of power and patch: single nodes open and close from step to step
 
 
 def tributary_areas(x: Array, places: Ints, quads: Ints) -> Array:
@@ -39,7 +39,8 @@ class HeatWatch:
     t : start of the first window and ends of all windows, s
     power, patch, speed : friction power, W, loaded area, m2, and sliding speed, m/s, of each window
     taken : friction heat of the half model at the end of the last window, J
-    pushed : tangential impulse of the half model in the open window, N s
+    pushed : sum of the sizes of tangential impulses of the half model in the open window, N s
+    window : length of a window, s
     """
 
     moving: ClassVar[tuple[str, ...]] = ("table", "taken", "pushed", "surface.window")
@@ -52,6 +53,7 @@ class HeatWatch:
     surface: "PlaneSurface | PairSurface" = field(init=False)
     taken: float = 0.0
     pushed: float = 0.0
+    window: float = HEAT_WINDOW
 
     def __post_init__(self) -> None:
         contact = self.model.contact
@@ -73,10 +75,10 @@ class HeatWatch:
     def observe(self, state: State) -> bool:
         """Add the last step; close the window when it is full."""
         book = self.model.book
-        self.pushed += abs(book.step.impulse_t)
+        self.pushed += book.step.rubbed
         self.surface.add(state)
         span = state.time - self.t[-1]
-        if span >= WINDOW:
+        if span >= self.window:
             heat, self.taken = book.friction - self.taken, book.friction
             self.power.append(2 * heat / span)
             # without friction the heat is round-off and may be negative

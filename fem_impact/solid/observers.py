@@ -18,6 +18,7 @@ from fem_impact.solid.state import State
 from fem_impact.tables.history import HistoryWriter
 
 QUIET = 20e-6  # s without contact before the free flight is evaluated: waves cross the block a few times
+OF_IMPACT = 0.1  # of `Case.one_impact`, the longest such time: in a smaller scene all is sooner
 GROWTH = 1e-2  # of E_0, growth of the total energy at which a run stops as unstable
 
 TAKEN = {"friction", "contact_dissipation", "radiated", "damping", "plate"}
@@ -194,19 +195,21 @@ class AddedMass:
         return False
 
 
-WINDOW = 2e-6  # s, of mean forces: nodes close one by one, so the impulse of a single step is noise
+FORCE_WINDOW = 2e-6  # s, of mean forces: nodes close one by one, so the impulse of a single step is noise
+OF_CONTACT = 1 / 30  # of the estimated contact, the longest window: half a sine keeps .9995
 
 
 @dataclass(slots=True)
 class PeakForce:
     """Observer of the largest normal force on the whole rod.
 
-    ``largest`` is its largest mean over `WINDOW`, N, and ``nodes`` how many nodes of the half model were
-    pressed at once in that window.
+    ``largest`` is its largest mean, N, over a ``window``, s, and ``nodes`` how many nodes of the half model
+    were pressed at once in that window.
     """
 
     moving: ClassVar[tuple[str, ...]] = ("largest", "nodes", "_time", "_impulse", "_nodes")
     book: ContactBook
+    window: float = FORCE_WINDOW
     every: int = 1
     largest: float = 0.0
     nodes: int = 0
@@ -217,7 +220,7 @@ class PeakForce:
     def observe(self, state: State) -> bool:
         """Close a window when it is long enough."""
         span, self._nodes = state.time - self._time, max(self._nodes, self.book.step.active)
-        if span >= WINDOW:
+        if span >= self.window:
             impulse = float(self.book.impulse[1])
             force = 2 * (impulse - self._impulse) / span
             if force > self.largest:

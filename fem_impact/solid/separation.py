@@ -11,7 +11,7 @@ from fem_impact.case.case import before_other_end
 from fem_impact.fem.flight import FreeVibration, RigidMotion
 from fem_impact.solid.contact.surface import SurfaceContact
 from fem_impact.solid.model import Model
-from fem_impact.solid.observers import QUIET
+from fem_impact.solid.observers import OF_IMPACT, QUIET
 from fem_impact.solid.rodview import RodState
 from fem_impact.solid.state import State
 
@@ -45,6 +45,11 @@ class Separation:
     other_end: float = np.inf
 
     @property
+    def quiet(self) -> float:
+        """Time, s, without contact before the free flight is evaluated."""
+        return min(QUIET, OF_IMPACT * self.horizon)
+
+    @property
     def _sample(self) -> float:
         """Interval, s, at which the free flight is evaluated."""
         return self.horizon / SAMPLES
@@ -58,7 +63,7 @@ class Separation:
             )
             return True
         book = self.model.book
-        if not book.intervals or book.touching or state.time - book.last_touch < QUIET:
+        if not book.intervals or book.touching or state.time - book.last_touch < self.quiet:
             return False
         motion, (u_n, u_t) = self.view.rigid(state), self.model.ground.speed(state.v)
         motion = replace(motion, V_n=motion.V_n - u_n, V_t=motion.V_t - u_t)  # as seen from the barrier
@@ -107,10 +112,10 @@ class Separation:
         if not isinstance(contact, SurfaceContact):
             return bool(lowest.min() > risen)
         surface = contact.barrier.places
-        # allows the barrier to move on for the time QUIET at its present speed
+        # allows the barrier to move on for the time `quiet` at its present speed
         base = risen if self.model.in_plate_frame else 0.0  # of the barrier's positions
         carried = 0.0 if self.model.in_plate_frame else ground.rate(state.v, x, surface)
-        margin = QUIET * float(np.abs(state.v[surface[:, 2]] - carried).max())
+        margin = self.quiet * float(np.abs(state.v[surface[:, 2]] - carried).max())
         top = max(risen - base, float(ground.levelled(x[surface[:, 0]], x[surface[:, 2]], x).max()))
         deep = t[lowest - base <= top + margin + contact.rod.sag]
         places, spin = contact.rod.places, ground.spin(state.v)

@@ -16,6 +16,7 @@ from fem_impact.case.size import FRAMES_SPAN
 from fem_impact.fem.geometry import tail_corners
 from fem_impact.fem.kernels import COMPILING
 from fem_impact.files.fields_write import FieldWriter
+from fem_impact.physics.contact_law import MERGE_GAP, MERGED
 from fem_impact.scene.impact import FIRST
 from fem_impact.solid.checkpoint import Moving
 from fem_impact.solid.contact.surface import SurfaceContact
@@ -23,7 +24,16 @@ from fem_impact.solid.contact_watch import ContactWatch, nodes_of
 from fem_impact.solid.fine_zone import SkinWatch
 from fem_impact.solid.march import Observer
 from fem_impact.solid.model import Model
-from fem_impact.solid.observers import AddedMass, Frames, History, PeakForce, Watch, history_column
+from fem_impact.solid.observers import (
+    FORCE_WINDOW,
+    OF_CONTACT,
+    AddedMass,
+    Frames,
+    History,
+    PeakForce,
+    Watch,
+    history_column,
+)
 from fem_impact.solid.rodview import FieldSampler, RodState
 from fem_impact.solid.separation import Separation
 from fem_impact.solid.state import State
@@ -121,13 +131,16 @@ class Watchers:
         kept = out is not None and scene.save.strain_samples > 0
         if sliced and (kept or scene.save.gauge is not None):
             strain = [StrainWatch.of(case, model, out / "waves.h5" if out and kept else None)]
-        skin, peak = SkinWatch(model, case.slots.bending is not None), PeakForce(model.book)
+        model.book.gap = min(MERGE_GAP, MERGED * case.one_impact)
+        skin = SkinWatch(model, case.slots.bending is not None)
+        short = OF_CONTACT * case.estimate.duration
+        peak = PeakForce(model.book, min(FORCE_WINDOW, short))
         added = AddedMass(model.added_mass)
         heat = None
         if case.slots.heat:
-            from fem_impact.solid.heatwatch import HeatWatch
+            from fem_impact.solid.heatwatch import HEAT_WINDOW, HeatWatch
 
-            heat = HeatWatch(model)
+            heat = HeatWatch(model, window=min(HEAT_WINDOW, short))
         # a flat end that lands flat leaves when the wave is back from the other end, and no contact before
         barrier = case.scene.barrier
         moves = barrier.mass is not None or barrier.bends

@@ -224,8 +224,9 @@ def path_over_speed(
             middle = w + 0.5 * dp * (t_t * s + n_t)
             s = ratio(middle) if middle * w > 0 else s
         slope_n, slope_t = n_n + n_t * s, t_t * s + n_t
-        slope_t = 0.0 if w == 0 and s == hold else slope_t
-        stops = w * (w + slope_t * dp) < 0
+        if w == 0 and s == hold:  # it holds on: nothing changes until compression ends, or the impact
+            dp, slope_t = inf, 0.0
+        stops = w != 0 and w * (w + slope_t * dp) < 0
         dp = -w / slope_t if stops else dp
         if p_c == inf and u + slope_n * dp >= 0:
             dp, stops = -u / slope_n, False

@@ -98,7 +98,7 @@ def test_only_effects_of_the_model_are_named():
     rigid, modal = (simulate(every, fidelity).provenance.effects for fidelity in REDUCED)
     plastic = ("rod-plasticity", "barrier-elastoplastic")
     assert rigid == ("friction", *plastic, "contact-heating")
-    assert modal == ("vibration", "friction", *plastic, "gravity", "large-rotation")
+    assert modal == ("vibration", "friction", *plastic, "rate-hardening", "gravity", "large-rotation")
 
 
 def test_a_thick_rod_has_modes_too():

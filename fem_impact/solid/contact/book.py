@@ -23,6 +23,7 @@ class StepRecord(NamedTuple):
     impulse_t, impulse_n : sums p_t and p_n of the impulses on the rod, N s
     moment : sum of x_t p_n - x_n p_t, about the origin, N m s
     friction, closing : energy taken by friction and by stopping lumped nodes, J
+    rubbed : sum of the sizes of the impulses along the surface, N s
     active : number of pressed nodes
     outside : number of rod nodes below the barrier's surface that lie beside its patch
     """
@@ -32,6 +33,7 @@ class StepRecord(NamedTuple):
     moment: float = 0.0
     friction: float = 0.0
     closing: float = 0.0
+    rubbed: float = 0.0
     active: int = 0
     outside: int = 0
 
@@ -55,6 +57,7 @@ class ContactBook:
     step : what the last step did
     friction, closing : energy taken by friction and by stopping lumped nodes, J
     impulse : (3,) sums of p_t, p_n and of the moment x_t p_n - x_n p_t about the origin
+    gap : longest time, s, without touching within one contact
     """
 
     step: StepRecord = StepRecord()  # noqa: RUF009
@@ -65,6 +68,7 @@ class ContactBook:
     largest: float = 0.0
     last_touch: float = -np.inf
     outside: int = 0
+    gap: float = MERGE_GAP
 
     @property
     def table(self) -> Array:
@@ -83,7 +87,7 @@ class ContactBook:
 
     @last_step.setter
     def last_step(self, values: Array) -> None:
-        self.step = StepRecord(*values[:5].tolist(), *values[5:].astype(int).tolist())
+        self.step = StepRecord(*values[:6].tolist(), *values[6:].astype(int).tolist())
 
     @property
     def touching(self) -> bool:
@@ -102,7 +106,7 @@ class ContactBook:
         self.impulse += (step.impulse_t, step.impulse_n, step.moment)
         self.largest = max(self.largest, step.impulse_n)
         if step.impulse_n > FAINT * self.largest:
-            if not self.intervals or time - self.intervals[-1].end > MERGE_GAP:
+            if not self.intervals or time - self.intervals[-1].end > self.gap:
                 self.intervals.append(Interval(time, time))
             now = self.intervals[-1]
             now.end = time

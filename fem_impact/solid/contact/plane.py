@@ -53,7 +53,7 @@ def touch_plane(nodes, x, v, force, inverse_mass, kick, dt, f, over_speed):  # t
 
     Friction follows the sliding speed before the step's forces, at which it slid last.
     """
-    impulse_t, impulse_n, moment, friction, closing, active = 0.0, 0.0, 0.0, 0.0, 0.0, 0
+    impulse_t, impulse_n, moment, friction, closing, rubbed, active = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0
     for i in range(len(nodes)):
         t, b, n = nodes[i, 0], nodes[i, 1], nodes[i, 2]
         if x[n] + dt * v[n] >= 0.0:
@@ -76,5 +76,6 @@ def touch_plane(nodes, x, v, force, inverse_mass, kick, dt, f, over_speed):  # t
         moment += x[t] * p - x[n] * p_t
         friction -= 0.5 * (p_t * (old_t + v[t]) + p_b * (old_b + v[b]))
         closing -= 0.5 * p * (old_n + v[n])
+        rubbed += np.sqrt(p_t * p_t + p_b * p_b)
         active += 1
-    return StepRecord(impulse_t, impulse_n, moment, friction, closing, active, 0)
+    return StepRecord(impulse_t, impulse_n, moment, friction, closing, rubbed, active, 0)

@@ -244,7 +244,7 @@ def settle(
 def work_of_points(count, motion, c, outside):  # type: ignore[no-untyped-def]
     """Return the step's record of the impulses on the rod and their work; remember the impulses."""
     x = motion.x
-    impulse_t, impulse_n, moment, friction, closing, active = 0.0, 0.0, 0.0, 0.0, 0.0, 0
+    impulse_t, impulse_n, moment, friction, closing, rubbed, active = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0
     c.memory[:, :] = 0.0
     for k in range(count):
         t, b, n = relative(motion.v, c.nodes[k], c.weights[k])
@@ -256,6 +256,7 @@ def work_of_points(count, motion, c, outside):  # type: ignore[no-untyped-def]
         friction -= p[0] * m_t + p[1] * m_b + p[2] * m_n - stopping
         impulse_t += p[0]
         impulse_n += p[2]
+        rubbed += np.sqrt(max(p[0] * p[0] + p[1] * p[1] + p[2] * p[2] - pressed * pressed, 0.0))
         active += 1 if pressed > 0.0 else 0
         for a in range(5):
             i, j, l = c.nodes[k, a]
@@ -265,4 +266,4 @@ def work_of_points(count, motion, c, outside):  # type: ignore[no-untyped-def]
                 moment += c.weights[k, a] * (at_t * p[2] - at_n * p[0])
         for i in range(3):
             c.memory[c.owner[k], i] = p[i]
-    return StepRecord(impulse_t, impulse_n, moment, friction, closing, active, outside)
+    return StepRecord(impulse_t, impulse_n, moment, friction, closing, rubbed, active, outside)
