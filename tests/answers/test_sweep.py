@@ -13,7 +13,7 @@ from outcome_maker import altered, outcome
 import fem_impact
 from fem_impact.answers.sweep import MOST_ROWS, publish_sweep, sweep
 from fem_impact.answers.sweep_results import COLUMNS, SHORT, Results, SweepRow
-from fem_impact.answers.vary import Variation, cases, in_unit
+from fem_impact.answers.vary import Variation, cases, in_unit, measure, quantity
 from fem_impact.cli.values import read_values
 from fem_impact.errors import SceneError, UsageError
 from fem_impact.files.run_directory import earlier_runs
@@ -35,6 +35,8 @@ pytestmark = pytest.mark.usefixtures("unrendered")
         ("projectile.length=200 mm, 40 cm", ["200 mm", "40 cm"]),
         ("accuracy.across=8,12", [8, 12]),
         ("projectile.tip=A,B", ["A", "B"]),
+        ("projectile.material=100cr6,42crmo4", ["100cr6", "42crmo4"]),
+        ("projectile.material=s235,42crmo4", ["s235", "42crmo4"]),
         ("projectile.mesh=../a.msh,b.msh", ["../a.msh", "b.msh"]),
         (
             'x={name = "a, b", E = "1 GPa"},rod-steel,[["0 mm", "6 mm"], [1, 2]]',
@@ -666,3 +668,29 @@ def test_a_friction_that_follows_the_materials_is_told(tmp_path):
         assert len(lines) == told
         low, high = sorted(found.numbers("friction_f"))
         assert not told or f"`friction_f` {low:.3g} to {high:.3g}" in lines[0]
+
+
+def test_a_name_that_begins_with_digits_is_no_quantity():
+    for name in ("42crmo4", "100cr6"):
+        assert measure(name) == (name, "") and quantity(name) is None and in_unit(name, "") == name
+    assert quantity("42 mm") == ("42", "mm") and measure("42mm") == (42.0, "mm")
+    assert quantity("2 %") == ("2", "%") and quantity("1e-3") == ("1e-3", "") and quantity("A") is None
+
+
+def test_a_column_of_names_that_begin_with_digits_has_no_unit():
+    names = ["42crmo4", "100cr6"]
+    rows = [
+        SweepRow(Variation(f"case-{name}", {"projectile.material": name}, None), outcome(), "")
+        for name in names
+    ]
+    table = Results({"projectile.material": names}, tuple(rows)).table(())
+    assert table.names[:2] == ("case", "projectile.material") and [*table.cells(table.names[1])] == names
+
+
+@pytest.mark.parametrize("end", ["low", "high"])
+def test_numbers_of_a_key_that_ends_as_a_column_of_ends_does_are_its_own(end):
+    name = f"strikes_other_end_over_first_{end}"
+    found = made_up((None, None), **{name: 0.75}).numbers(name)
+    assert found.tolist() == [0.75, 0.75]
+    banded = made_up((None, None), mesh_limit={"mu": 0.5}, mesh_band={"mu": 0.125}, mu=0.5)
+    assert [banded.numbers(f"mu_{side}").tolist() for side in ("low", "high")] == [2 * [0.375], 2 * [0.625]]

@@ -1,11 +1,14 @@
 """A scene beside its own tests: errors, parts of their uncertainty, the joint statement, any number."""
 
+import json
+
 import numpy as np
 import pytest
 
+from fem_impact.answers import validate as module
 from fem_impact.answers.compare import compare, measured_value
 from fem_impact.answers.v_and_v import joint
-from fem_impact.answers.validate import _not_compared, interval_of, validate
+from fem_impact.answers.validate import NOT_APART, _not_compared, interval_of, validate
 from fem_impact.cli.main import main
 from fem_impact.errors import ResultError, SceneError, UsageError
 from fem_impact.run import tests as own_tests
@@ -211,3 +214,70 @@ def test_what_cannot_be_validated_is_refused(tmp_path):
         validate(scene_with(tmp_path, MU), {"impact.v_n": ("-1 m/s", "-900 mm/s")}, "rigid")
     with pytest.raises(SceneError, match="nothing to compare with"):
         validate(load("elastic-frictionless"), UNCERTAIN, "rigid")
+
+
+TWO_TESTS = (
+    "v_n_m_per_s,v_t_m_per_s,V_n_m_per_s,V_t_m_per_s,Omega_rad_per_s\n-1,-9,0.3,-8.7,0\n-1,-9,0.4,-8.6,2\n"
+)
+
+
+def test_two_tests_and_one_uncertain_input_tell_no_joint_probability_but_why(tmp_path):
+    found = validate(scene_with(tmp_path, TWO_TESTS), {"surface.friction": (0.24, 0.26)}, "rigid", samples=2)
+    assert (found.distance, found.p) == (NOT_APART, NOT_APART)
+    assert f"jointly ({', '.join(found.joined)}) {NOT_APART.reason}" in repr(found)
+    assert all(one.verdict for one in found.comparisons)
+
+
+def test_a_joint_probability_that_is_not_known_is_null_with_its_reason(tmp_path, capsys):
+    file = tmp_path / "scene.toml"
+    file.write_text(to_toml(scene_with(tmp_path, TWO_TESTS), tmp_path))
+    line = ["validate", str(file), "--samples", "2", "--quiet", "--fidelity", "rigid", "--uncertain"]
+    line += ["surface.friction=0.24,0.26"]
+    assert main([*line, "--json"]) == 0
+    joint = json.loads(capsys.readouterr().out)["joint"]
+    assert joint == {"numbers": joint["numbers"], "distance": None, "p": None, "reason": NOT_APART.reason}
+    assert main(line) == 0
+    said = " ".join(capsys.readouterr().out.split())
+    assert f"Jointly ({', '.join(joint['numbers'])}): the distance {NOT_APART.reason}." in said
+
+
+def test_a_joint_probability_that_is_known_has_no_reason(tmp_path, capsys):
+    file = tmp_path / "scene.toml"
+    file.write_text(to_toml(scene_with(tmp_path, MU), tmp_path))
+    line = ["validate", str(file), "--samples", "2", "--quiet", "--fidelity", "rigid", "--uncertain"]
+    assert main([*line, "surface.friction=0.2,0.3", "--json"]) == 0
+    joint = json.loads(capsys.readouterr().out)["joint"]
+    assert joint["reason"] is None and joint["distance"] > 0.0 and 0.0 < joint["p"] < 1.0
+
+
+def test_an_error_that_a_scene_wants_of_meshes_refuses_no_model_without_them(tmp_path, monkeypatch):
+    plain = scene_with(tmp_path, MU)
+    wanting = replace_all(plain, {"accuracy": "90 %", "measured": plain.measured})
+    assert wanting.accuracy.target == 0.9
+    there = validate(wanting, UNCERTAIN, "rigid", samples=2)
+    assert there.p == validate(plain, UNCERTAIN, "rigid", samples=2).p
+
+    wanted = []
+
+    def rigidly(scene, fidelity, options):
+        wanted.append((fidelity, scene.accuracy.target))
+        return simulate(plain, "rigid")
+
+    monkeypatch.setattr(module, "simulate", rigidly)
+    monkeypatch.setattr(module, "_not_compared", lambda value, band, fidelity: "")
+    for fidelity, quick in (("solid", "rigid"), ("solid", "modal"), ("modal", "rigid")):
+        wanted.clear()
+        validate(wanting, UNCERTAIN, fidelity, samples=2, inputs_by=quick)
+        assert {*wanted} == {(fidelity, 0.9 if fidelity == "solid" else None), (quick, None)}
+
+
+@pytest.mark.parametrize(
+    ("asked", "words"),
+    [
+        ({"uncertain": {}}, "names no interval"),
+        *(({"uncertain": UNCERTAIN, "samples": samples}, "no power of two") for samples in (3, 1, 0)),
+    ],
+)
+def test_a_call_without_an_interval_or_with_another_number_of_samples_is_refused(tmp_path, asked, words):
+    with pytest.raises(UsageError, match=words):
+        validate(scene_with(tmp_path, MU), fidelity="rigid", **asked)

@@ -223,3 +223,26 @@ def test_a_stop_in_a_callback_of_a_weak_reference_is_not_lost(cli, signals, stop
         for _ in range(500):
             time.sleep(0.01)
     assert reference() is None
+
+
+@pytest.mark.parametrize(
+    ("first", "second"),
+    [
+        ("impact.angle=44,45deg", "impact.angle=45,46deg"),
+        ("impact.angle=44,45deg", "impact.angle_rad=0.78,0.8"),
+        ("projectile.length_m=0.08,0.09", "projectile.length=80,90mm"),
+    ],
+)
+@pytest.mark.parametrize(
+    "line",
+    [
+        ("sweep", "t5b", "--fidelity", "rigid", "--vary"),
+        ("validate", "t5b", "--fidelity", "rigid", "--samples", "2", "--uncertain"),
+        ("assess", "t5b", "--fidelity", "modal", "--for", "force", "--limit", "9 kN", "--uncertain"),
+    ],
+)
+def test_the_values_of_a_key_that_are_given_twice_are_refused(cli, line, first, second):
+    *words, option = line
+    code, out, err = cli(*words, option, first, option, second)
+    assert (code, out) == (2, "")
+    assert f'{option} "{second.partition("=")[0]}": is given twice.' in err

@@ -13,7 +13,8 @@ from scale_tasks import Here, job, record, simulate
 
 import fem_impact.run.program as sources_module
 import fem_impact.run.simulate
-from fem_impact.errors import OutputPathError, ResultError
+from fem_impact.answers.refine.forecast import OverBudgetError
+from fem_impact.errors import OutputPathError, ResultError, RunError, SceneError
 from fem_impact.jobs import job as job_module
 from fem_impact.jobs.job import Failure, Store
 from fem_impact.jobs.run import run_jobs
@@ -265,3 +266,24 @@ def test_answers_of_a_failure_are_plain_text(tmp_path):
     answer = job_module.compute(job("a"))
     assert json.loads(answer.outcome)["scene_id"] == "a"
     assert (answer.reason, answer.lasting) == ("", False)
+
+
+@pytest.mark.parametrize(
+    ("error", "lasts"),
+    [
+        (SceneError("is too short.", key="projectile.length"), True),
+        (RunError("An element folded at 12.00 us."), True),
+        (OverBudgetError("The level takes too long.", 90), False),
+        (OutputPathError("The disk is full."), False),
+    ],
+)
+def test_a_failure_that_depends_on_the_machine_is_tried_again(tmp_path, monkeypatch, error, lasts):
+    def fails(*_):
+        raise error
+
+    monkeypatch.setattr(fem_impact.run.simulate, "simulate", fails)
+    store = tmp_path / "store.sqlite"
+    first, _ = run(store, job("a"))
+    again, names = run(store, job("a"))
+    assert first["a"] == again["a"] == Failure("a", str(error))
+    assert names == ([] if lasts else ["a"])

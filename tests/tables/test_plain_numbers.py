@@ -1,9 +1,11 @@
 """Numbers for readers: significant digits without an exponent, in sentences and in tables."""
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from fem_impact.tables.table import Table
-from fem_impact.tables.text import plain
+from fem_impact.tables.text import plain, plain_above
 
 
 @pytest.mark.parametrize(
@@ -21,3 +23,12 @@ def test_very_small_and_large_numbers_keep_it():
 def test_a_table_shows_plain_digits():
     table = Table.of(("set", "peak force, N"), [["t5b", 12345.678]])
     assert "12350" in table.terminal() and "12350" in table.markdown() and "12345.678" in table.csv()
+
+
+@given(st.floats(1e-6, 1e6), st.integers(1, 8))
+def test_a_number_from_above_is_never_below_its_value_and_less_than_a_digit_above_it(value, digits):
+    told = float(plain_above(value, digits))
+    nearest = float(f"{value:.{digits}g}")
+    unit = float(f"1{f'{nearest:.{digits - 1}e}'[-4:]}") * 10.0 ** (1 - digits)
+    assert value <= told < value + unit * (1 + 1e-6)
+    assert told == float(f"{told:.{digits}g}")

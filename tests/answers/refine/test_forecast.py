@@ -219,3 +219,11 @@ def test_a_run_tells_its_range_when_the_second_mesh_stands():
     stands = next(one for one in second if "are made" in one.contact)
     least, most = stands.eta_range_s
     assert 0 < least < stands.eta_s < most
+
+
+def test_the_budget_of_levels_grows_with_their_number_and_with_the_places():
+    budgets = [forecast.for_levels_s(100.0, levels, places) for places in (1, 2) for levels in (2, 3)]
+    two, three, two_twice, three_twice = budgets
+    assert forecast.for_levels_s(100.0) == two < two_twice < three < three_twice
+    for levels, budget in ((2, two), (3, three)):
+        assert budget > 100.0 * sum(MIDDLE**level for level in range(levels))

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fem_impact.answers.verdict.dropped import RodDropInput, weights_of
+from fem_impact.answers.verdict.dropped import RodDropInput, dropped, weights_of
 from fem_impact.answers.verdict.transfer import (
     Range,
     carry,
@@ -14,6 +14,7 @@ from fem_impact.answers.verdict.transfer import (
     worst_losses,
 )
 from fem_impact.errors import SceneError
+from fem_impact.scene.shipped import load, replace_all
 from rigid import (
     General,
     ImpactError,
@@ -257,3 +258,27 @@ def test_the_centre_of_the_impulse_is_where_no_moment_acts():
     assert again.d_c[0] < 0.0226 < again.d_c[1]
     with pytest.raises(ImpactError, match="only push"):
         impulse_centre(-1.0, 0.0, -1.0, 0.0, 0.0, **rod)
+
+
+LAYERS = [{"material": "s235", "thickness": "6 mm"}]
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"barrier.layers": LAYERS}, "a massive plate of one metal"),
+        ({"barrier.thickness": "50 mm", "barrier.support": "infinite"}, "a massive plate of one metal"),
+        ({"restitution": 0.4}, "of which the program chooses restitution and effects"),
+        ({"effects": ["auto", "-vibration"]}, "of which the program chooses restitution and effects"),
+        ({"effects": ["auto", "barrier-rigid"]}, "of which the program chooses restitution and effects"),
+    ],
+)
+def test_measured_losses_are_not_carried_to_what_a_scene_states_otherwise(changes, words):
+    with pytest.raises(SceneError, match=words):
+        dropped(replace_all(load("t5b"), changes))
+    assert dropped(load("t5b")).surface == "machined"
+
+
+def test_measured_losses_that_do_not_apply_are_refused_before_any_run(cli):
+    code, out, err = cli("assess", "t5b", "--heat", "--set", "restitution=0.4")
+    assert (code, out) == (3, "") and "is not what the measured tests are about" in err

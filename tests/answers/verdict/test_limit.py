@@ -488,3 +488,79 @@ def test_a_reduced_model_whose_ledger_is_open_tells_no_number(scene, monkeypatch
     assert isinstance(told, Unknown) and "The energy ledger misses" in told.reason
     spread = friction_spread(fem_impact.replace(scene, "surface", {"state": "pair"}), "solid")
     assert spread.said == "" or "rigid theory" in spread.said
+
+
+class Uneven(Sloped):
+    """As many N as the angle has degrees, told well above 45 N upwards and below 50 N downwards."""
+
+    def reduced(self, scene):
+        value = np.degrees(scene.impact.angle)
+        return Bound(value, value - (5.0 if value < 49.0 else 19.0), value + (50.0 if value < 45.0 else 5.0))
+
+
+@pytest.mark.parametrize(
+    ("limit", "answer", "angle", "margin"),
+    [
+        (100.0, "yes", "44 deg", 100.0 - 94.0),  # 65 at 60 deg
+        (62.0, "undecided", "44 deg", 62.0 - 94.0),
+        (40.0, "no", "48 deg", 40.0 - 43.0),  # 41 at 60 deg
+    ],
+)
+def test_the_place_whose_end_decides_is_shown_with_its_margin(scene, limit, answer, angle, margin):
+    found = judge(scene, Uneven(), limit, ANGLE, "modal")
+    assert (found.answer, found.worst["impact.angle"]) == (answer, angle)
+    assert found.margin == pytest.approx(margin)
+
+
+def least(found):
+    """The least limit, SI, that an undecided verdict proposes."""
+    return 1e3 * float(re.search(r"a limit of at least (\S+) kN", found.missing)[1])
+
+
+@pytest.mark.parametrize("uneven", [Sloped(), Uneven()])
+def test_the_limit_that_an_undecided_answer_proposes_decides_over_all_places(scene, uneven):
+    angle = {"impact.angle": ("20 deg", "61.237 deg")}  # whose ends are no round numbers
+    found = judge(scene, uneven, 62.0, angle, "modal")
+    assert found.answer == "undecided"
+    assert judge(scene, uneven, least(found), angle, "modal").answer == "yes"
+
+
+@pytest.mark.parametrize("high", [70.00043, 70.4321, 123.449, 9871.4])
+def test_the_limit_that_is_proposed_lies_above_the_upper_end(scene, high):
+    found = replace(judge(scene, Sloped(), 69.0, ANGLE, "modal"), bound=Bound(60.0, 50.0, high))
+    assert found.bound.answer(least(found)) == "yes"
+
+
+def test_of_two_places_of_finite_elements_the_one_with_the_larger_upper_end_is_shown(monkeypatch, scene):
+    told = {60: Bound(12.0, 11.0, 13.0), 20: Bound(10.0, 5.0, 30.0)}
+
+    def of(pair, *_):
+        return told[round(np.degrees(pair[0].impact.angle))], [], {}
+
+    monkeypatch.setattr(module, "by_levels", of)
+    found = judge(scene, Sloped(), 65.0, ANGLE)
+    assert found.by == "finite elements" and found.worst == {"impact.angle": "20 deg"}
+    assert found.margin == pytest.approx(65.0 - 30.0)
+
+
+def test_bounds_rank_by_their_answer_then_by_the_end_that_decides_it():
+    sure, wide, open_, beyond = (
+        Bound(9.0, 8.0, 10.0),
+        Bound(5.0, 1.0, 12.0),
+        Bound(6.0, 3.0, 30.0),
+        Bound(25.0, 21.0, 40.0),
+    )
+    order = [sure, wide, open_, beyond, Bound(24.0, 23.0, 25.0)]
+    assert sorted(reversed(order), key=lambda one: one.rank(20.0)) == order
+
+
+def test_the_budget_of_the_next_step_holds_all_levels_at_all_places(scene):
+    """A second was given, so that none of the budgets is the one that was stated."""
+
+    def asked(levels, intervals):
+        criterion = Sloped()
+        criterion.least_levels = levels
+        return judge(scene, criterion, 69.0 if intervals else 45.5, intervals, "modal", 1.0).more["budget_s"]
+
+    one, two = asked(2, None), asked(2, ANGLE)
+    assert 1.0 < one < two < asked(3, ANGLE) and one < asked(3, None)

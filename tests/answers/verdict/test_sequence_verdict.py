@@ -1,11 +1,13 @@
 """The verdict on a sequence of strikes."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 
 from fem_impact.answers.verdict import assess
 from fem_impact.answers.verdict.assess import sequence_verdict
+from fem_impact.outcome.keys import Unknown
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace_all
 
@@ -59,3 +61,60 @@ def test_a_sequence_that_a_model_refuses_does_not_refuse_the_verdict_on_the_firs
     flank["projectile.diameter"] = "20 mm"
     (told,) = sequence_verdict(replace_all(load("quick"), FLOOR | flank), 0.05)
     assert told.startswith("The sequence is not known: impact.angle") and "straight side" in told
+
+
+def struck(lost, approach=1.0, half=0.0, half_approach=0.0, rubbed=0.0, half_rubbed=0.0):
+    """One certain strike of 1 J, which loses some of it, with half-widths as of the reduced model."""
+    halves = {"E_after_J": half, "approach_m_per_s": half_approach}
+    return SimpleNamespace(
+        each=(SimpleNamespace(part="tip", approach=approach, lost=lost, before=1.0),),
+        hardest_energy=1,
+        certain=1,
+        hardest_agree=64,
+        friction=rubbed,
+        friction_half=half_rubbed,
+        plastic=lost - rubbed,
+        damping=0.0,
+        settled=0.0,
+        other_end=1.0,
+        half_width=lambda number, name: halves[name],
+    )
+
+
+def answers(monkeypatch, modal, tolerance=0.1):
+    """The answers on the hardest strike and the whole sequence, where rigid theory loses half the energy."""
+    strikes = {"rigid": struck(0.5), "modal": modal}
+    monkeypatch.setattr(assess, "simulate", lambda _, fidelity: SimpleNamespace(strikes=strikes[fidelity]))
+    return [told.partition(":")[0] for told in sequence_verdict(load("quick"), tolerance)[:2]]
+
+
+@pytest.mark.parametrize(
+    ("apart", "half", "answer"),
+    [
+        (0.04, 0.05, "YES"),
+        (0.08, 0.05, "UNDECIDED"),
+        (0.12, 0.05, "UNDECIDED"),
+        (0.2, 0.05, "NO"),
+        (0.2, 0.15, "UNDECIDED"),
+        (0.0, 0.15, "UNDECIDED"),
+    ],
+)
+def test_a_difference_decides_where_its_half_width_lies_on_one_side_of_the_tolerance(
+    monkeypatch, apart, half, answer
+):
+    assert answers(monkeypatch, struck(0.5 + apart, half=half)) == [answer, answer]
+    assert answers(monkeypatch, struck(0.5 - apart, half=half)) == [answer, answer]
+
+
+def test_the_speed_of_a_strike_and_the_work_of_friction_have_half_widths_of_their_own(monkeypatch):
+    fast = struck(0.5, approach=1.05, half_approach=0.1)
+    assert answers(monkeypatch, fast) == ["UNDECIDED", "UNDECIDED"]
+    assert answers(monkeypatch, struck(0.5, approach=1.5, half_approach=0.1)) == ["NO", "NO"]
+    rubs = struck(0.5, rubbed=0.05, half_rubbed=0.06)
+    assert answers(monkeypatch, rubs) == ["YES", "UNDECIDED"]
+
+
+def test_a_half_width_that_is_not_known_decides_nothing(monkeypatch):
+    unknown = struck(0.5)
+    unknown.half_width = lambda number, name: Unknown("not told")
+    assert answers(monkeypatch, unknown) == ["UNDECIDED", "UNDECIDED"]
