@@ -112,6 +112,11 @@ class SingleTests:
         """Return mean, standard deviation and 95 % interval of the mean, of what follows from them too."""
         return {name: experiments.statistic(values) for name, values in self._columns().items()}
 
+    @property
+    def count(self) -> int:
+        """How many tests there are."""
+        return len(self.motion["v_n"])
+
     def covariance(self, names: Sequence[str]) -> Array:
         """Return the covariance (k, k) of means, from how they vary together between tests."""
         return experiments.covariance_of_means(self._columns(), names)

@@ -37,17 +37,19 @@ def plain(value: float, digits: int = 3) -> str:
     return f"{Decimal(rounded):f}" if 1e-5 <= abs(value) < 1e6 else rounded
 
 
-def plain_above(value: float, digits: int = 3) -> str:
-    """Return the least number of so many significant digits that is no less than a value above 0.
+def plain_bound(value: float, digits: int, rounding: str) -> str:
+    """Return a number with so many significant digits, rounded to one side as `decimal` names it.
 
     Examples
     --------
-    >>> plain_above(0.02806, 2), plain_above(0.28, 2), plain_above(998.6, 3)
-    ('0.029', '0.28', '999')
+    >>> plain_bound(0.02806, 2, "ROUND_CEILING"), plain_bound(0.28, 2, "ROUND_CEILING")
+    ('0.029', '0.28')
+    >>> plain_bound(998.6, 3, "ROUND_FLOOR")
+    '998'
     """
-    rounded = Decimal(f"{value:.{digits}g}")
-    step = Decimal(1).scaleb(rounded.adjusted() + 1 - digits)
-    return plain(float(rounded + step if float(rounded) < value else rounded), digits)
+    exact = Decimal(repr(float(value)))
+    step = Decimal(1).scaleb(exact.adjusted() + 1 - digits)
+    return plain(float(exact.quantize(step, rounding)), digits)
 
 
 def digits_apart(one: float, other: float, least: int = 2) -> int:

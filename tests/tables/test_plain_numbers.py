@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fem_impact.tables.table import Table
-from fem_impact.tables.text import plain, plain_above
+from fem_impact.tables.text import plain, plain_bound
 
 
 @pytest.mark.parametrize(
@@ -27,7 +27,7 @@ def test_a_table_shows_plain_digits():
 
 @given(st.floats(1e-6, 1e6), st.integers(1, 8))
 def test_a_number_from_above_is_never_below_its_value_and_less_than_a_digit_above_it(value, digits):
-    told = float(plain_above(value, digits))
+    told = float(plain_bound(value, digits, "ROUND_CEILING"))
     nearest = float(f"{value:.{digits}g}")
     unit = float(f"1{f'{nearest:.{digits - 1}e}'[-4:]}") * 10.0 ** (1 - digits)
     assert value <= told < value + unit * (1 + 1e-6)

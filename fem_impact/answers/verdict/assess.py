@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from decimal import ROUND_CEILING, ROUND_FLOOR
 from math import degrees, inf, isclose
 
 import numpy as np
@@ -23,7 +24,7 @@ from fem_impact.scene.impact import Following
 from fem_impact.scene.types import Scene, require_scene
 from fem_impact.scene.units import parse_change
 from fem_impact.tables.table import Table
-from fem_impact.tables.text import digits_apart, plain, plain_above
+from fem_impact.tables.text import digits_apart, plain, plain_bound
 
 TOLERANCE = 0.05
 """Change of e that may be neglected, unless stated."""
@@ -112,14 +113,15 @@ class Verdict:
         size, band = abs(self.here.value), self.here.band
         margin, enough = abs(self.tolerance - size), size + band
         digits = digits_apart(margin, band)
-        missing = f"an error below {plain(margin, digits)} instead of {plain(band, digits)}"
+        less = plain_bound(margin, digits, ROUND_FLOOR)
+        missing = f"an error below {less} instead of {plain(band, digits)}"
         if self.answer != "undecided":
             missing = f"for a sure answer {missing}"
         if not self.more:
             missing += ", which no model tells here"
         if enough >= 1.0:  # no change that may be neglected
             return f"{missing}."
-        wider = plain_above(enough, digits_apart(self.tolerance, enough))
+        wider = plain_bound(enough, digits_apart(self.tolerance, enough), ROUND_CEILING)
         return f"{missing}; or a change of {wider} that may be neglected."
 
     @property
@@ -323,7 +325,7 @@ def sequence_verdict(scene: Scene, tolerance: float) -> list[str]:
     rubs, all_ = (abs(a - b) for a, b in zip(*lost, strict=True))
     half = _half(modal, last, "E_after_J") if last <= certain else inf
     whole = _all_within([(rubs, allowed, or_none(modal.friction_half) or 0.0), (all_, allowed, half)])
-    whole = hardest if whole == "yes" else whole
+    whole = "no" if "no" in (hardest, whole) else "undecided" if "undecided" in (hardest, whole) else "yes"
     rigidly, by_modes = (f"{lost_all:.3g} J, {rubbed:.3g} J of it by friction" for rubbed, lost_all in lost)
     ratios = modal.other_end, rigid.other_end
     ends = ("not by itself" if isinstance(one, Unknown) else f"{one:.3g} times" for one in ratios)

@@ -222,7 +222,8 @@ def _not_measured(scene: Scene) -> str:
     plate = scene.barrier
     if plate.layers or plate.thickness is not None or plate.mass is not None or plate.v_n or plate.v_t:
         return "they are about a massive plate of one metal at rest"
-    if scene.restitution is not None or any(name.startswith(FORCED) for name in scene.effects):
+    chosen = "auto" in scene.effects and not any(name.startswith(FORCED) for name in scene.effects)
+    if scene.restitution is not None or not chosen:
         return "they are about bodies of which the program chooses restitution and effects"
     for body, mine, measured in pairs:
         if mine != measured:

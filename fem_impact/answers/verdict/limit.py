@@ -6,6 +6,7 @@ where its error leaves the answer open.
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
+from decimal import ROUND_CEILING
 from functools import partial
 from itertools import product
 from math import inf
@@ -38,9 +39,10 @@ from fem_impact.outcome.record import installed_versions
 from fem_impact.progress import tell_cell
 from fem_impact.scene.types import Scene, digest
 from fem_impact.scene.units import parse_change, parse_quantity
-from fem_impact.tables.text import digits_apart, plain, plain_above
+from fem_impact.tables.text import digits_apart, plain, plain_bound
 
 Write = Callable[[float, int], str]
+upwards = partial(plain_bound, rounding=ROUND_CEILING)
 PLACES = {1: 21, 2: 7, 3: 5, 4: 3}
 """Values of each of so many intervals at which the reduced model looks."""
 CONFIRMED = (
@@ -117,8 +119,8 @@ class LimitVerdict:
             if self.bound.beyond:
                 return f"{lies}."
             digits = digits_apart(self.limit, self.bound.high, 3)
-            high = _in_unit(self.criterion, self.bound.high, digits, plain_above)
-            return f"{lies}; or a limit of at least {high}."
+            high = _in_unit(self.criterion, self.bound.high, digits, upwards)
+            return f"{lies}; or a limit above {high}."
         if self.not_known:
             return f"an answer: {self.not_known}"
         if self.bound is None:
@@ -347,11 +349,6 @@ def _told(criterion: Criterion, bound: Bound, where: str = "") -> str:
     return f"{value} ({low} to {_in_unit(criterion, bound.high)}){where}"
 
 
-def _plain(bound: Bound) -> dict[str, Any]:
-    """Return a bound as plain JSON: what is infinite is null."""
-    return {name: None if value == inf else value for name, value in asdict(bound).items()}
-
-
 def limit_document(v: LimitVerdict, command: str) -> dict[str, Any]:
     """Return the verdict as plain JSON, its sentences with it; ``command`` is that which gives it again."""
     of, bound = v.criterion, v.bound
@@ -387,7 +384,7 @@ def limit_document(v: LimitVerdict, command: str) -> dict[str, Any]:
         "answer": v.answer,
         "margin": v.margin,
         "worst": dict(v.worst),
-        "bound": None if bound is None else _plain(bound),
+        "bound": bound and {name: None if value == inf else value for name, value in asdict(bound).items()},
         "rests_on": v.by,
         "box": box,
         "missing": v.missing or None,

@@ -387,11 +387,11 @@ def test_a_next_step_repeats_the_question(monkeypatch, scene):
 
 def test_an_undecided_limit_says_what_is_missing_and_what_comes_next(scene):
     found = judge(scene, Sloped(), 69.0, ANGLE, "modal")
-    assert "or a limit of at least 0.07 kN" in found.missing
+    assert "or a limit above 0.07 kN" in found.missing
     assert limit_document(found, "fem-impact assess t5b")["next_step"].endswith(
         "--fidelity solid --budget '60 s'"
     )
-    assert "at least 0.0700004 kN" in replace(found, limit=70.0, bound=Bound(60.0, 50.0, 70.0004)).missing
+    assert "above 0.0700004 kN" in replace(found, limit=70.0, bound=Bound(60.0, 50.0, 70.0004)).missing
     places = judge(scene, Sloped(missing=(40.0,)), 75.0, ANGLE, "modal")
     assert places.missing == "an answer: it slides on"
     assert judge(scene, Sloped(), 75.0, ANGLE, "modal").missing == ""
@@ -514,7 +514,7 @@ def test_the_place_whose_end_decides_is_shown_with_its_margin(scene, limit, answ
 
 def least(found):
     """The least limit, SI, that an undecided verdict proposes."""
-    return 1e3 * float(re.search(r"a limit of at least (\S+) kN", found.missing)[1])
+    return 1e3 * float(re.search(r"a limit above (\S+) kN", found.missing)[1])
 
 
 @pytest.mark.parametrize("uneven", [Sloped(), Uneven()])
