@@ -21,6 +21,7 @@ NO_ERROR = (
     "of gauges; a rigid strike has no force"
 )
 """Why W_damping_J, E_vib_before_J, E_other_J, dents, gauges and some forces have no half-width."""
+NO_FORCE = Unknown("a rigid impact without duration has no force")
 
 
 @group
@@ -159,6 +160,24 @@ def other_end(each: Sequence[StrikeRecord], length: float) -> Num:
     return max(others) / each[0].approach
 
 
+def hardest(values: Sequence[float]) -> int:
+    """Return the number, from 1, of the largest value."""
+    return 1 + max(range(len(values)), key=lambda at: values[at])
+
+
+def hardest_force(each: Sequence[StrikeRecord]) -> int | Unknown:
+    """Return the number, from 1, of the strike with the largest force; unknown if a faster one has none."""
+    if all(one.force is None for one in each):
+        return NO_FORCE
+    number = hardest([-1.0 if one.force is None else one.force for one in each])
+    faster = [
+        n for n, one in enumerate(each, 1) if one.force is None and one.approach > each[number - 1].approach
+    ]
+    if faster:
+        return Unknown(f"strike {faster[0]}, which is faster, is one without duration, and has no force")
+    return number
+
+
 HEAD = ("", "part", "time, ms", "angle, deg", "approach, m/s", "e", "mu", "left, J", "friction, J", "model")
 ROW = {
     key: {"time": 1e3, "alpha": degrees(1.0)}.get(key.path[-1], 1.0)
@@ -173,7 +192,7 @@ PAST_ENDS = 1e-3  # of e, beyond 0 and 1, that is told
 ROUND_OFF = 1e-9  # of the energy before the first strike, below which nothing is told
 AGREED = 32  # of 64 sequences, in which a strike is the hardest at least to be named as it without doubt
 SHOWN = 12
-"""Strikes that are listed where none is certain or nothing says how many are; all of them stand in strikes.csv."""
+"""Strikes that are listed where none is certain or nothing tells how many are; all stand in strikes.csv."""
 SPREAD = ("strike", "tip", "tail", "other", "none", "time, ms", "approach, m/s")
 
 

@@ -211,7 +211,7 @@ def _holds(case: Case, each: Sequence[Known]) -> str:
 
 
 def _drawn(case: Case) -> Iterator[tuple[Scene, list[Doubt]]]:
-    """Yield scenes whose friction, angle and speed, as seen from the barrier, fill the stated intervals evenly.
+    """Yield scenes whose friction, angle and speed seen from the barrier fill the stated intervals evenly.
 
     With each come places within what is not known of its first strikes, as good as independent of each other:
     finite elements lie now above and now below a coarser model from strike to strike.
@@ -288,7 +288,7 @@ def _divided(one: StrikeRecord, of: Known, at: Doubt) -> StrikeRecord:
     """Return a rigid strike that stands for ``of`` with that one's force and with its loss divided alike.
 
     Vibration is the same share of the energy before, the force is as large over the impulse; what is not
-    known of both is added, and plastic work takes what they leave of the loss.
+    known of both is added, and plastic work, if there is any, takes what they leave of the loss.
     """
     record, doubt = of.own, of.doubt or KNOWN
     share, push = one.before / record.before, one.impulse_n / (record.impulse_n or one.impulse_n)
@@ -297,7 +297,7 @@ def _divided(one: StrikeRecord, of: Known, at: Doubt) -> StrikeRecord:
     return replace(
         one,
         vibration=vibration,
-        plastic=one.lost - one.friction - vibration - rest,
+        plastic=one.lost - one.friction - vibration - rest if record.plastic or one.plastic else 0.0,
         force=record.force and record.force * push * exp(at.force * doubt.force),
     )
 

@@ -1,4 +1,4 @@
-"""What is certain of the strikes of a body that is followed: in words, of mirror images, of moving barriers."""
+"""What is certain of strikes: in words, of mirror images, before barriers that move."""
 
 from dataclasses import replace
 
