@@ -36,7 +36,7 @@ def require_followed(scene: Scene) -> None:
         )
     if faces := scene.projectile.faces:
         raise SceneError(
-            "gives a part of the projectile a friction of its own, but strikes after the first know one alone.",
+            "gives a part of the projectile its own friction, but strikes after the first know one alone.",
             key=f"projectile.mesh_surfaces.{faces[0].name}",
             value=faces[0].surface.state,
             remedy='Leave mesh_surfaces out, or use until = "first".',
