@@ -185,8 +185,9 @@ def read_means(path: str | Path, others: Collection[str] = ()) -> Means:
         ``standard_error`` (of the mean), and ``n`` (number of tests). A quantity is ``e``, ``mu``,
         ``Omega_rad_per_s``, ``V_n_m_per_s`` or ``V_t_m_per_s``, the last three in any unit of theirs. Columns
         ``d_c_m`` and ``d_d_m``, or in another unit of length, may state the arms of the contact point with
-        which ``e`` was worked out, a column ``systematic`` the standard uncertainty that all tests share; where n is 1 it is the only one.
-        Columns such as ``r_mu`` may state the correlation of a mean with that of another quantity.
+        which ``e`` was worked out, a column ``systematic`` the standard uncertainty that all tests share;
+        where n is 1 it is the only one. Columns such as ``r_mu`` may state the correlation of a mean with
+        that of another quantity.
     others : names of further quantities, each with the SI unit that its name ends with
 
     Raises

@@ -138,7 +138,7 @@ def test_the_content_of_own_tests_is_part_of_the_digest(tmp_path):
     tests.write_text(tests.read_text().replace("0.05", "0.06"))
     assert digest(scene) != before
     tests.unlink()
-    with pytest.raises(SceneError, match="measured = .*cannot be read"):
+    with pytest.raises(SceneError, match=r"measured = .*cannot be read"):
         digest(scene)
     plain = json.dumps(to_dict(load("quick")), sort_keys=True, separators=(",", ":"))
     assert digest(load("quick")) == hashlib.sha256(plain.encode()).hexdigest()
