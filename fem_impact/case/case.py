@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from fem_impact.case import limits
+from fem_impact.case import followed, limits
 from fem_impact.case.bodies import Bodies, LaterStrike
 from fem_impact.case.cells import coarse_tip, thin_cells
 from fem_impact.case.choose import Decision, all_effects, choices, decide, neglected, require_approach
@@ -91,8 +91,8 @@ class Case:
         """Refuse a scene that the fidelity cannot hold (SceneError)."""
         scene, fidelity = self.scene, self.fidelity
         require_crushing_named(scene)
-        limits.require_still(scene.barrier, fidelity)
-        limits.require_followed(scene)
+        followed.require_still(scene.barrier, fidelity)
+        followed.require_followed(scene)
         limits.require_own_mesh(self.bodies, fidelity)
         require_plate(self.bodies, self.meshed_through)
         limits.require_first_part(self.bodies)
@@ -103,7 +103,7 @@ class Case:
         require_skins(self.bodies, fidelity)
         require_closed_form(self.bodies, slots, fidelity)
         if fidelity == "solid":
-            limits.require_carried(scene, slots)
+            followed.require_carried(scene, slots)
             self._require_mesh(slots)
         if fidelity == "solid" and "modal" in dict(scene.strikes.stated):
             Case.of(scene, "modal")  # which computes later strikes

@@ -5,7 +5,6 @@ from collections.abc import Collection
 from dataclasses import replace
 
 from fem_impact.case.bodies import Bodies
-from fem_impact.case.effects.slots import ModelSpec
 from fem_impact.case.layers import flows_below
 from fem_impact.case.plates import is_wider, thin_plate
 from fem_impact.case.shaft import coned, gives_elsewhere, lands_on_ridge
@@ -13,8 +12,7 @@ from fem_impact.errors import SceneError
 from fem_impact.outcome.groups import Limitation, limitations
 from fem_impact.physics.contact import FLAT
 from fem_impact.scene import library
-from fem_impact.scene.barrier import Barrier
-from fem_impact.scene.impact import BESIDE, FIRST, Following, Impact
+from fem_impact.scene.impact import BESIDE, FIRST, Impact
 from fem_impact.scene.own_mesh import OwnMesh
 from fem_impact.scene.shipped import replace as change
 from fem_impact.scene.types import Scene
@@ -199,63 +197,6 @@ def unused(scene: Scene, fidelity: str) -> str:
     )
 
 
-def require_still(barrier: Barrier, fidelity: str) -> None:
-    """Refuse a barrier that turns where a fidelity has none (SceneError)."""
-    if barrier.inertia is not None and fidelity == "rigid":
-        raise SceneError(
-            "lets the barrier turn, which the rigid fidelity does not hold.",
-            key="barrier.inertia",
-            value=f"{barrier.inertia:.3g} kg m2",
-            remedy="Use the fidelity modal or solid, or leave out inertia and centre_depth.",
-        )
-
-
-def require_followed(scene: Scene) -> None:
-    """Refuse to follow more than the first impact where later strikes do not know what acts (SceneError).
-
-    That is a barrier which nothing holds, and friction that changes with the sliding speed.
-    """
-    if scene.impact.until == FIRST:
-        if scene.strikes != Following():
-            problem = "says how a body is followed, but the scene asks for the first impact alone."
-            raise SceneError(problem, key="strikes", remedy='Add until = "rest" to impact, or leave it out.')
-        return
-    if scene.surface.sliding_law is not None:
-        raise SceneError(
-            "changes friction with the sliding speed, which strikes after the first do not know.",
-            key="surface.sliding_law",
-            remedy='Leave it out, or use until = "first".',
-        )
-    if scene.barrier.mass is not None:
-        raise SceneError(
-            "follows a body that comes back to a barrier which the first impact has set moving, and nothing "
-            "is known of what holds or stops that.",
-            key="impact.until",
-            value=scene.impact.until,
-            remedy='Leave out barrier.mass, so that the barrier stands, or use until = "first".',
-        )
-
-
-def require_carried(scene: Scene, slots: ModelSpec) -> None:
-    """Refuse finite elements over several strikes where what one leaves is not handed on (SceneError)."""
-    (_, count), *_ = scene.strikes.stages("solid")
-    if scene.impact.until == FIRST or count == 1:
-        return
-    obstacles = {
-        "a rod without vibration, whose nose alone is meshed": not slots.vibrating,
-        "a viscous rod, whose cells remember their strains": slots.contact_loss is not None,
-        "a plate that bends and still swings": scene.barrier.bends,
-    }
-    what = next((what for what, holds in obstacles.items() if holds), "")
-    if what:
-        raise SceneError(
-            f"asks finite elements for more than the first strike of {what}.",
-            key="strikes.fidelity",
-            value=scene.strikes.fidelity,
-            remedy='Write "solid for the first 1, then modal" or "solid for the first 1, then rigid".',
-        )
-
-
 def require_point(bodies: Bodies, fidelity: str) -> None:
     """Refuse a straight part that comes down flat where one point of the tip is followed (SceneError).
 
@@ -338,7 +279,10 @@ def _pointed(bodies: Bodies, body: Turned, side: int) -> int | None:
     """Return the nearest angle, whole deg, on one side at which a point touches; None where there is none."""
     stated = math.degrees(bodies.scene.impact.angle)
     for angle in range(math.floor(stated) + (side > 0), 90 * side, side):
-        turned = Bodies(change(bodies.scene, "impact.angle", f"{angle} deg"), bodies.effects)
+        try:
+            turned = Bodies(change(bodies.scene, "impact.angle", f"{angle} deg"), bodies.effects)
+        except SceneError:  # at this angle the body does not come down on a barrier that moves
+            continue
         if angle != stated and not turned.contact.lands_flat and not _lays_flank(turned, body):
             return angle
     return None

@@ -11,6 +11,8 @@ from fem_impact.errors import ResultError, UsageError
 from fem_impact.files.atomic import atomic_path, check_digest
 from fem_impact.files.fields import check_finite, check_times
 
+ROUND_OFF = 1e-9  # of the tilt of an axis, rad
+
 
 @dataclass(frozen=True, slots=True)
 class Ringing:
@@ -91,6 +93,13 @@ class Waves:
     origin: np.ndarray
     axis: np.ndarray
     ringing: Ringing | None = None
+
+    @property
+    def across(self) -> np.ndarray:
+        """Return the unit vector (3,) across the axis, in (t, b, n), to the side that faces the barrier."""
+        t, _, n = self.axis
+        # of an upright rod, whose axis is along n to round-off, the side towards t counts as that
+        return np.array([n, 0.0, -t]) * (-1.0 if t < -ROUND_OFF else 1.0)
 
     @property
     def end(self) -> float:

@@ -256,7 +256,7 @@ def _axial_strain(movement: Movement) -> Colours:
     axis, body = axis_of(fields.points[np.unique(cells)]), np.zeros(len(rod), bool)
     if waves is not None:
         arm = fields.points[cells].mean(axis=1) - waves.origin
-        along, across = arm @ waves.axis, arm @ np.array([waves.axis[2], 0.0, -waves.axis[0]])
+        along, across = arm @ waves.axis, arm @ waves.across
         body = along > waves.position[0]
         along, across = along[body], across[body]
     corners = cells[~body]

@@ -21,6 +21,7 @@ NO_ERROR = (
     "of gauges; a rigid strike has no force"
 )
 """Why W_damping_J, E_vib_before_J, E_other_J, dents, gauges and some forces have no half-width."""
+NO_FORCE = Unknown("a rigid impact without duration has no force")
 
 
 @group
@@ -159,6 +160,24 @@ def other_end(each: Sequence[StrikeRecord], length: float) -> Num:
     return max(others) / each[0].approach
 
 
+def hardest(values: Sequence[float]) -> int:
+    """Return the number, from 1, of the largest value."""
+    return 1 + max(range(len(values)), key=lambda at: values[at])
+
+
+def hardest_force(each: Sequence[StrikeRecord]) -> int | Unknown:
+    """Return the number, from 1, of the strike with the largest force; unknown if a faster one has none."""
+    if all(one.force is None for one in each):
+        return NO_FORCE
+    number = hardest([-1.0 if one.force is None else one.force for one in each])
+    faster = [
+        n for n, one in enumerate(each, 1) if one.force is None and one.approach > each[number - 1].approach
+    ]
+    if faster:
+        return Unknown(f"strike {faster[0]}, which is faster, is one without duration, and has no force")
+    return number
+
+
 HEAD = ("", "part", "time, ms", "angle, deg", "approach, m/s", "e", "mu", "left, J", "friction, J", "model")
 ROW = {
     key: {"time": 1e3, "alpha": degrees(1.0)}.get(key.path[-1], 1.0)
@@ -173,7 +192,7 @@ PAST_ENDS = 1e-3  # of e, beyond 0 and 1, that is told
 ROUND_OFF = 1e-9  # of the energy before the first strike, below which nothing is told
 AGREED = 32  # of 64 sequences, in which a strike is the hardest at least to be named as it without doubt
 SHOWN = 12
-"""Strikes that are listed where nothing says how many are certain; all of them stand in strikes.csv."""
+"""Strikes that are listed where none is certain or nothing tells how many are; all stand in strikes.csv."""
 SPREAD = ("strike", "tip", "tail", "other", "none", "time, ms", "approach, m/s")
 
 
@@ -269,18 +288,22 @@ def _certain(strikes: Strikes) -> list[str]:
         if len(between_ends) == 2
         else ""
     )
-    first = f"first {certain} strikes are" if certain > 1 else "first strike is"
+    first = f"The first {certain} strikes are" if certain > 1 else "The first strike is"
+    later = "later ones are"
+    if certain == 0:
+        first, later = "Not even the first strike is", "all strikes told are"
     table = ": a table tells what strikes how often" if len(known(strikes.spread)) > certain else ""
     return [
-        f"The {first} of the same part of the body in all of 64 sequences; later ones are one path of "
-        f"many{table}. {strikes.holds}{between}"
+        f"{first} of the same part of the body in all of 64 sequences; {later} one path of many{table}. "
+        f"{strikes.holds}{between}"
     ]
 
 
 def _hardest(strikes: Strikes) -> list[str]:
     """Return the hardest strike by energy, force and heat: where, how fast, what; only numbers that hold.
 
-    Of one behind the last certain strike, only one path of many, the hardest of the certain ones is told.
+    Of one behind the last certain strike, only one path of many, the hardest of the certain ones is told
+    where there are any.
     """
     each, certain = known(strikes.each), or_none(strikes.certain)
     by_energy, by_force, by_heat = (
@@ -303,8 +326,10 @@ def _hardest(strikes: Strikes) -> list[str]:
         if agree == 0:
             same = ", in none of the 64 sequences of the reduced model that hold its errors"
         if certain is not None and number > certain:
-            first, same = f" not certain (strike {number} of this path{same}); of the certain ones", ""
-            number = 1 + max(range(certain), key=lambda at: size(each[at]))
+            first = " not certain;"
+            if certain:
+                first, same = f" not certain (strike {number} of this path{same}); of the certain ones", ""
+                number = 1 + max(range(certain), key=lambda at: size(each[at]))
         fields = ("approach", "before", "after", "friction", *(["force"] if name == "force" else []))
         numbers = {field: _number(strikes, number, field) for field in fields}
         strike = f"strike {number}, {each[number - 1].part} at {numbers['approach']} m/s"

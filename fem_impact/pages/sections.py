@@ -42,7 +42,8 @@ def _other_scene(outcome: Outcome, folder: Path) -> list[str]:
         other = path.is_file() and digest(read_toml(path)) != outcome.provenance.scene_digest
     except SceneError as error:
         return [str(error)]
-    return ["scene.toml was changed after the run: it is not the scene of outcome.json."] if other else []
+    changed = "was changed after the run, or a file that it names: it is not the scene of outcome.json."
+    return [f"scene.toml {changed}"] if other else []
 
 
 def _short_history(outcome: Outcome, folder: Path) -> list[str]:

@@ -62,7 +62,8 @@ def write_sheet(folder: Path, document: str = "", revision: str = "") -> Path:
     scene = read_toml(folder / "scene.toml")
     origin = outcome.provenance
     if digest(scene) != origin.scene_digest:
-        raise ResultError(f"{folder / 'scene.toml'}: was changed after the run: run it again to sign it.")
+        changed = "was changed after the run, or a file that it names: run it again to sign it."
+        raise ResultError(f"{folder / 'scene.toml'}: {changed}")
     case = Case(scene)
     drawing = make_directory(folder / "figures") / "projectile.svg"
     draw_projectile(case, drawing, NARROW)

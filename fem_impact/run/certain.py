@@ -57,8 +57,8 @@ OPEN = {
 class Doubt(NamedTuple):
     """Half-widths of what the model of a strike gives, or places within them, nine in ten within -1 to 1.
 
-    They are of e, of the impulse ratio and of friction, J, which go together, of the vibration after it, J,
-    and of the natural logarithm of the largest force.
+    They are of e, of the size of the impulse ratio and of friction, J, which go together, of the vibration
+    after it, J, and of the natural logarithm of the largest force.
     """
 
     e: float = 0.0
@@ -211,27 +211,27 @@ def _holds(case: Case, each: Sequence[Known]) -> str:
 
 
 def _drawn(case: Case) -> Iterator[tuple[Scene, list[Doubt]]]:
-    """Yield scenes whose friction, angle and speed fill the stated intervals evenly.
+    """Yield scenes whose friction, angle and speed seen from the barrier fill the stated intervals evenly.
 
     With each come places within what is not known of its first strikes, as good as independent of each other:
     finite elements lie now above and now below a coarser model from strike to strike.
     """
     scene, surface, impact = case.scene, case.scene.surface, case.scene.impact
-    low, high = surface.friction_low, surface.friction_high
+    low, high, seen = surface.friction_low, surface.friction_high, scene.relative
     for run, share in enumerate(np.linspace(0.0, 1.0, RUNS).tolist(), 1):
-        angle, speed = (2.0 * _halton(run, base) - 1.0 for base in (2, 3))
-        off = angle * (scene.strikes.angle_error or 0.0)
-        faster = 1.0 + speed * (scene.strikes.speed_error or 0.0)
+        off = (2.0 * _halton(run, 2) - 1.0) * (scene.strikes.angle_error or 0.0)
+        faster = 1.0 + (2.0 * _halton(run, 3) - 1.0) * (scene.strikes.speed_error or 0.0)
         moved = replace(
             impact,
             angle=min(max(impact.angle + off, -0.5 * pi), 0.5 * pi),
-            **{key: faster * getattr(impact, key) for key in ("v_n", "v_t", "omega")},
+            v_n=faster * seen.v_n + scene.barrier.v_n,
+            v_t=faster * seen.v_t + scene.barrier.v_t,
+            omega=faster * seen.omega,
             height=None,
             speed=None,
             slope=impact.vertical,
         )
-        friction = low + share * (high - low)
-        drawn = replace(scene, surface=replace(surface, friction=friction), impact=moved)
+        drawn = replace(scene, surface=replace(surface, friction=low + share * (high - low)), impact=moved)
         yield drawn, [_place(run * SHUFFLE**strike % CYCLE) for strike in range(SEEN)]
 
 
@@ -268,7 +268,7 @@ def _run(scene: Scene, each: Sequence[Known], at: Sequence[Doubt] = ()) -> list[
         doubt, record, law = one.doubt or KNOWN, one.own, one.law
         return strike.having(
             max(0.0, strike.e + record.e - law.e + at.e * doubt.e),
-            strike.mu + record.mu - law.mu + at.mu * doubt.mu,
+            strike.mu + record.mu - law.mu + copysign(1.0, record.mu) * at.mu * doubt.mu,
             max(
                 0.0, strike.friction + (record.friction - law.friction + at.friction * doubt.friction) / mass
             ),
@@ -288,7 +288,7 @@ def _divided(one: StrikeRecord, of: Known, at: Doubt) -> StrikeRecord:
     """Return a rigid strike that stands for ``of`` with that one's force and with its loss divided alike.
 
     Vibration is the same share of the energy before, the force is as large over the impulse; what is not
-    known of both is added, and plastic work takes what they leave of the loss.
+    known of both is added, and plastic work, if there is any, takes what they leave of the loss.
     """
     record, doubt = of.own, of.doubt or KNOWN
     share, push = one.before / record.before, one.impulse_n / (record.impulse_n or one.impulse_n)
@@ -297,7 +297,7 @@ def _divided(one: StrikeRecord, of: Known, at: Doubt) -> StrikeRecord:
     return replace(
         one,
         vibration=vibration,
-        plastic=one.lost - one.friction - vibration - rest,
+        plastic=one.lost - one.friction - vibration - rest if record.plastic or one.plastic else 0.0,
         force=record.force and record.force * push * exp(at.force * doubt.force),
     )
 

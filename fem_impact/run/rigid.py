@@ -10,7 +10,7 @@ import rigid
 from fem_impact.case.case import Case
 from fem_impact.case.effects.heating import halves
 from fem_impact.outcome.groups import Energy, Heat, Markers, RodMotion, RunCost, limitations
-from fem_impact.outcome.keys import Unknown, known, unknown
+from fem_impact.outcome.keys import Num, Unknown, known, unknown
 from fem_impact.outcome.record import Outcome
 from fem_impact.physics.contact import ContactPair
 from fem_impact.physics.contact_law import ContactLaw, contact_law
@@ -28,6 +28,7 @@ MEAN_HEAT = (
     "slide to and fro, friction takes several times what rigid theory knows, and the temperature is higher."
 )
 UNKNOWN = "a rigid body in an impact without duration does not know it"
+UNASSIGNED = Unknown("what a stated restitution loses is not assigned to a body that does not yield")
 CRUSHED = "the edge that touches is crushed, which rigid theory does not follow; finite elements do"
 ASSUMPTIONS = (
     "The rod is rigid, the contact one point of its tip, and the impact takes no time.",
@@ -61,7 +62,7 @@ def rigid_outcome(case: Case) -> Outcome:
             reason="A rigid impact is over at once.",
         ),
     )
-    energy = _energy(case, path, loss.viscous, reduction.motion, base)
+    energy = _energy(case, path, loss, reduction.motion, base)
     thermal = unknown(Heat, UNKNOWN)
     crushed = _sharp(case)
     if case.slots.heat:
@@ -112,27 +113,42 @@ def _timed_path(
 
 
 class NormalLoss(NamedTuple):
-    """Energetic restitution, the viscous part of the loss along the normal, and where they come from."""
+    """Energetic restitution, and the plastic and the viscous part of the loss along the normal.
+
+    What both parts leave of 1 is ``unassigned``; ``source`` tells where the restitution comes from.
+    """
 
     e: float
+    plastic: float
     viscous: float
     source: str
+
+    @property
+    def unassigned(self) -> float:
+        """The part of the loss of which it is not known what it becomes, 0 or 1."""
+        return 0.0 if self.plastic + self.viscous else 1.0
 
 
 def normal_loss(case: Case, pair: ContactPair) -> NormalLoss:
     """Return the stated restitution, or Thornton's of what flows times that of a viscous contact.
 
-    ``pair`` is how both touch: at first, or in a later strike.
+    ``pair`` is how both touch: at first, or in a later strike. The loss of a stated restitution is plastic
+    where a body may yield, else viscous where a loss factor acts.
     """
-    restitution = case.scene.restitution
+    restitution, loss = case.scene.restitution, case.slots.contact_loss
     if restitution is not None:
-        return NormalLoss(restitution, 0.0, f"Restitution {restitution:g} (energetic) is the scene's own.")
+        stated = f"Restitution {restitution:g} (energetic) is the scene's own."
+        if pair.yielding or restitution == 1.0:
+            return NormalLoss(restitution, 1.0, 0.0, stated)
+        if loss:
+            return NormalLoss(restitution, 0.0, 1.0, f"{stated} No body yields: its loss is damping.")
+        return NormalLoss(restitution, 0.0, 0.0, f"{stated} No body yields: its loss is assigned to none.")
     law = contact_law(pair)
-    loss, flows = case.slots.contact_loss, not isinf(law.limit)
+    flows = not isinf(law.limit)
     plastic = thornton(law, pair.effective_mass, pair.approach) if flows else 1.0
     e = plastic * viscous_restitution(loss or 0.0)
     viscous = (plastic**2 - e**2) / (1 - e**2) if loss else 0.0
-    return NormalLoss(e, viscous, _told(e, law, loss))
+    return NormalLoss(e, 1.0 - viscous, viscous, _told(e, law, loss))
 
 
 def _told(e: float, law: ContactLaw, loss: float | None) -> str:
@@ -149,9 +165,9 @@ def _told(e: float, law: ContactLaw, loss: float | None) -> str:
 
 
 def _energy(
-    case: Case, path: rigid.SlidingPath, viscous: float, m: RodMotion, base: tuple[float, float]
+    case: Case, path: rigid.SlidingPath, loss: NormalLoss, m: RodMotion, base: tuple[float, float]
 ) -> Energy:
-    """Return the shares of E_0; ``viscous`` is the part of the loss along the normal that does not flow."""
+    """Return the shares of E_0; the plastic ones are not known where the ``loss`` is assigned to no body."""
     before, body = case.scene.relative, {"mass": m.mass, "k2": m.k_squared}
     start = rigid.kinetic_energy(before.v_n, before.v_t, before.omega, **body)
     V_n, V_t, Omega = after(m)
@@ -160,7 +176,8 @@ def _energy(
     mass = case.contact.reduced[0]
     normal, tangential = (mass * sum(w) for w in (path.normal_work, path.tangential_work))
     lost = float(-normal / start)
-    plastic_rod, plastic_barrier = plastic_shares(case, (1 - viscous) * lost)
+    works: tuple[Num, Num] = plastic_shares(case, loss.plastic * lost)
+    plastic_rod, plastic_barrier = (UNASSIGNED, UNASSIGNED) if loss.unassigned else works
     return replace(
         unknown(Energy, UNKNOWN),
         E_0=float(start),
@@ -168,7 +185,7 @@ def _energy(
         friction=float(-tangential / start),
         plastic_rod=plastic_rod,
         plastic_barrier=plastic_barrier,
-        damping=viscous * lost if case.slots.contact_loss else Unknown(UNKNOWN),
+        damping=loss.viscous * lost if case.slots.contact_loss else Unknown(UNKNOWN),
         barrier=MASSIVE if case.scene.barrier.mass is None else float(pushed / start),
         residual=float((start + normal + tangential - end - pushed) / start),
     )

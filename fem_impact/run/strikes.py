@@ -1,6 +1,5 @@
 """The strikes after the first impact, by rigid theory: each with the restitution of its own contact."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import copysign, cos, hypot, inf, pi, remainder, sin
@@ -8,7 +7,7 @@ from math import copysign, cos, hypot, inf, pi, remainder, sin
 from fem_impact.case.bodies import WEAKEST, LaterStrike
 from fem_impact.case.case import Case
 from fem_impact.outcome.keys import Num, Unknown, unknown
-from fem_impact.outcome.strikes import PHASED, StrikeRecord, Strikes, other_end
+from fem_impact.outcome.strikes import PHASED, StrikeRecord, Strikes, hardest, hardest_force, other_end
 from fem_impact.physics.contact import ContactPair
 from fem_impact.run.common import gravity_of, rod_flows
 from fem_impact.run.rigid import NormalLoss, normal_loss
@@ -30,7 +29,6 @@ from rigid.strikes import (
 )
 
 BESIDE = 1e-6  # rad from the end of a corner's inclinations, at which it touches alone
-NO_FORCE = Unknown("a rigid impact without duration has no force")
 FINISHED = {
     Finish.RESTS: "It rests.",
     Finish.ROLLS: "It rolls or rocks on without a further strike.",
@@ -273,9 +271,9 @@ class Followed:
             time=end.time,
             time_factor=self._time_factor(finish),
             way=end.along,
-            hardest_energy=_hardest([one.lost for one in each]),
-            hardest_force=_hardest_force(each),
-            hardest_heat=_hardest([one.friction for one in each]),
+            hardest_energy=hardest([one.lost for one in each]),
+            hardest_force=hardest_force(each),
+            hardest_heat=hardest([one.friction for one in each]),
             other_end=other_end(each, case.contact.body.length),
             gravity=self.gravity,
             **sums,
@@ -305,8 +303,9 @@ class Followed:
             *(before.state, strike.after, before.place, arms, (mass * strike.p, mass * strike.q)),
             part=self.part_of(before.place, before.line, before.state.alpha),
             friction=mass * strike.friction,
-            plastic=mass * (1.0 - loss.viscous) * strike.normal,
+            plastic=mass * loss.plastic * strike.normal,
             damping=mass * loss.viscous * strike.normal,
+            other=mass * loss.unassigned * strike.normal,
         )
 
     def record(
@@ -327,6 +326,7 @@ class Followed:
         gauge: tuple[float | None, float | None] = (None, None),
         vibration: float = 0.0,
         taken: float = 0.0,
+        other: float = 0.0,
     ) -> StrikeRecord:
         """Return the record of a strike.
 
@@ -367,7 +367,7 @@ class Followed:
             damping=damping,
             vibration=vibration,
             taken=taken,
-            other=0.0,
+            other=other,
             **{f"{name}_phase": 0.0 for name in PHASED},
         )
 
@@ -379,21 +379,3 @@ class Followed:
             return "face" if abs(remainder(alpha, pi)) < 0.25 * pi else "side"
         body = self.case.contact.body
         return "tip" if place[1] + body.z_c < 0.5 * body.length else "tail"
-
-
-def _hardest(values: Sequence[float]) -> int:
-    """Return the number, from 1, of the largest value."""
-    return 1 + max(range(len(values)), key=lambda at: values[at])
-
-
-def _hardest_force(each: Sequence[StrikeRecord]) -> int | Unknown:
-    """Return the number, from 1, of the strike with the largest force; unknown if a faster one has none."""
-    if all(one.force is None for one in each):
-        return NO_FORCE
-    number = _hardest([-1.0 if one.force is None else one.force for one in each])
-    faster = [
-        n for n, one in enumerate(each, 1) if one.force is None and one.approach > each[number - 1].approach
-    ]
-    if faster:
-        return Unknown(f"strike {faster[0]}, which is faster, is one without duration, and has no force")
-    return number

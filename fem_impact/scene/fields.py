@@ -107,7 +107,7 @@ class Parameter:
         except (TypeError, ValueError):
             if not self.dimension:
                 raise SceneError("is not a number.", key=self.key, value=value) from None
-            number = parse_quantity(value, self.dimension, self.key)
+            number = parse_quantity(value, self.dimension, self.key, self.si_key)
         return float(self.checked(number))
 
 

@@ -180,7 +180,8 @@ class Following:
     ----------
     fidelity : the models of its strikes, such as "solid for the first 3, then modal"; empty: that of the run,
         of finite elements the first strike
-    angle_error : how far the angle may be off either way, rad; speed_error : share of the velocities
+    angle_error : how far the angle may be off either way, rad
+    speed_error : share by which the velocities, as seen from the barrier, may be off
     """
 
     fidelity: str = ""

@@ -19,7 +19,9 @@ HEADER = "v_n_m_per_s,v_t_m_per_s,V_n_m_per_s,V_t_m_per_s,Omega_rad_per_s"
 MEANS = "quantity,mean,sd,n"
 """Headers of a file of single tests, and of one of means."""
 LARGEST = 1e6
-"""Bound of the size of a velocity, m/s or rad/s."""
+"""Bound of the size of a velocity, m/s or rad/s, and of e and mu."""
+SQUARED = 1e100
+"""Bound of the size of any other number of an outcome, SI, of which variances must stay finite."""
 FASTEST = -V_N.low
 """The most that a scene may state as a speed, m/s."""
 
@@ -182,9 +184,10 @@ def read_means(path: str | Path, others: Collection[str] = ()) -> Means:
         CSV with the columns ``quantity``, ``mean``, ``sd`` (standard deviation of single tests) or
         ``standard_error`` (of the mean), and ``n`` (number of tests). A quantity is ``e``, ``mu``,
         ``Omega_rad_per_s``, ``V_n_m_per_s`` or ``V_t_m_per_s``, the last three in any unit of theirs. Columns
-        ``d_c_m`` and ``d_d_m`` may state the arms of the contact point with which ``e`` was worked out, a
-        column ``systematic`` the standard uncertainty that all tests share; where n is 1 it is the only one.
-        Columns such as ``r_mu`` may state the correlation of a mean with that of another quantity.
+        ``d_c_m`` and ``d_d_m``, or in another unit of length, may state the arms of the contact point with
+        which ``e`` was worked out, a column ``systematic`` the standard uncertainty that all tests share;
+        where n is 1 it is the only one. Columns such as ``r_mu`` may state the correlation of a mean with
+        that of another quantity.
     others : names of further quantities, each with the SI unit that its name ends with
 
     Raises
@@ -195,15 +198,17 @@ def read_means(path: str | Path, others: Collection[str] = ()) -> Means:
     table = read_user_table(path, MEANS)
     scatter = _scatter(table.names, path)
     means: dict[str, Mean] = {}
-    arms: dict[str, list[float]] = {name: [] for name in ARMS if f"{name}_m" in table.names}
+    stated = {name: table.quantity(name, dimension) for name, dimension in ARMS.items()}
+    columns = {name: column for name, column in stated.items() if column}
+    arms: dict[str, list[float]] = {name: [] for name in columns}
     for line, row in table.records():
         place = f"{path}: line {line}"
         name, mean = _read_row(row, scatter, place, others)
         if name in means:
             raise ResultError(f"{place}: {name} has a line already. Keep one.")
         means[name] = mean
-        for arm in arms:
-            arms[arm].append(finite(f"{place}, column {arm}_m", row[f"{arm}_m"]))
+        for arm, (column, unit) in columns.items():
+            arms[arm].append(in_si(f"{place}, column {column}", row[column], unit))
     if not means:
         raise ResultError(f"{path}: holds no line below its header.")
     _check_correlations(means, path)
@@ -269,7 +274,7 @@ def _read_row(row: Mapping[str, str], scatter: str, place: str, others: Collecti
     spread = 0.0 if tests == 1 else factor * finite(f"{place}, column {scatter}", row[scatter])
     if spread <= 0 and tests > 1:
         raise ResultError(f"{place}, column {scatter}: {row[scatter]} must be above 0: tests scatter.")
-    if abs(mean) > LARGEST or spread > LARGEST:
+    if max(abs(mean), spread) > (LARGEST if name in OF_MEANS else SQUARED):
         raise ResultError(f"{place}: {row['mean']} with {row[scatter]} is too large to be one of a test.")
     _check_likely(name, mean, place)
     shared = factor * finite(f"{place}, column systematic", row.get("systematic") or "0")

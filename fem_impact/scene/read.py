@@ -353,11 +353,10 @@ def _accuracy(table: tables.Table | str) -> types.Accuracy:
     stated = tables.values_of(table, fields.ACCURACY, choices, ("target",))
     if "target" not in table:
         return types.Accuracy(**stated)
-    for key in fields.MESH:
-        if key in table:
-            raise SceneError(
-                "stands beside a target, which chooses the mesh.", key=key, remedy="Keep one of the two."
-            )
+    mesh = [name for p in fields.ACCURACY if p.key in fields.MESH for name in (p.key, p.si_key)]
+    if key := next((key for key in table if key in mesh), ""):
+        problem = "stands beside a target, which chooses the mesh."
+        raise SceneError(problem, key=key, remedy="Keep one of the two.")
     return types.Accuracy(**stated, **_wanted(table["target"], "target"))
 
 

@@ -78,6 +78,8 @@ def _shipped(name: str) -> Scene:
 
 
 LENGTH = {"projectile.length", "projectile.length_m"}
+SETS = ["mesh_materials"], ["mesh_surfaces"]
+"""Ends of the paths of tables whose keys are names in a mesh file, whatever they end with."""
 BODIES = ("projectile", "impact", "barrier")
 PAIR = ("friction", "friction_low", "friction_high", "source")
 _CHANGED = ", changed: "
@@ -103,8 +105,9 @@ def replace_all(scene: Scene, changes: Mapping[str, Any], source: str = "") -> S
     A new angle leaves a fall a fall, see `restated`. A changed friction makes the surface custom, a changed
     property renames its material, and with a changed rod, impact or surface state the scene is not a
     measured set, which the title says: a name never stands for other values. Friction, materials, effects
-    and accuracy are the model's side and leave ``measured`` as it is. A value may be a path or a number or
-    array of numpy. ``source`` is named in every message.
+    and accuracy are the model's side and leave ``measured`` as it is. The surface of a pair of materials
+    follows changed bodies. A value may be a path or a number or array of numpy. ``source`` is named in every
+    message.
 
     Raises
     ------
@@ -129,9 +132,9 @@ def _changed(scene: Scene, changes: Mapping[str, Any]) -> dict[str, Any]:
         measured = data.pop("measured", "")
         if "title" not in changes:
             data["title"] = _title(data["title"], measured, other)
-    if data.get("surface", {}).get("state") == "pair" and any(".material" in key for key in changes):
-        for key in PAIR:
-            data["surface"].pop(key, None)  # it follows from both materials
+    bodies_changed = {key.partition(".")[0] for key in changes} & {"projectile", "barrier"}
+    if bodies_changed and not changes.keys() & {"surface", *(f"surface.{key}" for key in PAIR)}:
+        _follow_pair(data["surface"])
     if changes.get("impact.until") == FIRST and not any(key.startswith("strikes") for key in changes):
         data.pop("strikes", None)  # it says how a body is followed
     if new := moved(changes):
@@ -143,6 +146,13 @@ def _changed(scene: Scene, changes: Mapping[str, Any]) -> dict[str, Any]:
     if LENGTH & changes.keys() and "projectile.bore" not in changes:
         _open_at_tail(data["projectile"], scene.projectile)
     return data
+
+
+def _follow_pair(surface: dict[str, Any]) -> None:
+    """Let a surface that is that of a pair of materials follow from them."""
+    if surface["state"] == "pair":
+        for key in PAIR:
+            surface.pop(key, None)
 
 
 def named(value: Any) -> str:
@@ -200,8 +210,9 @@ def _change(data: dict[str, Any], key: str, value: Any) -> None:
             remedy = f"Did you mean {whole[near[0]]}?"
             raise SceneError("is not a key of a scene.", key=key, remedy=remedy)
     table = _section(data, path, key)
-    # an SI key replaces the key with a unit: ``length_m`` replaces ``length``
-    table.pop(bare(last) if bare(last) in table else last, None)
+    # an SI key replaces the key with a unit, and the other way round: ``length_m`` and ``length``
+    for other in [key for key in table if bare(key) == bare(last) and path[-1:] not in SETS]:
+        del table[other]
     if path == ["projectile"] and bare(last) in (BY_LENGTH, *REPLACED):
         for other in {BY_LENGTH, *REPLACED} - {bare(last)}:
             table.pop(other, None)  # one of them states the form of a nose

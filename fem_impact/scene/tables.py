@@ -86,7 +86,7 @@ def _number(table: Table, field: Parameter, default: Any) -> Any:
         return default
     value = table[field.key]
     if field.dimension:
-        return parse_quantity(value, field.dimension, field.key)
+        return parse_quantity(value, field.dimension, field.key, field.si_key)
     parse_number(value, field.key)
     return value
 

@@ -268,8 +268,19 @@ def require_scene(scene: object) -> None:
 
 
 def digest(scene: Scene) -> str:
-    """Return the SHA-256 of the scene's canonical JSON."""
-    text = json.dumps(to_dict(scene), sort_keys=True, separators=(",", ":"), allow_nan=False)
+    """Return the SHA-256 of the scene's canonical JSON, with that of the file of own tests that it names.
+
+    An outcome holds numbers of those tests, which are others once the file has changed. Raises SceneError
+    where that file cannot be read.
+    """
+    tables = to_dict(scene)
+    if scene.measured is not None and scene.measured.endswith(OWN):
+        try:
+            tables["measured_content"] = hashlib.sha256(Path(scene.measured).read_bytes()).hexdigest()
+        except OSError as error:
+            problem, remedy = f"cannot be read: {error.strerror}.", "Put the file of your own tests there."
+            raise SceneError(problem, key="measured", value=scene.measured, remedy=remedy) from None
+    text = json.dumps(tables, sort_keys=True, separators=(",", ":"), allow_nan=False)
     return hashlib.sha256(text.encode()).hexdigest()
 
 

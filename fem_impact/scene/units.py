@@ -59,7 +59,7 @@ DIMENSIONS: dict[str, Dimension] = {
 }
 
 
-def parse_quantity(value: Any, dimension: str, key: str) -> float:
+def parse_quantity(value: Any, dimension: str, key: str, si_key: str = "") -> float:
     """Read a quantity written with its unit.
 
     Parameters
@@ -69,7 +69,9 @@ def parse_quantity(value: Any, dimension: str, key: str) -> float:
     dimension : str
         A name in `DIMENSIONS`.
     key : str
-        Name used in messages and to propose the SI key.
+        Name used in messages.
+    si_key : str
+        Key that takes the bare number in SI, which messages propose; empty where there is none.
 
     Returns
     -------
@@ -82,7 +84,8 @@ def parse_quantity(value: Any, dimension: str, key: str) -> float:
         For a bare number, an unknown unit, NaN, infinity or anything that is not a quantity.
     """
     dim = DIMENSIONS[dimension]
-    remedy = f'Write it with its unit, such as "{dim.example}", or as {key}_{dim.suffix} in SI.'
+    or_si = f", or as {si_key} in SI" if si_key else ""
+    remedy = f'Write it with its unit, such as "{dim.example}"{or_si}.'
     if isinstance(value, bool) or not isinstance(value, (str, int, float)):
         raise SceneError(f"is a {_kind(value)}, not a {dim.name}.", key=key, value=value, remedy=remedy)
     if not isinstance(value, str):

@@ -42,16 +42,19 @@ class StrainSections:
     axis: Array
 
     @classmethod
-    def of(cls, model: Model) -> Self:
-        """Return the weights from the start positions of the mass points."""
+    def of(cls, model: Model, side: float = 1.0) -> Self:
+        """Return the weights from the start positions of the mass points.
+
+        ``side`` is 1 of a body whose tail leans towards t in its first strike, -1 of one that leans back.
+        """
         rows = _in_plane(model, model.start[0])
         mass = model.layout.slices_of(model.mass).reshape(3, -1, model.layout.body_shape[1])[0, :, -1]
         mean = mass / mass.sum()
         centre = mean @ rows
         along = centre[:, -1] - centre[:, 1]
         axis = along / np.linalg.norm(along)
-        # towards the barrier: the axis turned by a quarter from n towards t
-        x = (rows - centre[:, None])[0] * axis[1] - (rows - centre[:, None])[1] * axis[0]
+        # to the side that faces the barrier: the axis turned by a quarter from n towards t, or back
+        x = side * ((rows - centre[:, None])[0] * axis[1] - (rows - centre[:, None])[1] * axis[0])
         weights = np.stack([mean, mass * x[:, -1] / (mass @ x[:, -1] ** 2)])
         return cls(weights, model.geometry.rod.slice_length, float(np.abs(x[:, 0]).max()), axis)
 
@@ -99,7 +102,9 @@ class StrainWatch:
 
         Raises SceneError where a strain gauge lies off the part that is read.
         """
-        rod, sections = case.scene.projectile, StrainSections.of(model)
+        # of the first strike: a gauge stays on its side of the body in later ones
+        rod, side = case.scene.projectile, -1.0 if case.scene.impact.angle < 0.0 else 1.0
+        sections = StrainSections.of(model, side)
         speeds = bar_speed(rod.material), bending_group_speed(rod)
         interval = sections.pitch / speeds[0] / max(case.scene.save.strain_samples, 1)
         every = max(1, int(interval / model.step / 8))

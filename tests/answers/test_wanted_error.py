@@ -47,8 +47,9 @@ def test_a_target_made_in_python_is_checked_too(target):
 
 def test_a_mesh_beside_a_target_is_refused():
     data = to_dict(load("t5b"))
-    with pytest.raises(SceneError, match=r"accuracy.tip_size: stands beside a target"):
-        read_dict(data | {"accuracy": {"target": "2 %", "tip_size": "0.4 mm"}})
+    for key, size in (("tip_size", "0.4 mm"), ("tip_size_m", 0.0004)):
+        with pytest.raises(SceneError, match=rf"accuracy\.{key}: stands beside a target"):
+            read_dict(data | {"accuracy": {"target": "2 %", key: size}})
 
 
 def test_a_run_on_one_mesh_refuses_a_target():

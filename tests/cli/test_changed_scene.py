@@ -38,6 +38,13 @@ impact = {{ angle = "{angle}", v_n = "{v_n}", v_t = "-1 m/s" }}
 GOOD = {"length": "80 mm", "angle": "45 deg", "v_n": "-1 m/s"}
 
 
+def test_a_change_replaces_a_number_in_si_of_a_file_that_another_change_mends(tmp_path):
+    wrong = tmp_path / "wrong.toml"
+    wrong.write_text(BAD.format(**GOOD | {"angle": "95 deg"}).replace('length = "80 mm"', "length_m = 0.08"))
+    changed = changed_scene(str(wrong), ["impact.angle=30 deg", "projectile.length=0.1 m"])
+    assert changed.projectile.length == 0.1
+
+
 @pytest.mark.parametrize(
     ("bad", "changes"),
     [

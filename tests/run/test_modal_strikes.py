@@ -9,11 +9,11 @@ from scipy.integrate import solve_ivp
 
 from fem_impact.case.case import Case
 from fem_impact.outcome.groups import texts
-from fem_impact.outcome.strikes import told
+from fem_impact.outcome.strikes import hardest_force, told
 from fem_impact.run.certain import _agree
 from fem_impact.run.modal_strikes import ModalCourse, modal_loss
 from fem_impact.run.simulate import simulate
-from fem_impact.run.strikes import Followed, _hardest_force
+from fem_impact.run.strikes import Followed
 from fem_impact.scene.shipped import load, replace_all
 
 FLOOR = {"impact.slope": "0 deg", "impact.until": "rest"}
@@ -44,8 +44,8 @@ def test_hard_strikes_are_those_of_modes(rattle):
     assert s.heat_agree > 32
     first = s.each[0]
     slow, fast = (replace(s.each[1], force=None, approach=times * first.approach) for times in (0.9, 1.1))
-    assert _hardest_force([first, slow]) == 1
-    assert "strike 2, which is faster" in _hardest_force([first, fast]).reason
+    assert hardest_force([first, slow]) == 1
+    assert "strike 2, which is faster" in hardest_force([first, fast]).reason
     swapped = [s.each[1], s.each[0], *s.each[2:]]
     assert _agree(s.each, [s.each, swapped, s.each], lambda one: one.friction) == 2
 

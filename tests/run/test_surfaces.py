@@ -8,6 +8,7 @@ from fem_impact.case.case import Case
 from fem_impact.errors import SceneError
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.read import read_dict
+from fem_impact.scene.shipped import replace
 from fem_impact.scene.types import to_dict
 from fem_impact.solid.build import Builder
 
@@ -111,3 +112,11 @@ def test_a_scene_with_faces_is_written_and_read_back(tmp_path):
         Case.of(scene(tmp_path / "bar.inp", {"HEEL": GREASED}), "rigid")
     with pytest.raises(SceneError, match=r"mesh_surfaces\.FOOT\.state: is the state of the scene's surface"):
         scene(tmp_path / "bar.inp", {"FOOT": {"state": "pair"}})
+
+
+def test_a_body_with_faces_of_its_own_is_not_followed(tmp_path):
+    """Later strikes would keep the friction of the place that touches first."""
+    stated = replace(scene(bar(tmp_path), {"FOOT": GREASED}), "impact.until", "3 strikes")
+    for fidelity in ("rigid", "modal"):
+        with pytest.raises(SceneError, match=r'mesh_surfaces\.FOOT.*Leave mesh_surfaces out.*"first"'):
+            simulate(stated, fidelity)

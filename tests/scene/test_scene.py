@@ -1,6 +1,8 @@
 """The scene as an object: one meaning for TOML and Python, exact round trips, stable digests."""
 
 import dataclasses
+import hashlib
+import json
 import math
 import tomllib
 from typing import get_args
@@ -124,6 +126,22 @@ def test_a_changed_friction_is_custom_and_keeps_the_set_it_is_compared_with():
         0.3,
     )
     assert scene.measured == "t4"
+
+
+def test_the_content_of_own_tests_is_part_of_the_digest(tmp_path):
+    """Numbers of an outcome follow from it; a scene without own tests has the digest of its tables."""
+    tests = tmp_path / "mine.csv"
+    tests.write_text("quantity,mean,sd,n,d_c_m,d_d_m\ne,0.4,0.01,5,0.03,0.05\n")
+    scene = read_dict(to_dict(load("quick")) | {"measured": str(tests)})
+    before = digest(scene)
+    assert digest(scene) == before
+    tests.write_text(tests.read_text().replace("0.05", "0.06"))
+    assert digest(scene) != before
+    tests.unlink()
+    with pytest.raises(SceneError, match=r"measured = .*cannot be read"):
+        digest(scene)
+    plain = json.dumps(to_dict(load("quick")), sort_keys=True, separators=(",", ":"))
+    assert digest(load("quick")) == hashlib.sha256(plain.encode()).hexdigest()
 
 
 def test_a_changed_material_loses_its_name():

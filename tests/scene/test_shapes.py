@@ -245,6 +245,16 @@ def test_an_angle_that_the_refusal_of_a_flank_names_is_accepted_and_the_nearest(
             Case.of(read_dict(scene(chamfer, f"{nearer} deg")), fidelity)
 
 
+def test_no_angle_is_named_at_which_the_body_does_not_come_down_on_a_barrier_that_moves():
+    """Along its axis it comes down at 0.97 m/s at 61 deg, while the barrier goes away at 0.99 m/s."""
+    cone = {"shape": "cone", "length": "60 mm", "diameter": "20 mm", "cone_angle": "30 deg"}
+    data = scene(cone | {"face_diameter": "2 mm"}) | {"impact": {"angle": "60 deg", "speed": "2 m/s"}}
+    data["barrier"] = data["barrier"] | {"v_n": "-0.99 m/s"}
+    with pytest.raises(SceneError, match="flank") as refused:
+        Case.of(read_dict(data), "rigid")
+    assert "Give an angle of 59 deg." in refused.value.remedy
+
+
 def test_a_flank_that_is_pressed_in_whole_asks_for_a_lower_speed():
     """No angle helps: one of 170 deg was asked for."""
     cone = {"shape": "cone", "length": "700 mm", "diameter": "7.4 mm", "cone_angle": "67 deg"}

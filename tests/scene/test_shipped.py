@@ -204,6 +204,25 @@ def test_a_scene_is_read_from_a_table_with_numbers_of_numpy(tmp_path):
         load({**table, "projectile": {**table["projectile"], "lenght": "1 m"}})
 
 
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"barrier.layers": [{"thickness": "1 mm", "material": "aluminium-6061-t6"}]},
+        {"barrier": {"material": "aluminium-6061-t6"}},
+        {"projectile": {"shape": "ball", "diameter": "20 mm", "material": "aluminium-6061-t6"}},
+    ],
+)
+def test_the_surface_of_a_pair_follows_from_the_bodies_however_they_are_changed(change):
+    data = {key: value for key, value in to_dict(load("quick")).items() if key not in ("surface", "measured")}
+    scene = load(data)
+    changed = replace_all(scene, change)
+    assert changed.surface.state == "pair" and changed.surface.source.startswith("steel on aluminium")
+    assert changed.surface.friction != scene.surface.friction
+    assert replace_all(scene, change | {"surface.friction": 0.3}).surface.friction == 0.3
+    with pytest.raises(SceneError, match=r"surface = .* must be a table"):
+        replace_all(scene, change | {"surface": "machined"})
+
+
 def test_who_asks_for_the_first_impact_alone_leaves_how_strikes_are_followed():
     followed = replace_all(load("quick"), {"impact.until": "rest", "strikes.angle_error": "1 deg"})
     assert replace(followed, "impact.until", "first").strikes == Following()

@@ -8,7 +8,9 @@ from hypothesis import strategies as st
 
 from fem_impact.errors import SceneError
 from fem_impact.scene.inputs import inputs
+from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load, replace_all
+from fem_impact.scene.types import to_dict
 from fem_impact.scene.units import DIMENSIONS, format_quantity, parse_number, parse_quantity
 
 magnitudes = st.floats(1e-200, 1e30)
@@ -91,7 +93,19 @@ def test_refuses_what_is_no_length_and_names_key_and_remedy(value, words):
 
 def test_a_bare_number_is_answered_with_both_ways_to_write_it():
     with pytest.raises(SceneError, match=r'"240 mm", or as length_m in SI'):
-        parse_quantity(240, "length", "length")
+        parse_quantity(240, "length", "length", "length_m")
+
+
+def test_no_key_is_proposed_that_does_not_exist():
+    steel, rod = "rod-steel", to_dict(load("quick"))["projectile"]
+    segments = [{"to": 0.02, "material": steel}, {"material": steel}]
+    laid = {key: value for key, value in rod.items() if key != "material"} | {"segments": segments}
+    for body in (laid, {"profile": [[0.0, "5 mm"], ["80 mm", "8 mm"]], "material": steel}):
+        data = to_dict(load("quick")) | {"projectile": body}
+        data.pop("measured", None)
+        with pytest.raises(SceneError, match='such as "240 mm"') as refused:
+            read_dict(data)
+        assert "in SI" not in str(refused.value)
 
 
 @pytest.mark.parametrize("value", ["3", True, None, [1.0]])

@@ -85,6 +85,26 @@ def test_a_strain_gauge_needs_no_file_and_a_place_on_the_rod():
             Case.of(replace(mid, save=replace(mid.save, gauge=place)))
 
 
+def test_the_mirror_image_of_a_body_has_the_same_strains_on_the_side_that_faces_the_barrier(tmp_path):
+    shown, across = [], []
+    for side in (1, -1):
+        scene = scenes.scene(
+            *(*ELASTIC, "friction"),
+            length=0.06,
+            angle=side * 0.6,
+            v_t=side * -1.0,
+            omega=side * 20.0,
+            max_time=3e-5,
+        )
+        scene = replace(scene, save=replace(scene.save, strain_samples=1, gauge=0.03))
+        shown.append(solve(Case.of(scene), RunOptions(tmp_path / str(side))).strain)
+        across.append(read_waves(tmp_path / str(side) / "waves.h5").across)
+    assert np.abs(shown[0]).max() > 1e-6
+    assert shown[1] == pytest.approx(shown[0], rel=1e-6, abs=1e-6 * np.abs(shown[0]).max())
+    # both towards the barrier, whose normal n points up
+    assert across[0][2] < -0.5 and across[1] == pytest.approx(across[0] * [-1, 1, 1], abs=1e-9)
+
+
 def test_samples_resolve_the_wave_and_both_ends_of_the_run_are_known(upright):
     _, result, waves = upright
     assert np.diff(waves.times).max() < 0.75 * np.diff(waves.position)[0] / waves.speed

@@ -282,6 +282,26 @@ def test_unusual_means_are_read(tmp_path, mean):
     assert read.mean == float(mean.split(",")[1])
 
 
+def test_arms_beside_means_have_any_unit_of_length(tmp_path):
+    file = tmp_path / "my.csv"
+    file.write_text("quantity,mean,sd,n,d_c_mm,d_d [cm]\ne,0.3,0.1,8,20,3.5\nmu,0.5,0.1,8,20,3.5\n")
+    assert read_means(file).arms == pytest.approx((0.02, 0.035), rel=1e-12)
+    file.write_text("quantity,mean,sd,n,d_c,d_d\ne,0.3,0.1,8,20,35\n")
+    with pytest.raises(ResultError, match=r"my\.csv: column 'd_c' names no unit"):
+        read_means(file)
+
+
+def test_large_numbers_of_an_outcome_are_means_too(tmp_path):
+    """What no velocity can be: a heat flux, a force. Their variances are finite."""
+    file, others = tmp_path / "my.csv", ("friction_flux_W_per_m2", "peak_force_N")
+    file.write_text("quantity,mean,sd,n\nfriction_flux_W_per_m2,5e9,1e8,5\npeak_force_N,2e6,1e5,5\n")
+    assert [one.mean for one in read_means(file, others).means.values()] == [5e9, 2e6]
+    for row in ("peak_force_N,1e200,1e199,5", "V_n_m_per_s,2e6,1,5", "e,0.5,2e6,5"):
+        file.write_text(f"quantity,mean,sd,n\n{row}\n")
+        with pytest.raises(ResultError, match="too large"):
+            read_means(file, others)
+
+
 OWN_SCENE = """
 id = "own"
 measured = "my.csv"
