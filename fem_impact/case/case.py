@@ -96,6 +96,8 @@ class Case:
         limits.require_own_mesh(self.bodies, fidelity)
         require_plate(self.bodies, self.meshed_through)
         limits.require_first_part(self.bodies)
+        if fidelity != "rigid":
+            limits.require_elastic_parts(self.bodies)
         if self.record is None:
             limits.require_point(self.bodies, fidelity)
         slots = self.slots

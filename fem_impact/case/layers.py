@@ -8,7 +8,7 @@ import numpy as np
 
 from fem_impact.arrays import Array
 from fem_impact.case.bodies import Bodies
-from fem_impact.case.effects.plasticity import buried_yield_ratio, hardening_of
+from fem_impact.case.effects.plasticity import buried_yield_ratio, hardening_of, struck
 from fem_impact.case.plates import rows_through, widening
 from fem_impact.case.recorded import AnyZones
 from fem_impact.case.zones import Corners, zones_of
@@ -30,7 +30,6 @@ AROUND = 1.5
 # share of a free barrier's mass that its block has at most, and how many times smaller its margin is tried
 MOST_OF_BARRIER, SMALLER = 0.5, 0.8
 UNDER = 2.0  # rows of the base's cells under the last layer, at least
-WIDE = 2.0  # estimated radii of the contact, under which a layer is told to be thin
 
 
 def interfaces(bodies: Bodies) -> Array:
@@ -170,9 +169,10 @@ def _too_thin(bodies: Bodies, zones: AnyZones, share: float) -> SceneError:
 def thin_layer(bodies: Bodies) -> str:
     """Say where the first layer is thin for the contact, whose estimates know it alone."""
     barrier, size = bodies.barrier, bodies.estimate
-    if not barrier.layers or barrier.layers[0].thickness > WIDE * max(size.a_t, size.a_b):
+    if len(struck(bodies)) < 2:
         return ""
     return (
         f"The first layer, {barrier.layers[0].thickness * 1e3:.3g} mm, is thin for a contact of about "
-        f"{1e3 * max(size.a_t, size.a_b):.2g} mm radius; effects and cells are chosen as if it were thick."
+        f"{1e3 * max(size.a_t, size.a_b):.2g} mm radius; cells and most effects are chosen as if "
+        "it were thick."
     )

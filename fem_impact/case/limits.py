@@ -7,7 +7,7 @@ from dataclasses import replace
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.layers import flows_below
 from fem_impact.case.plates import is_wider, thin_plate
-from fem_impact.case.shaft import coned, gives_elsewhere, lands_on_ridge
+from fem_impact.case.shaft import coned, gives_elsewhere, lands_on_ridge, part_flows
 from fem_impact.errors import SceneError
 from fem_impact.outcome.groups import Limitation, limitations
 from fem_impact.physics.contact import FLAT
@@ -240,6 +240,20 @@ def require_first_part(bodies: Bodies) -> None:
             key="projectile.segments[1].to",
             value=f"{segments[0].to * 1e3:.3g} mm",
             remedy="The first segment must touch: only its material may yield.",
+        )
+
+
+def require_elastic_parts(bodies: Bodies) -> None:
+    """Refuse a later segment that would yield: in both models it stays elastic (SceneError)."""
+    number, stress = part_flows(bodies)
+    if number and "-rod-plasticity" not in bodies.scene.effects:
+        metal = bodies.rod.segments[number - 1].material
+        over = f"{stress / 1e6:.3g} MPa (estimated) over {metal.yield_stress / 1e6:.3g} MPa"
+        raise SceneError(
+            f"would yield along its length: {over}; only the first segment may yield.",
+            key=f"projectile.segments[{number}].material",
+            value=metal.name,
+            remedy="A lower speed; or state the material without yield_stress, which lets it stay elastic.",
         )
 
 

@@ -38,6 +38,27 @@ def shaft_flows(bodies: Bodies) -> str:
     return f"a shaft that would yield along its length (axial stress, estimated: {told})"
 
 
+def part_flows(bodies: Bodies) -> tuple[int, float]:
+    """Return which segment, of those after the first, would yield along its length, and its stress, Pa.
+
+    The stress is that of a plane wave or, where that is less, the estimated force of the contact over the
+    smallest section of the segment, as of `shaft_flows`. Segments count from 1; 0: none would.
+    """
+    parts, contact, size = bodies.rod.segments, bodies.contact, bodies.estimate
+    if len(parts) < 2:
+        return 0, 0.0
+    shaft, begin = sections(bodies.rod), parts[0].to
+    force = size.pressure * pi * size.a_t * size.a_b * cos(contact.angle)
+    for number, part in enumerate(parts[1:], 2):
+        metal, own = part.material, (shaft.z[:-1] >= begin - 1e-9) & (shaft.z[1:] <= part.to + 1e-9)
+        wave = sqrt(metal.E * metal.rho) * max(contact.approach, 0.0) * cos(contact.angle)
+        stress = min(wave, force * metal.E / float(shaft.EA[own].min()))
+        if stress > metal.yield_stress:
+            return number, stress
+        begin = part.to
+    return 0, 0.0
+
+
 def wall_is_flattened(bodies: Bodies) -> str:
     """Say that a tube which comes down on its side would be flattened for good; empty if it would not.
 

@@ -73,6 +73,7 @@ def _check_fields(result: Path) -> None:
             raise ResultError(f"{result}: is a study. Name one of its runs, such as {result / runs[0]}.")
         raise ResultError(f"{result}: is a study of which no run has kept its fields. Run one scene itself.")
     from fem_impact.outcome.record import Outcome
+    from fem_impact.scene.shipped import load
 
     outcome = Outcome.read(result / "outcome.json")
     fidelity, strikes = outcome.provenance.fidelity, isinstance(outcome.strikes.each, tuple)
@@ -81,7 +82,9 @@ def _check_fields(result: Path) -> None:
         if fidelity == "solid"
         else (f"fidelity {fidelity} has no mesh", "Run its scene with --fidelity solid.")
     )
-    if runs:
+    stated = result / "scene.toml"
+    kept = fidelity == "solid" and stated.is_file() and load(stated).save.frames > 0
+    if runs or kept:
         why, way = (
             "its last level, which alone keeps them, did not end",
             "Run it with --resume and more --budget.",

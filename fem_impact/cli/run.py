@@ -254,8 +254,9 @@ def _accuracy_lines(outcome: Outcome, target_of: str | None) -> list[str]:
     """Return what a run says of the error that was asked for, or why its errors are not known."""
     v = outcome.validity
     if isinstance(v.accuracy_target, Unknown):
-        unbanded = outcome.provenance.fidelity == "solid" and isinstance(v.mesh_band, Unknown)
-        return ["", *wrapped(f"error of these numbers not known: {_reason(v.mesh_band)}")] if unbanded else []
+        if outcome.provenance.fidelity == "rigid" or not isinstance(outcome.half_widths, Unknown):
+            return []
+        return ["", *wrapped(f"error of these numbers not known: {outcome.half_widths.reason}")]
     rigid = isinstance(outcome.energy.vibration, Unknown)  # then there is no E_vib
     judged = target_of or ("e" if rigid else "e and E_vib")
     lines = [

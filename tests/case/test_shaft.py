@@ -7,8 +7,10 @@ import pytest
 from fem_impact import load, replace_all, simulate
 from fem_impact.case.case import Case
 from fem_impact.case.limits import not_reduced
-from fem_impact.case.shaft import rings_through, shaft_flows, wall_is_flattened
+from fem_impact.case.shaft import part_flows, rings_through, shaft_flows, wall_is_flattened
+from fem_impact.errors import SceneError
 from fem_impact.outcome.keys import Unknown
+from fem_impact.scene.read import read_dict
 
 ROD = {"projectile.length": "0.12 m", "impact.angle": "0 deg", "impact.v_t": "0 m/s"}
 
@@ -90,3 +92,37 @@ def test_a_disc_on_its_face_is_told_without_an_error_and_is_not_decided_by_the_r
     assert isinstance(outcome.half_widths, Unknown) and outcome.estimate("e_edge")[1] is None
     for changes in ({"impact.angle": "60 deg"}, {"projectile.length": "300 mm"}):
         assert rings_through(Case(replace_all(disc, changes)).bodies) == ""
+
+
+CAP = {
+    "id": "capped",
+    "projectile": {
+        "length": "80 mm",
+        "diameter": "20 mm",
+        "tip": "B",
+        "tip_radius": "3 mm",
+        "segments": [{"to": "5 mm", "material": "42crmo4"}, {"material": "lead"}],
+    },
+    "barrier": {"material": "s355"},
+    "surface": {"state": "custom", "friction": 0.3, "source": "assumed"},
+    "impact": {"angle": "30 deg", "speed": "6 m/s"},
+}
+
+
+@pytest.mark.parametrize("fidelity", ["modal", "solid"])
+def test_a_later_segment_that_would_yield_is_refused_by_the_models_that_keep_it_elastic(fidelity):
+    """The contact of a steel cap presses lead, which yields at 11 MPa, with several times that."""
+    with pytest.raises(SceneError, match="over 11 MPa; only the first segment may yield") as refused:
+        Case.of(read_dict(CAP), fidelity)
+    assert refused.value.key == "projectile.segments[2].material"
+    assert Case.of(read_dict(CAP), "rigid").fidelity == "rigid"
+    gentle = CAP | {"impact": {"angle": "30 deg", "speed": "0.05 m/s"}}
+    assert Case.of(read_dict(gentle), fidelity).fidelity == fidelity
+
+
+def test_a_later_segment_of_a_metal_without_a_yield_stress_stays_elastic_as_stated():
+    lead = {"name": "soft", "E": "16 GPa", "nu": 0.44, "rho": "11340 kg/m3", "source": "assumed"}
+    parts = [CAP["projectile"]["segments"][0], {"material": lead}]
+    stated = CAP | {"projectile": CAP["projectile"] | {"segments": parts}}
+    assert part_flows(Case(read_dict(stated)).bodies) == (0, 0.0)
+    assert Case.of(read_dict(stated), "modal").fidelity == "modal"

@@ -3,6 +3,9 @@
 import pytest
 import result_maker
 
+from fem_impact import load
+from fem_impact.scene.types import to_toml
+
 
 @pytest.mark.parametrize(
     ("fidelity", "words"),
@@ -26,6 +29,14 @@ def test_a_run_whose_last_level_did_not_end(cli, tmp_path):
     (tmp_path / "one" / "level-3" / "fields.vtkhdf").write_bytes(b"")
     code, _, err = cli("render", "one")
     assert code == 5 and "its last level, which alone keeps them, did not end. Run it with --resume" in err
+
+
+def test_a_scene_that_asks_for_frames_lacks_them_where_its_last_level_did_not_end(cli, tmp_path):
+    result_maker.write_result(tmp_path / "one", fidelity="solid")
+    (tmp_path / "one" / "fields.vtkhdf").unlink(missing_ok=True)
+    (tmp_path / "one" / "scene.toml").write_text(to_toml(load("t5b")))
+    _, _, err = cli("render", "one")
+    assert "its last level, which alone keeps them, did not end. Run it with --resume" in err
 
 
 def test_a_path_needs_strikes_and_is_shown_whole(cli, tmp_path):

@@ -88,6 +88,18 @@ def test_the_estimates_are_told():
     assert Case.of(load("layered"), "rigid").fidelity == "rigid"
 
 
+def test_a_rod_that_presses_through_a_soft_thin_layer_may_yield_on_what_lies_under_it():
+    """On 0.5 mm of weak metal a rod met the base, told to stay elastic by the strength of the layer alone."""
+    soft = {"name": "soft", "E": "96 GPa", "nu": 0.25, "rho": "7140 kg/m3", "source": "assumed"}
+    soft |= {"yield_stress": "60 MPa", "hardening": "100 MPa"}
+    data = to_dict(load("quick")) | {"effects": "auto"}
+    on = {}
+    for thickness in ("0.5 mm", "40 mm"):
+        data["barrier"] = {"material": "s355", "layers": [{"thickness": thickness, "material": soft}]}
+        on[thickness] = "rod-plasticity" in Case.of(read_dict(data)).active
+    assert on == {"0.5 mm": True, "40 mm": False}
+
+
 def test_a_soft_base_is_seen_to_yield_under_a_hard_layer_that_cannot():
     data = to_dict(load("layered"))
     on = {}

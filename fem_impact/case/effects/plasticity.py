@@ -10,6 +10,7 @@ from fem_impact.physics.contact import FLATTEST, LIMIT_PRESSURE, ON_SIDE, Contac
 from fem_impact.scene.material import Material, RambergOsgoodFlow, TableFlow
 
 DEEP = 1.6  # peak Hertz pressure over yield stress at first yield, below the surface (Johnson 1985, eq 6.9)
+WIDE = 2.0  # estimated radii of the contact, under which a layer is told to be thin
 HARDEST = 1.0  # plastic strain that no dent of a slender body exceeds by much: the largest seen is .95
 
 
@@ -103,9 +104,18 @@ def hardening_of(material: Material) -> hardening.HardeningLaw:
         raise SceneError(str(error), key=f"{key} of {material.name}", value=value, remedy=remedy) from None
 
 
+def struck(bodies: Bodies) -> list[Material]:
+    """Return the materials of the barrier that the contact presses, those that begin within `WIDE` radii."""
+    reach = WIDE * max(bodies.estimate.a_t, bodies.estimate.a_b)
+    begins = [0.0, *(depth for depth, _ in bodies.barrier.strata)]
+    return [metal for z, (_, metal) in zip(begins, bodies.barrier.strata, strict=False) if z <= reach]
+
+
 def number(bodies: Bodies) -> float:
-    """Return the peak pressure over that of first yield in the rod."""
-    return first_yield_ratio(bodies.contact, bodies.contact.rod, bodies.contact.barrier)
+    """Return the peak pressure over that of first yield in the rod, by the strongest that it strikes."""
+    pair = bodies.contact
+    metals = struck(bodies) if bodies.barrier.layers else [pair.barrier]
+    return max(first_yield_ratio(pair, pair.rod, metal) for metal in metals)
 
 
 def fill(bodies: Bodies, spec: ModelSpec) -> None:
