@@ -279,9 +279,9 @@ def test_vibration_above_the_modes_is_listed_so_that_the_shares_add_up(cli):
 
 
 def test_a_reduced_run_without_half_widths_says_why_beside_its_numbers(cli):
-    code, out, _ = cli("run", "quick", "--fidelity", "modal", "--set", "barrier.mass=50 g")
+    code, out, _ = cli("run", "quick", "--fidelity", "modal", "--set", "barrier.mass=0.5 g")
     assert code == 0
-    assert "\n\nerror of these numbers not known: The barrier's mass of 0.05 kg" in out
+    assert "\n\nerror of these numbers not known: The barrier's mass of 0.0005 kg" in out
 
 
 def test_a_followed_body_is_answered_by_its_sequence_first(cli, tmp_path):
