@@ -11,8 +11,10 @@ import fem_impact
 from fem_impact.case.case import Case
 from fem_impact.modal.groove import AT, flowed, hardness, indent, slide, smooth
 from fem_impact.modal.impact import drop_round
-from fem_impact.modal.laws import reach
-from fem_impact.modal.motion import CLOCK, SITE, SUM, Bounds, Start
+from fem_impact.modal.laws import pair_at, reach
+from fem_impact.modal.motion import AT as MOVES
+from fem_impact.modal.motion import CLOCK, SITE, SUM, Bounds, ModalState, Start
+from fem_impact.modal.rod import modal_rod
 from fem_impact.modal.tip import Flank, Tip
 from fem_impact.physics.contact_law import ContactLaw, FlowLaw, contact_law, flow_law, restitution
 from fem_impact.scene.shipped import load
@@ -330,3 +332,33 @@ def test_the_harder_of_two_bodies_is_the_other_one():
         of = flow_law(case.contact, case.slots.rod_law, case.slots.barrier_law)
         assert of.ploughs == (rod == "rod-steel") and inf > of.other_yield_stress > of.yield_stress
     assert flow_law(case.contact, case.slots.rod_law, None).other_yield_stress == inf
+
+
+def test_the_flow_curve_of_a_body_that_does_not_yield_does_not_count():
+    case = Case.of(load("quick"), "modal")
+    pair, rod, barrier = case.contact, case.slots.rod_law, case.slots.barrier_law
+    both = flow_law(pair, rod, barrier)
+    for still, laws in (("rod_yields", (None, barrier)), ("barrier_yields", (rod, None))):
+        one = replace(pair, **{still: False})
+        assert flow_law(one, rod, barrier) == flow_law(one, *laws)
+        assert flow_law(one, rod, barrier) != both
+        assert flow_law(one, rod, barrier).other_yield_stress == inf
+
+
+def test_a_tail_of_another_metal_is_pressed_in_by_that_metal():
+    """Only the tip's metal yields: no flow curve bounds the hardness of the tail, that of the tip neither."""
+    case = Case.of(load("heavy-tail"), "modal")
+    rod, flows = modal_rod(case.bodies, case.slots.vibrating), (case.slots.rod_law, case.slots.barrier_law)
+    state = ModalState(np.zeros(len(MOVES)), np.zeros(len(rod.omega)), np.zeros(len(rod.omega)))
+    state.rigid[MOVES.V_n] = -5.0
+    found = {}
+    for s in range(len(rod.sites.along_t)):
+        pair = pair_at(case, rod, state, s, 1.0)
+        found.setdefault(pair.rod.name, []).append((pair, flow_law(pair, *flows)))
+    tip, tail = found.pop("rod-steel"), found.pop("tungsten-heavy-alloy")
+    assert not found
+    assert all(law.other_yield_stress < 2e9 for _, law in tip)
+    for pair, law in tail:
+        assert law == flow_law(pair, None, flows[1])
+        assert law.other_yield_stress == inf
+    assert all(law.ploughs for _, law in tail)

@@ -3,7 +3,7 @@
 import pytest
 
 from fem_impact.run.simulate import simulate
-from fem_impact.scene.shipped import load, replace
+from fem_impact.scene.shipped import load, replace, replace_all
 
 PUNCH = load(
     {
@@ -66,3 +66,31 @@ def test_all_impulse_beyond_friction_that_no_stored_scene_comes_near_counts_as_e
     assert half >= mu - 0.25 > 0.25
     assert run.estimate("V_t_m_per_s")[1] >= half * (run.motion.V_n - run.motion.v_n)
     assert any("how an edge digs in" in one.text for one in run.validity.limitations)
+
+
+ROD = {
+    "projectile.length": "80 mm",
+    "projectile.diameter": "19 mm",
+    "impact.v_n": "-5 m/s",
+    "impact.v_t": "0 m/s",
+}
+PLAIN = {"projectile.tip": "plain", "projectile.tip_radius": "0 mm"}
+
+
+def flat_landing(tip, angle, omega):
+    """What a quick rod that lands flat with spin keeps in its mirror image, and what that turns round."""
+    landing = {"impact.angle": f"{angle} deg", "impact.omega": f"{omega} rad/s"}
+    run = simulate(replace_all(load("quick"), ROD | tip | landing), "modal")
+    return (run.motion.V_n, run.energy.plastic_rod, run.energy.plastic_barrier), (
+        run.motion.V_t,
+        run.motion.Omega,
+    )
+
+
+@pytest.mark.parametrize(("angle", "omega"), [(90, 60), (90, -60), (0, 60)])
+@pytest.mark.parametrize("tip", [{}, PLAIN], ids=["round edge", "sharp edge"])
+def test_a_flat_landing_with_spin_is_its_own_mirror_image(tip, angle, omega):
+    (kept, turned), (same, back) = (flat_landing(tip, side * angle, side * omega) for side in (1, -1))
+    assert same == pytest.approx(kept, rel=1e-7)
+    assert back == pytest.approx([-value for value in turned], rel=1e-6)
+    assert min(kept) > 0.0 and abs(turned[1] - omega) > 5.0

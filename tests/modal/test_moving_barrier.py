@@ -90,3 +90,13 @@ def test_a_shipped_scene_runs_and_says_that_nothing_was_measured_there(name):
     assert any(
         "outside the measured range" in sentence for sentence in texts(outcome.validity.limitations, "range")
     )
+
+
+@pytest.mark.parametrize("v_n", [-0.02, -0.2])
+def test_what_gravity_gives_while_a_slow_rod_touches_is_no_error_of_the_momentum(v_n):
+    slow = {"barrier.mass": "5 kg", "impact.angle": "30 deg", "impact.v_n": f"{v_n} m/s"}
+    outcome = simulate(replace_all(load("quick"), slow | {"impact.v_t": "0 m/s"}), "modal")
+    assert "gravity" in outcome.provenance.effects
+    touched = sum(one.end - one.start for one in outcome.contact.intervals)
+    assert outcome.barrier.momentum_error < 0.05 * 9.81 * touched / abs(v_n)
+    assert outcome.barrier.momentum_error < 1e-3

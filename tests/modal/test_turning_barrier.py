@@ -116,3 +116,30 @@ def test_a_barrier_that_is_half_stated_is_refused(changes, words):
 def test_the_rigid_fidelity_refuses_it():
     with pytest.raises(SceneError, match=r"barrier\.inertia.*rigid fidelity does not hold"):
         run(TURNING, fidelity="rigid")
+
+
+BELOW = {
+    "impact.v_t": "0 m/s",
+    "barrier.mass": "2 kg",
+    "barrier.inertia": "0.01 kg m2",
+    "barrier.centre_depth": "30 mm",
+    "barrier.centre_offset": "0 mm",
+}
+PLAIN = {"projectile.tip": "plain", "projectile.tip_radius": "0 mm"}
+
+
+@pytest.mark.parametrize("tip", [{}, PLAIN], ids=["round edge", "sharp edge"])
+def test_an_upright_rod_that_lands_over_the_mass_centre_turns_nothing(tip):
+    outcome = run(tip, BELOW, {"impact.angle": "0 deg"})
+    assert abs(outcome.motion.Omega) < 1e-6
+    assert abs(known(outcome.barrier.Omega_b)) < 1e-6
+    assert known(outcome.barrier.angular_momentum_error) < 1e-10
+
+
+@pytest.mark.parametrize("angle", [90, -90])
+@pytest.mark.parametrize("tip", [{}, PLAIN], ids=["round edge", "sharp edge"])
+def test_a_rod_that_lands_on_its_side_keeps_the_angular_momentum_of_both(tip, angle):
+    outcome = run(tip, BELOW, {"impact.angle": f"{angle} deg"})
+    assert known(outcome.barrier.angular_momentum_error) < 1e-6
+    assert known(outcome.barrier.momentum_error) < 1e-10
+    assert abs(known(outcome.barrier.Omega_b)) < 1.0

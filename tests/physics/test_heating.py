@@ -293,3 +293,37 @@ def test_rigid_theory_tells_no_temperature_of_an_edge_that_is_crushed():
     for value in (heat.temperature, heat.rise, heat.time_above_ignition):
         assert isinstance(value, Unknown) and "crushed" in value.reason
     assert known(heat.power) > 0.0
+
+
+def of_hardness(name, number):
+    """A material whose flow stress is that of its hardness test; it has no ultimate stress."""
+    elastic = {"name": name, "E": "210 GPa", "nu": 0.3, "rho": "7850 kg/m3"}
+    return elastic | {"yield_stress": "150 MPa", "hardness": number, "law": "hardness"}
+
+
+def bound_of_hard_bodies(rod, barrier):
+    own = {f"heating.{body}_{key}": value for body in ("rod", "barrier") for key, value in OWN_HEAT.items()}
+    metals = {"projectile.material": of_hardness("a", rod), "barrier.material": of_hardness("b", barrier)}
+    scene = replace_all(load("t5b"), own | metals)
+    bodies = Case(scene, "rigid").bodies
+    return bound_of(scene), bodies.contact, scene.surface.friction
+
+
+OWN_HEAT = {"conductivity": "53 W/(m K)", "heat_capacity": "440 J/(kg K)"}
+
+
+@pytest.mark.parametrize(("rod", "barrier"), [(300, 160), (160, 300), (160, 160)])
+def test_without_an_ultimate_stress_the_hardness_of_the_softer_body_bounds_the_heat(rod, barrier):
+    found, pair, f = bound_of_hard_bodies(rod, barrier)
+    flux = f * 160 * 9.80665e6 / 0.927 * max(abs(pair.sliding) + pair.approach, pair.most_sliding)
+    assert found == pytest.approx(2 * flux * sqrt(3 * pair.estimate.duration / pi) / STEEL.effusivity)
+
+
+def test_a_hardness_below_three_times_the_ultimate_stress_does_not_lower_the_bound():
+    low, lower, stated = (changed(load("t5b"), "barrier.material.hardness", n) for n in (100, 60, 163))
+    assert bound_of(low) == bound_of(lower)
+    assert (
+        bound_of(stated)
+        == bound_of(load("t5b"))
+        == pytest.approx(bound_of(low) * 163 * 9.80665e6 / 0.927 / (3 * 446e6))
+    )

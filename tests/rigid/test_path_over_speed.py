@@ -38,8 +38,45 @@ def test_linear_friction_on_a_central_blow_decays_by_an_exponential():
     assert path.motion.V_t - ROD["d_d"] * path.motion.Omega == pytest.approx(exact, rel=1e-7)
 
 
-def test_sliding_that_never_stops_is_refused():
+def test_sliding_that_presses_in_for_too_long_is_refused():
     with pytest.raises(ImpactError, match="without end"):
-        path_over_speed(
-            -1.0, -1.0, e=0.5, f=2.0, over=((0.0, 1.0), (1.0, 1.0)), d_c=-0.02, d_d=-0.035, k2=1e-12
-        )
+        path_over_speed(-0.01, -5.0, e=0.5, f=1.5, over=((0.0, 1.0), (1.0, 1.0)), **ROD)
+
+
+ONE = ((0.0, 1.0), (1.0, 1.0))
+
+
+def assert_same_path(v_n, v_t, **case):
+    closed, stepped = sliding_path(v_n, v_t, **case), path_over_speed(v_n, v_t, over=ONE, **case)
+    swings = np.array([1.0, 1.0, np.sqrt(case["k2"])])
+    np.testing.assert_allclose(swings * stepped.motion, swings * closed.motion, rtol=1e-9, atol=1e-9)
+    assert stepped.end == closed.end
+    assert float(stepped.mu) == pytest.approx(float(closed.mu), abs=1e-9)
+    assert float(stepped.e_energetic) == pytest.approx(float(closed.e_energetic), abs=1e-9)
+    assert stepped.loss == pytest.approx(closed.loss, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("v_n", "v_t", "case"),
+    [
+        (-4.1336, 0.0, {"e": 0.0, "f": 1.93, "d_c": 0.0487, "d_d": 0.0792, "k2": 3.28e-5}),
+        (-1.0, -1.0, {"e": 0.5, "f": 2.0, "d_c": -0.02, "d_d": -0.035, "k2": 1e-12}),
+    ],
+    ids=["from the first touch", "after a slide"],
+)
+def test_what_sticks_far_out_on_its_arms_sticks_to_the_end(v_n, v_t, case):
+    assert_same_path(v_n, v_t, **case)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_one_friction_at_all_speeds_gives_the_closed_path_of_any_body(seed):
+    """Arms within the radius of gyration and far beyond it, with spin, from no rebound to a full one."""
+    rng, met = np.random.default_rng(seed), 0
+    while met < 60:
+        arms = {"d_c": 0.05 * rng.normal(), "d_d": rng.uniform(1e-3, 0.1), "k2": 10 ** rng.uniform(-5, -2.3)}
+        v_n, v_t = -rng.uniform(0.1, 5.0), 3.0 * rng.normal() * (rng.random() > 0.2)
+        omega = 30.0 * rng.normal() * (rng.random() > 0.5)
+        e, f = rng.choice([0.0, rng.random(), 1.0]), rng.choice([0.0, 2.0 * rng.random()])
+        if v_n + arms["d_c"] * omega < -0.05:
+            assert_same_path(v_n, v_t, e=e, f=f, omega=omega, **arms)
+            met += 1

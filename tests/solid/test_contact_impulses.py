@@ -5,8 +5,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from fem_impact.fem.sliding import speed_table
+from fem_impact.solid.contact.book import ContactBook
 from fem_impact.solid.contact.impulses import MOST_SWEEPS, push, relative, solve
 from fem_impact.solid.contact.patch import bilinear
+from fem_impact.solid.contact.points import PointState, make_points, settle
 
 
 def system(seed, count=8, tilt=0.2, masters=12):
@@ -137,3 +140,28 @@ def test_push_and_relative_are_adjoint():
     w = np.zeros(15)
     push(w, np.ones(15), nodes, s, *p)
     assert np.array(relative(v, nodes, s)) @ p == pytest.approx(v @ w)
+
+
+def _apart(slope, f):
+    """Let two nodes slide apart over immovable quads that lean both ways; return the book of the step."""
+    points, v = make_points(2, speed_table(None)), np.zeros(30)
+    v[:3], v[15:18] = [3.0, 0.0, -1.0], [-3.0, 0.0, -1.0]
+    inverse = np.concatenate([np.ones(3), np.zeros(12), np.ones(3), np.zeros(12)])
+    points.nodes[:] = np.arange(30).reshape(2, 5, 3)
+    points.weights[:] = [1.0, -0.25, -0.25, -0.25, -0.25]
+    points.normal[:] = np.array([[-slope, 0.0, 1.0], [slope, 0.0, 1.0]]) / np.hypot(1.0, slope)
+    points.before[:], points.f[:], points.owner[:] = [v[:3], v[15:18]], f, [0, 1]
+    book, motion = ContactBook(), PointState(np.zeros(30), v, np.zeros(30), inverse, 1e-8, 1e-8)
+    settle(2, motion, points, book, 1e-8)
+    return book
+
+
+@pytest.mark.parametrize("slope", [0.0, 0.2])
+def test_friction_of_contacts_that_slide_apart_does_not_cancel(slope):
+    book, f = _apart(slope, 0.1), 0.1
+    assert book.step.impulse_t == pytest.approx(0.0, abs=1e-15) and book.step.active == 2
+    length = np.hypot(1.0, slope)
+    pressed, along = (1.0 + 3.0 * slope) / length, (3.0 - slope) / length
+    assert book.step.rubbed == pytest.approx(2 * f * pressed)
+    assert book.friction / book.step.rubbed == pytest.approx(along - 0.5 * f * pressed)
+    assert _apart(slope, 0.0).step.rubbed == pytest.approx(0.0, abs=1e-7)

@@ -1,5 +1,7 @@
 """Contact on the rigid plane, node by node: arrival, cone, no pull, and the work that is booked."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 import solid_shapes as shapes
@@ -9,6 +11,7 @@ from hypothesis import strategies as st
 from fem_impact.fem.sliding import speed_table
 from fem_impact.solid.contact.book import MERGE_GAP, ContactBook, StepRecord
 from fem_impact.solid.contact.plane import PlaneContact, touch_plane
+from fem_impact.solid.heatwatch import HeatWatch
 
 DT = 2e-8
 
@@ -110,4 +113,33 @@ def test_short_releases_are_one_contact():
     assert book.touching
     book.close_step(StepRecord(), 2e-4)
     assert not book.touching
+    assert len(book.intervals) == 2
+
+
+def test_impulses_that_cancel_are_rubbed_all_the_same():
+    nodes, v, f = np.arange(6).reshape(2, 3), np.array([3.0, 4.0, -2.0, -3.0, -4.0, -2.0]), 0.1
+    rest = np.zeros(6)
+    step = touch_plane(nodes, rest, v, rest, np.ones(6), DT, DT, np.full(2, f), speed_table(None))
+    assert step.impulse_t == pytest.approx(0.0, abs=1e-15)
+    assert step.rubbed == pytest.approx(f * step.impulse_n) == pytest.approx(0.4)
+
+
+@pytest.mark.parametrize("opposed", [False, True])
+def test_heat_over_what_was_rubbed_is_the_sliding_speed_of_the_nodes(opposed):
+    """Two nodes at 5 m/s, held back by little: whether they slide one way or apart is no matter."""
+    v, nodes, rest = np.array([3.0, 4.0, -0.1, 3.0, 4.0, -0.1]), np.arange(6).reshape(2, 3), np.zeros(6)
+    v[3:5] *= -1.0 if opposed else 1.0
+    book = ContactBook()
+    watch = HeatWatch(SimpleNamespace(contact=None, book=book))
+    watch.surface = SimpleNamespace(add=lambda state: None, close=lambda: 1e-8)
+    step = touch_plane(nodes, rest, v, rest, np.ones(6), DT, DT, np.full(2, 0.2), speed_table(None))
+    book.close_step(step, 1e-6)
+    watch.observe(SimpleNamespace(time=1e-6))
+    assert watch.speed == pytest.approx([5.0 - 0.5 * 0.2 * 0.1])
+    assert watch.power == pytest.approx([2 * 0.2 * 0.2 * watch.speed[0] / 1e-6])
+
+
+def test_a_shorter_gap_parts_contacts_that_a_longer_one_takes_as_one():
+    book = ContactBook(gap=0.1 * MERGE_GAP)
+    _touches(book, [0.0, 0.05 * MERGE_GAP, 0.9 * MERGE_GAP])
     assert len(book.intervals) == 2
