@@ -91,8 +91,10 @@ def carry(
 
 def dented(model: Model, last: SolidResult) -> Model:
     """Return a model whose barrier is that of an earlier run on the same mesh, at rest with its dents."""
-    x, block = model.start[0].copy(), model.layout.barrier_slice
-    x[block] = last.state.x[last.model.layout.barrier_slice]
+    moved, block = np.zeros_like(model.start[0]), model.layout.barrier_slice
+    moved[block] = last.state.x[last.model.layout.barrier_slice] - model.start[0][block]
+    model.hanging.expand(moved)  # the places of tied nodes are not kept by a run
+    x = model.start[0] + moved
     whole = _zone_steps(model, "barrier", model.start[0])
     _take_over(model, last.model, "barrier", 0.0)
     return _begun_at(model, "barrier", (x, model.start[1]), whole)

@@ -170,8 +170,8 @@ def sliding_path(
     )
 
 
-STEPS = 400  # of the impulse that would stop a smooth approach
-MOST = 50 * STEPS  # until friction that presses the point into the barrier has stopped it
+STEPS = 400  # of the impulse that would stop a smooth approach, or the one that friction has driven it to
+MOST = 50 * STEPS
 
 
 def path_over_speed(
@@ -208,7 +208,7 @@ def path_over_speed(
     """
     u, w = start = float(approach_velocity(*floats(v_n, d_c, omega))), v_t - d_d * omega
     n_n, n_t, t_t = 1.0 + d_c**2 / k2, -d_c * d_d / k2, 1.0 + d_d**2 / k2
-    hold, step = -n_t / t_t, -u / n_n / STEPS
+    hold = -n_t / t_t
     speeds, factors = (np.asarray(row, dtype=np.float64) for row in over)
 
     def ratio(w: float) -> float:
@@ -219,7 +219,8 @@ def path_over_speed(
     p, q, p_c, p_s = 0.0, 0.0, inf, 0.0 if w == 0 else inf
     works, stored = np.zeros((2, 2)), 0.0
     for _ in range(MOST):
-        dp, s = step, ratio(w)
+        s = ratio(w)
+        dp = max(abs(u), -start[0]) / n_n / STEPS
         if w != 0:
             middle = w + 0.5 * dp * (t_t * s + n_t)
             s = ratio(middle) if middle * w > 0 else s
