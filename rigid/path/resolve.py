@@ -170,7 +170,7 @@ def sliding_path(
     )
 
 
-STEPS = 400  # of the impulse that would stop a smooth approach, or the one that friction has driven it to
+STEPS = 400  # in which either velocity would change by as much as the first one, or as it has grown to
 MOST = 50 * STEPS
 
 
@@ -220,7 +220,9 @@ def path_over_speed(
     works, stored = np.zeros((2, 2)), 0.0
     for _ in range(MOST):
         s = ratio(w)
-        dp = max(abs(u), -start[0]) / n_n / STEPS
+        slopes = abs(n_n + n_t * s), abs(t_t * s + n_t)
+        sizes = max(abs(u), -start[0]), max(abs(w), abs(start[1]), -start[0])
+        dp = min(size / max(slope, 1e-9) for size, slope in zip(sizes, slopes, strict=True)) / STEPS
         if w != 0:
             middle = w + 0.5 * dp * (t_t * s + n_t)
             s = ratio(middle) if middle * w > 0 else s
