@@ -22,7 +22,7 @@ class FrictionSpread:
     Attributes
     ----------
     said : the interval and the model that computed its ends, as the end of a sentence; empty where there is
-        no interval
+        no interval, or it changes nothing
     changes : least and largest change of each number from that at the stated friction, in its unit
     """
 
@@ -31,8 +31,7 @@ class FrictionSpread:
 
     def told(self, key: Key, scale: float = 1.0) -> str:
         """Return the changes of a number times ``scale`` as text, empty where there are none."""
-        low, high = self.changes.get(key, (0.0, 0.0))
-        return " to ".join(_signed(scale * end) for end in (low, high)) if high > low else ""
+        return " to ".join(_signed(scale * end) for end in self.changes.get(key, ()))
 
 
 def friction_spread(scene: Scene, fidelity: str, outcome: Outcome | None = None) -> FrictionSpread:
@@ -59,7 +58,8 @@ def friction_spread(scene: Scene, fidelity: str, outcome: Outcome | None = None)
             )
             changes = _changes(nominal, ends)
             held = _held(outcome, changes) if outcome else changes
-            return FrictionSpread(f"what {interval} changes, by {by}.", held)
+            said = f"what {interval} changes, by {by}." if held else ""
+            return FrictionSpread(said, held)
     return FrictionSpread("", {})
 
 
@@ -98,4 +98,4 @@ def _held(outcome: Outcome, changes: Mapping[Key, tuple[float, float]]) -> dict[
         value, (least, most) = or_none(outcome.estimate(key)[0]), outcome.ends_of(key)
         if value is not None:
             held[key] = max(low, min(0.0, least - value)), min(high, max(0.0, most - value))
-    return held
+    return {key: ends for key, ends in held.items() if ends[1] > ends[0]}

@@ -17,6 +17,7 @@ from fem_impact.scene.own_mesh import OwnMesh
 from fem_impact.scene.shipped import replace as change
 from fem_impact.scene.types import Scene
 from fem_impact.scene.units import format_quantity
+from fem_impact.tables.text import plain
 from rigid import Faceted, Turned
 
 BESIDE_AXIS = 1e-3  # of the diameter, within which an upright body stands over its mass centre
@@ -117,8 +118,8 @@ def _outside(value: float, ends: tuple[float, float], name: str, dimension: str)
     slack = 1e-9 * abs(ends[1])
     if ends[0] - slack <= value <= ends[1] + slack:
         return ""
-    text = format_quantity(value, dimension)
-    return f"outside the measured range: {name} {text}, measured {low} to {high}"
+    number, unit = format_quantity(value, dimension).split(" ", 1)
+    return f"outside the measured range: {name} {plain(float(number), 4)} {unit}, measured {low} to {high}"
 
 
 def _section(scene: Scene) -> str:

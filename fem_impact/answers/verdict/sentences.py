@@ -22,7 +22,6 @@ from fem_impact.outcome.groups import texts
 from fem_impact.outcome.keys import Unknown, or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome, installed_versions
 from fem_impact.outcome.shares import SHARES, heat_ends
-from fem_impact.run.common import RESIDUAL_LIMIT
 from fem_impact.run.simulate import simulate
 from fem_impact.run.unusual import ROUND_OFF
 from fem_impact.scene.barrier import Barrier
@@ -52,6 +51,7 @@ THERE: Mapping[GradedAnswer, str] = {
     "probably no": "rigid theory may probably not be used there",
     "undecided": "whether rigid theory may be used there is undecided",
 }
+TOLD = 5e-4  # of e, beyond 1: three digits show it
 ALL_OVER = "; rigid theory may be used at all of them"
 FORMULA = "its restitution is a closed formula; give it a measured or computed one, the key restitution"
 WHY: Mapping[str, str] = {
@@ -125,7 +125,7 @@ def _beyond(v: Verdict) -> str:
 def doubt(change: VibrationEffect) -> str:
     """Return e of both twins where one of them is out of the range of a plain impact, else nothing."""
     free, stiff = (or_none(run.restitution.edge.e) for run in (change.free, change.stiff))
-    if free is None or stiff is None or all(-ROUND_OFF <= e <= 1 + RESIDUAL_LIMIT for e in (free, stiff)):
+    if free is None or stiff is None or all(-ROUND_OFF <= e < 1 + TOLD for e in (free, stiff)):
         return ""
     return f" (doubtful: e is {free:.3f} with vibration and {stiff:.3f} without it, outside 0 to 1)"
 
