@@ -83,7 +83,7 @@ class SolidResult:
     base : velocity (n, t), m/s, that a free barrier gained as a whole, that of its mass centre; else 0
     turned : how it turns, None of one that does not
     skin_shares : share of each body's plastic work done right under its surface, by ``rod`` and ``barrier``
-    peak_force : largest normal force on the whole rod, N, mean over a short window (`fem_impact.solid.observers.PeakForce`)
+    peak_force : largest normal force on the whole rod, N, mean over a short window, see `PeakForce`
     peak_nodes : nodes of the half model that were pressed at once then
     added_energy : largest kinetic energy of the mass that mass scaling added, J
     vibration_check : kinetic and strain energy of the vibration without modes, see `RodState`, J, or None
