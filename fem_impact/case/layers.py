@@ -168,11 +168,9 @@ def _too_thin(bodies: Bodies, zones: AnyZones, share: float) -> SceneError:
 
 def thin_layer(bodies: Bodies) -> str:
     """Say where the first layer is thin for the contact, whose estimates know it alone."""
-    barrier, size = bodies.barrier, bodies.estimate
     if len(struck(bodies)) < 2:
         return ""
     return (
-        f"The first layer, {barrier.layers[0].thickness * 1e3:.3g} mm, is thin for a contact of about "
-        f"{1e3 * max(size.a_t, size.a_b):.2g} mm radius; cells and most effects are chosen as if "
-        "it were thick."
+        f"The first layer, {bodies.barrier.layers[0].thickness * 1e3:.3g} mm, is thin for a contact of "
+        f"about {1e3 * bodies.estimate.radius:.2g} mm radius; cells and most effects are chosen as if it were thick."
     )

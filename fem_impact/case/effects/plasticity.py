@@ -106,7 +106,7 @@ def hardening_of(material: Material) -> hardening.HardeningLaw:
 
 def struck(bodies: Bodies) -> list[Material]:
     """Return the materials of the barrier that the contact presses, those that begin within `WIDE` radii."""
-    reach = WIDE * max(bodies.estimate.a_t, bodies.estimate.a_b)
+    reach = WIDE * bodies.estimate.radius
     begins = [0.0, *(depth for depth, _ in bodies.barrier.strata)]
     return [metal for z, (_, metal) in zip(begins, bodies.barrier.strata, strict=False) if z <= reach]
 
