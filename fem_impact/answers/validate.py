@@ -45,9 +45,7 @@ ERRORS = ("number", "model S", "tests D", "S - D", "u_num", "u_input", "u_D", "v
 """Attributes of a `Comparison` and the words of its table."""
 # of the correlations of the errors: below it, one of them follows from the others as far as is known
 LEAST_EIGENVALUE = 1e-4
-NOT_APART = Unknown(
-    "is not known: the tests and the uncertain inputs are too few to tell how these numbers vary apart"
-)
+NOT_APART = Unknown("the tests and the uncertain inputs are too few to tell how these numbers vary apart")
 CORNERS = 256  # of the intervals, tried before any run
 Ends = tuple[Any, Any] | str
 Interval = tuple[str, float, float, str]
@@ -93,7 +91,7 @@ class Validation:
     @property
     def _jointly(self) -> str:
         better, part = self.better
-        p = self.p.reason if isinstance(self.p, Unknown) else f"p = {self.p:.2g}"
+        p = f"not known: {self.p.reason}" if isinstance(self.p, Unknown) else f"p = {self.p:.2g}"
         return (
             f"jointly ({', '.join(self.joined)}) {p}; "
             f"measure better: {better}, {100 * part:.0f} % of u_val squared"
@@ -208,10 +206,8 @@ def validate(
     C = moved[free] @ moved[free].T / moved.shape[1]
     C += np.diag([comparisons[j].u_num ** 2 for j in free])
     C += tests.covariance([names[seen[j]] for j in free])
-    single = tests.count if isinstance(tests, SingleTests) else inf
-    enough = len(free) < single  # the scatter of so many tests spans one direction less than there are
     E = np.array([comparisons[j].E for j in free])
-    distance, p = _together(E, C) if enough else (NOT_APART, NOT_APART)
+    distance, p = _together(E, C, tests.count if isinstance(tests, SingleTests) else inf)
     return Validation(
         comparisons=comparisons,
         unknown=unknown,
@@ -269,10 +265,13 @@ def _for(scene: Scene, fidelity: str) -> Scene:
     return scene if fidelity == "solid" else replace(scene, accuracy=replace(scene.accuracy, target=None))
 
 
-def _together(E: Array, C: Array) -> tuple[Num, Num]:
-    """Return what `joint` does of errors (k,) and their covariance (k, k), or why it says nothing."""
+def _together(E: Array, C: Array, tests: float) -> tuple[Num, Num]:
+    """Return what `joint` does of errors (k,) and their covariance (k, k), or why it says nothing.
+
+    The scatter of so many single ``tests`` spans one direction less than there are.
+    """
     u = np.sqrt(np.diag(C))
-    if not u.all() or np.linalg.eigvalsh(C / np.outer(u, u))[0] < LEAST_EIGENVALUE:
+    if len(E) >= tests or not u.all() or np.linalg.eigvalsh(C / np.outer(u, u))[0] < LEAST_EIGENVALUE:
         return NOT_APART, NOT_APART
     return joint(E, C)
 

@@ -170,7 +170,8 @@ def thin_layer(bodies: Bodies) -> str:
     """Say where the first layer is thin for the contact, whose estimates know it alone."""
     if len(struck(bodies)) < 2:
         return ""
+    thickness, radius = bodies.barrier.layers[0].thickness, bodies.estimate.radius
     return (
-        f"The first layer, {bodies.barrier.layers[0].thickness * 1e3:.3g} mm, is thin for a contact of "
-        f"about {1e3 * bodies.estimate.radius:.2g} mm radius; cells and most effects are chosen as if it were thick."
+        f"The first layer, {thickness * 1e3:.3g} mm, is thin for a contact of about {1e3 * radius:.2g} mm "
+        "radius; cells and most effects are chosen as if it were thick."
     )

@@ -247,7 +247,8 @@ def require_first_part(bodies: Bodies) -> None:
 def require_elastic_parts(bodies: Bodies) -> None:
     """Refuse a later segment that would yield: in both models it stays elastic (SceneError)."""
     number, stress = part_flows(bodies)
-    if number and "-rod-plasticity" not in bodies.scene.effects:
+    effects = {*bodies.scene.effects}
+    if number and "-rod-plasticity" not in effects and effects & {"auto", "rod-plasticity"}:
         metal = bodies.rod.segments[number - 1].material
         over = f"{stress / 1e6:.3g} MPa (estimated) over {metal.yield_stress / 1e6:.3g} MPa"
         raise SceneError(

@@ -1,5 +1,6 @@
 """What models leave out of a projectile: a shaft that flows, a flattened wall, sharp shoulders, a ridge."""
 
+from itertools import pairwise
 from math import cos, pi, sin, sqrt
 
 import numpy as np
@@ -41,21 +42,23 @@ def shaft_flows(bodies: Bodies) -> str:
 def part_flows(bodies: Bodies) -> tuple[int, float]:
     """Return which segment, of those after the first, would yield along its length, and its stress, Pa.
 
-    The stress is that of a plane wave or, where that is less, the estimated force of the contact over the
-    smallest section of the segment, as of `shaft_flows`. Segments count from 1; 0: none would.
+    The stress is that of the plane wave that the segment before passes on, 2 Z Z' / (Z + Z') v with their
+    impedances Z = rho c0, or, where that is less, the estimated force of the contact over the smallest
+    section of the segment, as of `shaft_flows`. Segments count from 1; 0: none would.
     """
     parts, contact, size = bodies.rod.segments, bodies.contact, bodies.estimate
     if len(parts) < 2:
         return 0, 0.0
-    shaft, begin = sections(bodies.rod), parts[0].to
+    shaft = sections(bodies.rod)
     force = size.pressure * pi * size.a_t * size.a_b * cos(contact.angle)
-    for number, part in enumerate(parts[1:], 2):
-        metal, own = part.material, (shaft.z[:-1] >= begin - 1e-9) & (shaft.z[1:] <= part.to + 1e-9)
-        wave = sqrt(metal.E * metal.rho) * max(contact.approach, 0.0) * cos(contact.angle)
+    for number, (before, part) in enumerate(pairwise(parts), 2):
+        metal = part.material
+        own = (shaft.z[:-1] >= before.to - 1e-9) & (shaft.z[1:] <= part.to + 1e-9)
+        Z, Z_before = (sqrt(one.material.E * one.material.rho) for one in (part, before))
+        wave = 2 * Z * Z_before / (Z + Z_before) * max(contact.approach, 0.0) * cos(contact.angle)
         stress = min(wave, force * metal.E / float(shaft.EA[own].min()))
         if stress > metal.yield_stress:
             return number, stress
-        begin = part.to
     return 0, 0.0
 
 

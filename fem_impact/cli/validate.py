@@ -4,7 +4,7 @@ from contextlib import closing
 from typing import Any
 
 from fem_impact.answers.refine.level_meshes import LevelMeshes
-from fem_impact.answers.validate import NOT_APART, TERMS, Validation
+from fem_impact.answers.validate import TERMS, Validation
 from fem_impact.answers.validate import validate as validated
 from fem_impact.case.case import Case
 from fem_impact.cli.parser import Options
@@ -12,7 +12,7 @@ from fem_impact.cli.scene_options import asked_scene, command_line
 from fem_impact.cli.terminal import chosen_meter, print_answer
 from fem_impact.cli.values import read_all
 from fem_impact.options import RunOptions
-from fem_impact.outcome.keys import Unknown, or_none
+from fem_impact.outcome.keys import Unknown, known, or_none
 from fem_impact.progress import range_text
 from fem_impact.tables.table import Table
 from fem_impact.tables.text import wrapped
@@ -60,10 +60,10 @@ def _text(found: Validation, fidelity: str, solid: tuple[str, str]) -> str:
     ]
     names = tuple(one.quantity for one in found.comparisons)
     joint = f"Jointly ({', '.join(found.joined)}): "
-    if isinstance(found.distance, Unknown) or isinstance(found.p, Unknown):
-        joint += f"the distance {NOT_APART.reason}."
+    if isinstance(found.p, Unknown):
+        joint += f"the distance is not known: {found.p.reason}."
     else:
-        joint += f"distance squared {found.distance:.3g}, p = {found.p:.2g} that "
+        joint += f"distance squared {known(found.distance):.3g}, p = {found.p:.2g} that "
         joint += "a model without error would be as far away."
     doubt = (
         f"{', '.join(found.doubtful)}: the {found.varied} model, in which the inputs were varied, is off the "

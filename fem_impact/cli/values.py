@@ -57,7 +57,8 @@ def read_all(texts: Iterable[str], option: str) -> dict[str, list[Any]]:
     values = dict[str, list[Any]]()
     for key, listed in map(read_values, texts):
         if bare(key) in map(bare, values):
-            raise UsageError("is given twice.", key=option, value=key, remedy="Give all its values at once.")
+            remedy = "Give it once, with all its values."
+            raise UsageError("is given twice.", key=option, value=key, remedy=remedy)
         values[key] = listed
     return values
 

@@ -275,9 +275,9 @@ def _arriving(case: Case, rod: ModalRod, arrival: Arrival | None) -> ModalState:
     if arrival is not None:
         rigid[:3] = arrival.v_n, arrival.v_t, arrival.omega
         rigid[AT.turn], q, rate = arrival.turn, arrival.q.copy(), arrival.rate.copy()
-    low_t, low_n = lowest_place(rod.sites, rigid[AT.turn], q)
+    _, low_n = lowest_place(rod.sites, rigid[AT.turn], q)
     rigid[AT.height] = -low_n
-    d_c, d_d = case.contact.arms if arrival is None else (-low_t, -low_n)  # of the middle of what lands flat
+    d_c, d_d = case.contact.arms  # of the middle of what lands flat; a barrier turns in a first impact alone
     rigid[AT.away_n], rigid[AT.away_t] = (struck.centre_depth or 0.0) + d_d, d_c - struck.centre_offset
     return ModalState(rigid, q, rate)
 

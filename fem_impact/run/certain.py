@@ -94,12 +94,12 @@ def with_spread(case: Case, strikes: Strikes, meshed: Sequence[Doubt | None] = (
     try:
         each = _each(case, followed, meshed)
         if not (_varies(case) or any(strike.doubt for strike in each)):
-            return _without(strikes, EXACT)
+            return without_spread(strikes, EXACT)
         plain = _run(case.scene, each)
         runs = [_run(scene, each, at) for scene, at in _drawn(case)]
     except SceneError as error:
         why = f"rigid theory does not follow the scene: its {error.key} {error.problem.rstrip('.')}"
-        return _without(strikes, Unknown(why))
+        return without_spread(strikes, Unknown(why))
     certain, length = _common([followed, plain, *runs]), case.contact.body.length
     ends = [other_end(run, length) for run in runs]
     # a strike of a part that the run's own is not of comes by the law of rigid runs, without a force
@@ -126,10 +126,10 @@ def with_spread(case: Case, strikes: Strikes, meshed: Sequence[Doubt | None] = (
     )
 
 
-def _without(strikes: Strikes, why: Unknown) -> Strikes:
+def without_spread(strikes: Strikes, why: Unknown) -> Strikes:
+    """Return strikes of which nothing is certain, for a reason."""
     names = "certain", "spread", "holds", "friction_half", "other_end_low", "other_end_high"
-    agree = "hardest_agree", "force_agree", "heat_agree"
-    unknown: dict[str, Any] = dict.fromkeys((*names, *agree), why)
+    unknown: dict[str, Any] = dict.fromkeys((*names, "hardest_agree", "force_agree", "heat_agree"), why)
     return replace(strikes, **unknown)
 
 

@@ -9,7 +9,7 @@ from fem_impact.options import RunOptions
 from fem_impact.outcome.groups import Limitation, limitations
 from fem_impact.outcome.keys import Unknown, unknown
 from fem_impact.outcome.strikes import StrikeRecord, Strikes
-from fem_impact.run.certain import with_spread
+from fem_impact.run.certain import with_spread, without_spread
 from fem_impact.run.strikes import RULES, Followed
 from rigid.strikes import Finish, FlightState
 
@@ -37,7 +37,11 @@ def with_strikes(
     ``end`` is that of finite elements, whose later strikes tell their progress as the ``options`` say.
     """
     strikes, sentences = _strikes_of(case, outcome, end, options)
-    strikes = with_spread(case, strikes)
+    open_errors = outcome.half_widths if case.fidelity == "modal" else None
+    if isinstance(open_errors, Unknown):  # nor are those of the strikes known
+        strikes = without_spread(strikes, open_errors)
+    else:
+        strikes = with_spread(case, strikes)
     validity = replace(outcome.validity, limitations=(*outcome.validity.limitations, *sentences))
     return replace(outcome, strikes=strikes, validity=validity)
 

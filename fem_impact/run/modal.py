@@ -148,13 +148,13 @@ def _unlike_layer(case: Case) -> str:
     4 mm of rubber over steel it had no friction; finite elements have 30 % of E_0. A rod on 0.6 mm of
     aluminium over steel eight times as strong had e .50 and 18 kN; finite elements .29 and 10 kN.
     """
-    if len(struck(case.bodies)) < 2:
+    first, *below = struck(case.bodies)
+    if not below:
         return ""
-    first, under = (metal for _, metal in case.scene.barrier.strata[:2])
-    times = max(first.E / under.E, under.E / first.E)
+    times, under = max((max(first.E / metal.E, metal.E / first.E), metal.E) for metal in below)
     if times >= UNLIKE:
-        much = f"{plain(times, 2)} times as {'soft' if first.E < under.E else 'stiff'} as"
-    elif first.yields and WEAKER * first.yield_stress <= under.yield_stress:
+        much = f"{plain(times, 2)} times as {'soft' if first.E < under else 'stiff'} as"
+    elif first.yields and any(WEAKER * first.yield_stress <= metal.yield_stress for metal in below):
         much = f"weaker by a factor of {WEAKER:g} or more than"
     else:
         return ""

@@ -20,7 +20,7 @@ MEANS = "quantity,mean,sd,n"
 """Headers of a file of single tests, and of one of means."""
 LARGEST = 1e6
 """Bound of the size of a velocity, m/s or rad/s, and of e and mu."""
-SQUARED = 1e100
+LARGEST_OTHER = 1e100
 """Bound of the size of any other number of an outcome, SI, of which variances must stay finite."""
 FASTEST = -V_N.low
 """The most that a scene may state as a speed, m/s."""
@@ -274,7 +274,7 @@ def _read_row(row: Mapping[str, str], scatter: str, place: str, others: Collecti
     spread = 0.0 if tests == 1 else factor * finite(f"{place}, column {scatter}", row[scatter])
     if spread <= 0 and tests > 1:
         raise ResultError(f"{place}, column {scatter}: {row[scatter]} must be above 0: tests scatter.")
-    if max(abs(mean), spread) > (LARGEST if name in OF_MEANS else SQUARED):
+    if max(abs(mean), spread) > (LARGEST if name in OF_MEANS else LARGEST_OTHER):
         raise ResultError(f"{place}: {row['mean']} with {row[scatter]} is too large to be one of a test.")
     _check_likely(name, mean, place)
     shared = factor * finite(f"{place}, column systematic", row.get("systematic") or "0")

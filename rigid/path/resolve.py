@@ -170,8 +170,8 @@ def sliding_path(
     )
 
 
-STEPS = 400  # in which either velocity would change by as much as the first one, or as it has grown to
-MOST = 50 * STEPS
+STEPS = 400  # a step changes either velocity by at most this part of its largest size so far
+MOST = 50 * STEPS  # enough for a slide that drives the contact in, where steps grow with the speed
 
 
 def path_over_speed(

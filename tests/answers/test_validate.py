@@ -224,7 +224,7 @@ TWO_TESTS = (
 def test_two_tests_and_one_uncertain_input_tell_no_joint_probability_but_why(tmp_path):
     found = validate(scene_with(tmp_path, TWO_TESTS), {"surface.friction": (0.24, 0.26)}, "rigid", samples=2)
     assert (found.distance, found.p) == (NOT_APART, NOT_APART)
-    assert f"jointly ({', '.join(found.joined)}) {NOT_APART.reason}" in repr(found)
+    assert f"jointly ({', '.join(found.joined)}) not known: {NOT_APART.reason}" in repr(found)
     assert all(one.verdict for one in found.comparisons)
 
 
@@ -238,7 +238,7 @@ def test_a_joint_probability_that_is_not_known_is_null_with_its_reason(tmp_path,
     assert joint == {"numbers": joint["numbers"], "distance": None, "p": None, "reason": NOT_APART.reason}
     assert main(line) == 0
     said = " ".join(capsys.readouterr().out.split())
-    assert f"Jointly ({', '.join(joint['numbers'])}): the distance {NOT_APART.reason}." in said
+    assert f"Jointly ({', '.join(joint['numbers'])}): the distance is not known: {NOT_APART.reason}." in said
 
 
 def test_a_joint_probability_that_is_known_has_no_reason(tmp_path, capsys):

@@ -120,6 +120,24 @@ def test_a_later_segment_that_would_yield_is_refused_by_the_models_that_keep_it_
     assert Case.of(read_dict(gentle), fidelity).fidelity == fidelity
 
 
+def test_a_segment_behind_a_stiffer_one_gets_the_wave_that_this_one_passes_on():
+    """Its own plane wave, 10.8 MPa at 0.8 m/s, lies below the yield stress of lead; what arrives does not."""
+    parts = [{"to": "60 mm", "material": "42crmo4"}, {"material": "lead"}]
+    rod = CAP["projectile"] | {"length": "120 mm", "segments": parts}
+    scene = {
+        "projectile": rod,
+        "barrier": {"material": "100cr6"},
+        "impact": {"angle": "1 deg", "speed": "0.8 m/s"},
+    }
+    number, stress = part_flows(Case(read_dict(CAP | scene)).bodies)
+    assert number == 2 and 11e6 < stress < 20e6
+
+
+def test_a_list_of_effects_without_plasticity_keeps_all_elastic():
+    stated = CAP | {"effects": ["vibration", "friction", "barrier-rigid"]}
+    assert Case.of(read_dict(stated), "modal").fidelity == "modal"
+
+
 def test_a_later_segment_of_a_metal_without_a_yield_stress_stays_elastic_as_stated():
     lead = {"name": "soft", "E": "16 GPa", "nu": 0.44, "rho": "11340 kg/m3", "source": "assumed"}
     parts = [CAP["projectile"]["segments"][0], {"material": lead}]

@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 
 from fem_impact.case.case import Case
+from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.strikes import told
 from fem_impact.run import certain
 from fem_impact.run.certain import Doubt
@@ -56,3 +57,17 @@ def test_the_error_of_speed_is_that_of_the_body_as_seen_from_a_barrier_that_move
     low, high = spreads[0].approach_low, spreads[0].approach_high
     assert low < 1.9 < 2.1 < high
     assert (spreads[1].approach_low, spreads[1].approach_high) == pytest.approx((low, high), rel=1e-9)
+
+
+def test_nothing_is_certain_of_strikes_where_the_reduced_model_does_not_know_its_error():
+    """On a thin weak layer the first impact has no half-widths: nor have the strikes that follow from it."""
+    clad = {
+        "barrier.layers": [{"thickness": "0.6 mm", "material": "aluminium-1350-h14"}],
+        "barrier.material": "42crmo4",
+        "impact.slope": "0 deg",
+        "impact.until": "2 strikes",
+    }
+    outcome = simulate(replace_all(load("quick"), clad), "modal")
+    assert isinstance(outcome.half_widths, Unknown)
+    assert outcome.strikes.certain == outcome.half_widths
+    assert outcome.strikes.half_width(1, "E_after_J") == outcome.half_widths

@@ -316,19 +316,25 @@ def sequence_verdict(scene: Scene, tolerance: float) -> list[str]:
     hardest: vibration.Answer = "no"
     if [one.part for one in ours] == [one.part for one in theirs]:
         one, other = ours[-1], theirs[-1]
-        faster = abs(one.approach - other.approach), tolerance * other.approach
-        loses = abs(one.lost - other.lost), allowed
-        halves = _half(modal, number, "approach_m_per_s"), _half(modal, number, "E_after_J")
-        hardest = _all_within([(*faster, halves[0]), (*loses, halves[1])])
+        speed = tolerance * other.approach
+        faster = abs(one.approach - other.approach), speed, _half(modal, number, "approach_m_per_s")
+        loses = abs(one.lost - other.lost), allowed, _half(modal, number, "E_after_J")
+        hardest = _all_within([faster, loses])
     hardest = hardest if number <= certain else "undecided"
     lost = [(known(one.friction), _all_lost(one)) for one in (rigid, modal)]
     rubs, all_ = (abs(a - b) for a, b in zip(*lost, strict=True))
     half = _half(modal, last, "E_after_J") if last <= certain else inf
-    whole = _all_within([(rubs, allowed, or_none(modal.friction_half) or 0.0), (all_, allowed, half)])
+    rubbing = inf if isinstance(modal.friction_half, Unknown) else modal.friction_half
+    whole = _all_within([(rubs, allowed, rubbing), (all_, allowed, half)])
     whole = "no" if "no" in (hardest, whole) else "undecided" if "undecided" in (hardest, whole) else "yes"
     rigidly, by_modes = (f"{lost_all:.3g} J, {rubbed:.3g} J of it by friction" for rubbed, lost_all in lost)
     ratios = modal.other_end, rigid.other_end
-    ends = ("not by itself" if isinstance(one, Unknown) else f"{one:.3g} times" for one in ratios)
+    ends = (
+        "does not strike by itself"
+        if isinstance(one, Unknown)
+        else f"strikes {one:.3g} times as fast as the first strike came"
+        for one in ratios
+    )
     which = f"number {number} by the reduced model"
     if number > certain:
         agree = or_none(modal.hardest_agree)
@@ -338,8 +344,7 @@ def sequence_verdict(scene: Scene, tolerance: float) -> list[str]:
         f"{_struck(theirs, number)}; by rigid theory {_struck(ours, number)}.",
         f"{whole.upper()}: rigid theory for the whole sequence, which loses {by_modes} by the "
         f"reduced model and {rigidly} by rigid theory (allowed: {tolerance:g} of a speed and of E_0).",
-        "The other end strikes {} as fast as the first strike came by the reduced model, by rigid theory "
-        "{}.".format(*ends),
+        "The other end {} by the reduced model; by rigid theory it {}.".format(*ends),
     ]
 
 
@@ -357,7 +362,8 @@ def _all_within(differences: Sequence[tuple[float, float, float]]) -> vibration.
 
 
 def _all_lost(strikes: Strikes) -> float:
-    return sum(known(part) for part in (strikes.friction, strikes.plastic, strikes.damping, strikes.settled))
+    parts = strikes.friction, strikes.plastic, strikes.damping, strikes.settled, strikes.other
+    return sum(known(part) for part in parts)
 
 
 def _struck(each: tuple[StrikeRecord, ...], number: int) -> str:

@@ -28,8 +28,6 @@ DENSITY = 7850.0
 HIGHEST = 1000.0
 """Height of fall, m, above which the resistance of the air would have to count."""
 
-FORCED = ("-", "barrier-")
-"""Beginnings of names with which a list of effects changes what the program chooses."""
 TIP_RADII = {"A": 0.007, "B": 0.003, "plain": 0.0}
 """Radius of each measured tip, m (a plain tip has a sharp edge); other tips have no default."""
 
@@ -222,8 +220,7 @@ def _not_measured(scene: Scene) -> str:
     plate = scene.barrier
     if plate.layers or plate.thickness is not None or plate.mass is not None or plate.v_n or plate.v_t:
         return "they are about a massive plate of one metal at rest"
-    chosen = "auto" in scene.effects and not any(name.startswith(FORCED) for name in scene.effects)
-    if scene.restitution is not None or not chosen:
+    if scene.restitution is not None or scene.effects != ("auto",):
         return "they are about bodies of which the program chooses restitution and effects"
     for body, mine, measured in pairs:
         if mine != measured:
