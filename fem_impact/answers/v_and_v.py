@@ -6,6 +6,7 @@ from math import hypot
 import numpy as np
 
 from fem_impact.arrays import Array
+from fem_impact.outcome.keys import Num, Unknown
 
 COVERAGE = 2.0  # E +- 2 u_val, the interval of the model's error (V&V 20, section 6)
 
@@ -63,6 +64,14 @@ class Comparison:
         return f"model too {'high' if low > 0 else 'low'} by at least {min(abs(low), abs(high)):.2g}"
 
 
+TERMS = ("S", "D", "E", "u_num", "u_input", "u_D")
+ERRORS = ("number", "model S", "tests D", "S - D", "u_num", "u_input", "u_D", "verdict")
+"""Attributes of a `Comparison` and the words of its table."""
+# of the correlations of the errors: below it, one of them follows from the others as far as is known
+LEAST_EIGENVALUE = 1e-4
+NOT_APART = Unknown("the tests and the uncertain inputs are too few to tell how these numbers vary apart")
+
+
 def joint(E: Array, C: Array) -> tuple[float, float]:
     """Return Mahalanobis' distance squared of errors, and the probability of a larger one without error.
 
@@ -81,3 +90,14 @@ def joint(E: Array, C: Array) -> tuple[float, float]:
 
     distance = float(E @ np.linalg.solve(C, E))
     return distance, float(chi2.sf(distance, len(E)))
+
+
+def joint_or_why(E: Array, C: Array, tests: float) -> tuple[Num, Num]:
+    """Return what `joint` does of errors (k,) and their covariance (k, k), or why it says nothing.
+
+    The scatter of so many single ``tests`` spans one direction less than there are.
+    """
+    u = np.sqrt(np.diag(C))
+    if len(E) >= tests or not u.all() or np.linalg.eigvalsh(C / np.outer(u, u))[0] < LEAST_EIGENVALUE:
+        return NOT_APART, NOT_APART
+    return joint(E, C)

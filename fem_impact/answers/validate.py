@@ -18,7 +18,7 @@ import numpy as np
 
 from fem_impact.answers.compare import MEASURED, measured_value
 from fem_impact.answers.simulate import simulate
-from fem_impact.answers.v_and_v import COVERAGE, Comparison, joint
+from fem_impact.answers.v_and_v import COVERAGE, ERRORS, TERMS, Comparison, joint_or_why
 from fem_impact.answers.vary import in_unit, measure
 from fem_impact.arrays import Array
 from fem_impact.errors import SceneError, UsageError
@@ -40,12 +40,6 @@ and their ratio are where neither e nor mu is measured."""
 KEYS = {q.measured: q.key.name for q in MEASURED if q.measured}
 """Keys of an outcome by the names of measured numbers."""
 FRICTION = "surface.friction"
-TERMS = ("S", "D", "E", "u_num", "u_input", "u_D")
-ERRORS = ("number", "model S", "tests D", "S - D", "u_num", "u_input", "u_D", "verdict")
-"""Attributes of a `Comparison` and the words of its table."""
-# of the correlations of the errors: below it, one of them follows from the others as far as is known
-LEAST_EIGENVALUE = 1e-4
-NOT_APART = Unknown("the tests and the uncertain inputs are too few to tell how these numbers vary apart")
 CORNERS = 256  # of the intervals, tried before any run
 Ends = tuple[Any, Any] | str
 Interval = tuple[str, float, float, str]
@@ -162,13 +156,7 @@ def validate(
     tests = tests_of(scene)
     if tests is None:
         raise SceneError("is missing: there is nothing to compare with.", key="measured", remedy=_TESTS)
-    uncertainties = _friction(scene) if uncertain is None else uncertain
-    if not uncertainties:
-        remedy = 'Give one, such as {"impact.angle": ("44 deg", "46 deg")}.'
-        raise UsageError("names no interval.", key="uncertain=", remedy=remedy)
-    intervals = [interval_of(scene, key, ends) for key, ends in uncertainties.items()]
-    for corner in islice(product((0.0, 1.0), repeat=len(intervals)), CORNERS):
-        at_place(scene, intervals, np.array(corner))
+    intervals = _intervals(scene, _friction(scene) if uncertain is None else uncertain)
     quick = inputs_by or ("rigid" if fidelity == "rigid" else "modal")
     if quick not in FIDELITIES:
         remedy = f"Known: {', '.join(FIDELITIES)}."
@@ -207,7 +195,7 @@ def validate(
     C += np.diag([comparisons[j].u_num ** 2 for j in free])
     C += tests.covariance([names[seen[j]] for j in free])
     E = np.array([comparisons[j].E for j in free])
-    distance, p = _together(E, C, tests.count if isinstance(tests, SingleTests) else inf)
+    distance, p = joint_or_why(E, C, tests.count if isinstance(tests, SingleTests) else inf)
     return Validation(
         comparisons=comparisons,
         unknown=unknown,
@@ -224,6 +212,17 @@ def validate(
         ),
         runs=(len(intervals) + 2) * samples + 1,
     )
+
+
+def _intervals(scene: Scene, uncertain: Mapping[str, Ends]) -> list[Interval]:
+    """Return the stated intervals, at corners of which the scene can be computed."""
+    if not uncertain:
+        remedy = 'Give one, such as {"impact.angle": ("44 deg", "46 deg")}.'
+        raise UsageError("names no interval.", key="uncertain=", remedy=remedy)
+    intervals = [interval_of(scene, key, ends) for key, ends in uncertain.items()]
+    for corner in islice(product((0.0, 1.0), repeat=len(intervals)), CORNERS):
+        at_place(scene, intervals, np.array(corner))
+    return intervals
 
 
 def sobol(
@@ -263,17 +262,6 @@ _TESTS = 'Name a file of tests in the scene: measured = "my_tests.csv".'
 def _for(scene: Scene, fidelity: str) -> Scene:
     """Return the scene for a fidelity: only finite elements have a mesh that could be refined to an error."""
     return scene if fidelity == "solid" else replace(scene, accuracy=replace(scene.accuracy, target=None))
-
-
-def _together(E: Array, C: Array, tests: float) -> tuple[Num, Num]:
-    """Return what `joint` does of errors (k,) and their covariance (k, k), or why it says nothing.
-
-    The scatter of so many single ``tests`` spans one direction less than there are.
-    """
-    u = np.sqrt(np.diag(C))
-    if len(E) >= tests or not u.all() or np.linalg.eigvalsh(C / np.outer(u, u))[0] < LEAST_EIGENVALUE:
-        return NOT_APART, NOT_APART
-    return joint(E, C)
 
 
 def _not_compared(value: Num, band: float | None, fidelity: str) -> str:

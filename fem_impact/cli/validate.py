@@ -4,7 +4,8 @@ from contextlib import closing
 from typing import Any
 
 from fem_impact.answers.refine.level_meshes import LevelMeshes
-from fem_impact.answers.validate import TERMS, Validation
+from fem_impact.answers.v_and_v import TERMS
+from fem_impact.answers.validate import Validation
 from fem_impact.answers.validate import validate as validated
 from fem_impact.case.case import Case
 from fem_impact.cli.parser import Options

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from math import cos, inf
+from math import cos, inf, sin
 from typing import Self
 
 import numpy as np
@@ -92,9 +92,10 @@ class Reduction:
         """Return the motions, and the coefficients of the relative motion."""
         rod = motion(case, end.V_n, end.V_t, end.Omega, end.mass, end.k2)
         touched = np.zeros((0, 2)) if end.contacts is None else end.contacts[:, :2]
-        g = case.slots.gravity or 0.0
-        fallen, borne = g * between(touched), g * float(np.diff(touched).sum())
-        barrier = barrier_motion(case, *end.base, momentum_error(case, rod, end.base, fallen, borne))
+        g, alpha, borne = case.slots.gravity or 0.0, case.scene.impact.vertical, float(np.diff(touched).sum())
+        fallen = g * between(touched)
+        held = (fallen + g * borne) * cos(alpha), fallen * sin(alpha)
+        barrier = barrier_motion(case, *end.base, momentum_error(case, rod, end.base, held))
         if end.turn is not None:
             error = angular_momentum_error(case, rod, barrier, *end.turn)
             barrier = replace(barrier, Omega_b=end.turn[0], angular_momentum_error=error)

@@ -1,5 +1,6 @@
 """Groups of an outcome that every fidelity fills in the same way: motion, coefficients, heat."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from math import atan2, cos, hypot, inf, pi, sin
 
@@ -173,18 +174,15 @@ def barrier_motion(case: Case, base_n: float, base_t: float, error: Num) -> Barr
     )
 
 
-def momentum_error(
-    case: Case, motion: RodMotion, base: tuple[float, float], fallen: float = 0.0, borne: float = 0.0
-) -> float:
+def momentum_error(case: Case, motion: RodMotion, base: Sequence[float], fallen: Sequence[float]) -> float:
     """Return the change of the momentum of rod and free barrier over that of the rod before.
 
-    What gravity gave the rod is taken out, m/s: ``fallen`` in flights between contacts, ``borne`` while it
-    touched, of which the motion has the part along the barrier taken out already.
+    ``fallen`` (n, t), m/s, is what gravity gave the rod, as far as its motion still holds it.
     """
-    before, alpha, M = case.scene.relative, case.scene.impact.vertical, case.scene.barrier.mass or 0.0
+    before, M = case.scene.relative, case.scene.barrier.mass or 0.0
     V_n, V_t, _ = after(motion)
-    gained_n = motion.mass * (V_n - motion.v_n + (fallen + borne) * cos(alpha)) + M * base[0]
-    gained_t = motion.mass * (V_t - motion.v_t + fallen * sin(alpha)) + M * base[1]
+    gained_n = motion.mass * (V_n - motion.v_n + fallen[0]) + M * base[0]
+    gained_t = motion.mass * (V_t - motion.v_t + fallen[1]) + M * base[1]
     return hypot(gained_n, gained_t) / (motion.mass * hypot(before.v_n, before.v_t))
 
 

@@ -7,8 +7,8 @@ import pytest
 
 from fem_impact.answers import validate as module
 from fem_impact.answers.compare import compare, measured_value
-from fem_impact.answers.v_and_v import joint
-from fem_impact.answers.validate import NOT_APART, _not_compared, interval_of, validate
+from fem_impact.answers.v_and_v import NOT_APART, joint
+from fem_impact.answers.validate import _not_compared, interval_of, validate
 from fem_impact.cli.main import main
 from fem_impact.errors import ResultError, SceneError, UsageError
 from fem_impact.run import tests as own_tests

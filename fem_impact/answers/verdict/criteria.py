@@ -84,10 +84,10 @@ class Criterion(ABC):
     ----------
     called : in a sentence
     dimension, unit, per_unit : of its limit, the unit that is printed, and how many of SI that is
-    least_levels : levels of finite elements without which they tell none
+    needed : levels of finite elements without which they tell none
     """
 
-    least_levels = LEAST_LEVELS
+    needed = LEAST_LEVELS
 
     called: str
     dimension: str
@@ -219,7 +219,7 @@ class HeatCriterion(Limited):
 
     called, column = "the flash temperature of the contact", "flash_rise_K"
     dimension, unit, per_unit = "temperature", "K", 1.0
-    least_levels = LEVELS
+    needed = LEVELS
 
     def counts(self, told: Callable[[str], str], heats: str = "") -> str:
         """Return the shares of friction, which is counted, and of all that can heat the contact."""
@@ -276,7 +276,7 @@ class HeatCriterion(Limited):
         melts a body, the least is the melting point if the one before does so too. A contact that is
         hardly wider than a cell tells none.
         """
-        if len(levels) < self.least_levels or not levels[-1].runs.wide:
+        if len(levels) < self.needed or not levels[-1].runs.wide:
             return None
         scene = levels[-1].cases[0].scene
         *_, before, last = (_melts(level.outcome.heat.rise) for level in levels)

@@ -211,8 +211,7 @@ def judge(
                 within = worst in known and known[worst].value + max(low) <= limit and not why
                 answer, notes = ("yes", [*notes, CONFIRMED]) if within else ("undecided", notes)
     else:
-        means = criterion.meshed(scene)[0], budget_s, criterion.least_levels, 1 + bool(intervals)
-        more = finite_elements(*means) if answer == "undecided" else {}
+        more = finite_elements(criterion.meshed(scene)[0], budget_s, criterion.needed, 1 + bool(intervals))
     return LimitVerdict(
         scene,
         criterion,
@@ -308,7 +307,7 @@ def _by_solids(
         try:
             pair = criterion.meshed(scene)
             as_text = partial(_told, criterion, where=least)
-            told = tell, steps, before, criterion.least_levels
+            told = tell, steps, before, criterion.needed
             bound, said, more = by_levels(pair, criterion.solid, as_text, limit, left, *told)
         except (SceneError, RunError) as refused:
             bound, said = None, [f"{NO_ANSWER}: {refused}"]

@@ -451,9 +451,9 @@ def test_heat_asks_for_the_budget_of_all_levels_that_it_needs():
         done=[SimpleNamespace(outcomes=[ended])],
         advice=lambda before_s, halvings: (asked.append(halvings) or "", 90),
     )
-    notes, more = levels._open(chain, None, 0.0, LIMITED["heat"].least_levels)
+    notes, more = levels._open(chain, None, 0.0, LIMITED["heat"].needed)
     assert (asked, more) == ([2], {"budget_s": 90}) and "number from 3 levels on" in notes[1]
-    levels._open(chain, None, 0.0, LIMITED["force"].least_levels)
+    levels._open(chain, None, 0.0, LIMITED["force"].needed)
     assert asked == [2, 1]
 
 
@@ -559,7 +559,7 @@ def test_the_budget_of_the_next_step_holds_all_levels_at_all_places(scene):
 
     def asked(levels, intervals):
         criterion = Sloped()
-        criterion.least_levels = levels
+        criterion.needed = levels
         return judge(scene, criterion, 69.0 if intervals else 45.5, intervals, "modal", 1.0).more["budget_s"]
 
     one, two = asked(2, None), asked(2, ANGLE)
