@@ -151,8 +151,7 @@ def validate(
     (('surface.friction',), ('Omega', 'e', 'mu'))
     """
     if samples < 2 or samples & (samples - 1):
-        remedy = "Write 16, 32, 64 or 128."
-        raise UsageError("is no power of two.", key="samples=", value=samples, remedy=remedy)
+        raise UsageError("is no power of two.", key="samples=", value=samples, remedy="Write 16, 32 or 64.")
     tests = tests_of(scene)
     if tests is None:
         raise SceneError("is missing: there is nothing to compare with.", key="measured", remedy=_TESTS)
@@ -191,8 +190,7 @@ def validate(
     )
     follow = {*FOLLOWS, *(MOVES if {"e", "mu"} & set(names) else MOVES[2:] if "V_t" in names else ())}
     free = [at for at, i in enumerate(seen) if names[i] not in follow] or list(range(len(seen)))
-    C = moved[free] @ moved[free].T / moved.shape[1]
-    C += np.diag([comparisons[j].u_num ** 2 for j in free])
+    C = moved[free] @ moved[free].T / moved.shape[1] + np.diag([comparisons[j].u_num ** 2 for j in free])
     C += tests.covariance([names[seen[j]] for j in free])
     E = np.array([comparisons[j].E for j in free])
     distance, p = joint_or_why(E, C, tests.count if isinstance(tests, SingleTests) else inf)
