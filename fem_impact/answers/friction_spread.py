@@ -70,10 +70,9 @@ def _signed(change: float) -> str:
 def _at(scene: Scene, friction: float, model: str) -> Outcome:
     """Return the first impact at one friction."""
     changed = replace(
-        scene,
+        scene.untargeted,
         surface=replace(scene.surface, friction=friction),
         impact=replace(scene.impact, until=FIRST),
-        accuracy=replace(scene.accuracy, target=None),
     )
     return simulate(changed, model)
 

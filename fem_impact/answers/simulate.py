@@ -112,7 +112,7 @@ def simulate(
 
 def _without_mesh(scene: Scene, spare_s: float) -> str:
     """Return what the reduced model says, or rigid theory where that takes more than ``spare_s``, s."""
-    scene = replace(scene, accuracy=replace(scene.accuracy, target=None)).first_impact
+    scene = scene.untargeted.first_impact
     for fidelity, model in (("modal", "the reduced model"), ("rigid", "rigid theory")):
         try:
             if fidelity == "modal" and SETUP * Case(scene).size.rod > spare_s:

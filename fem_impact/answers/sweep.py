@@ -119,7 +119,7 @@ def sweep(
     with watched(progress) as meter, tempfile.TemporaryDirectory() as spare:
         if asked is not None and fidelity != "solid":
             meter(Notice(UNMESHED.format(100 * asked, fidelity)))
-            scene = replace(scene, accuracy=replace(scene.accuracy, target=None))
+            scene = scene.untargeted
         every = cases(scene, vary)
         for sentence in _unfilled(every, fidelity, columns or SHORT):
             meter(Notice(sentence))

@@ -160,11 +160,12 @@ def validate(
     if quick not in FIDELITIES:
         remedy = f"Known: {', '.join(FIDELITIES)}."
         raise UsageError("is no fidelity.", key="inputs_by=", value=inputs_by, remedy=remedy)
+    plain = {by: scene if by == "solid" else scene.untargeted for by in (fidelity, quick)}
     names = [name for name in tests.statistics() if name in KEYS or name in NUMBERS]
     keys = [KEYS.get(name, name) for name in names]
     with watched(options.progress) as meter:
         options = replace(options, progress=meter)
-        compared, nominal = (simulate(_for(scene, by), by, options) for by in (fidelity, quick))
+        compared, nominal = (simulate(plain[by], by, options) for by in (fidelity, quick))
         computed = [measured_value(compared, key) for key in keys]
         varied = [measured_value(nominal, key)[0] for key in keys]
         unknown = {
@@ -177,8 +178,7 @@ def validate(
             raise SceneError("state nothing that the model knows.", key="measured", remedy=_TESTS)
 
         def numbers(place: Array) -> list[float]:
-            one = at_place(_for(scene, quick), intervals, place)
-            outcome = simulate(one, quick, RunOptions(progress=silent))
+            outcome = simulate(at_place(plain[quick], intervals, place), quick, RunOptions(progress=silent))
             return [known(measured_value(outcome, keys[i])[0]) for i in seen]
 
         total, drawn = sobol(numbers, len(intervals), samples, meter)
@@ -255,11 +255,6 @@ def sobol(
 
 
 _TESTS = 'Name a file of tests in the scene: measured = "my_tests.csv".'
-
-
-def _for(scene: Scene, fidelity: str) -> Scene:
-    """Return the scene for a fidelity: only finite elements have a mesh that could be refined to an error."""
-    return scene if fidelity == "solid" else replace(scene, accuracy=replace(scene.accuracy, target=None))
 
 
 def _not_compared(value: Num, band: float | None, fidelity: str) -> str:

@@ -24,19 +24,24 @@ def shaft_flows(bodies: Bodies) -> str:
     doi:10.1098/rspa.1948.0081), or, where that is less, the estimated force of the contact over the smallest
     section of the first half, one diameter behind the tip. Bending is not in it.
     """
-    contact, size, rod = bodies.contact, bodies.estimate, bodies.contact.rod
+    contact, rod = bodies.contact, bodies.contact.rod
     stress = sqrt(rod.E * rod.rho) * max(contact.approach, 0.0) * cos(contact.angle)
     if not contact.rod_yields or stress < rod.yield_stress:
         return ""
     shaft = sections(bodies.rod)
     behind = (shaft.z[:-1] >= contact.body.diameter) & (shaft.z[1:] <= 0.5 * bodies.rod.length)
     if behind.any():
-        force = size.pressure * pi * size.a_t * size.a_b * cos(contact.angle)
-        stress = min(stress, force * rod.E / float(shaft.EA[behind].min()))
+        stress = min(stress, _axial_force(bodies) * rod.E / float(shaft.EA[behind].min()))
     if stress < rod.yield_stress:
         return ""
     told = f"{stress / 1e6:.3g} MPa over {rod.yield_stress / 1e6:.3g} MPa"
     return f"a shaft that would yield along its length (axial stress, estimated: {told})"
+
+
+def _axial_force(bodies: Bodies) -> float:
+    """Return the estimated force, N, of the contact along the axis."""
+    size = bodies.estimate
+    return size.pressure * pi * size.a_t * size.a_b * cos(bodies.contact.angle)
 
 
 def part_flows(bodies: Bodies) -> tuple[int, float]:
@@ -46,11 +51,10 @@ def part_flows(bodies: Bodies) -> tuple[int, float]:
     impedances Z = rho c0, or, where that is less, the estimated force of the contact over the smallest
     section of the segment, as of `shaft_flows`. Segments count from 1; 0: none would.
     """
-    parts, contact, size = bodies.rod.segments, bodies.contact, bodies.estimate
+    parts, contact = bodies.rod.segments, bodies.contact
     if len(parts) < 2:
         return 0, 0.0
-    shaft = sections(bodies.rod)
-    force = size.pressure * pi * size.a_t * size.a_b * cos(contact.angle)
+    shaft, force = sections(bodies.rod), _axial_force(bodies)
     for number, (before, part) in enumerate(pairwise(parts), 2):
         metal = part.material
         own = (shaft.z[:-1] >= before.to - 1e-9) & (shaft.z[1:] <= part.to + 1e-9)

@@ -2,7 +2,6 @@
 
 import json
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 from html import escape
 from math import cos, sin
 from pathlib import Path
@@ -215,7 +214,7 @@ def rigid_theory(outcome: Outcome, scene: Scene | None) -> Outcome | None:
     if outcome.provenance.fidelity == "rigid" or scene is None:
         return None
     try:
-        return simulate(replace(scene, accuracy=replace(scene.accuracy, target=None)), "rigid")
+        return simulate(scene.untargeted, "rigid")
     except (SceneError, RunError, ResultError):  # `sections` reports tests that cannot be read
         return None
 

@@ -192,6 +192,11 @@ class Scene:
         return replace(self, impact=replace(self.impact, until=FIRST), strikes=Following())
 
     @property
+    def untargeted(self) -> "Scene":
+        """The scene without the error that it asks for, which a model without a mesh cannot reach."""
+        return replace(self, accuracy=replace(self.accuracy, target=None))
+
+    @property
     def relative(self) -> Impact:
         """The impact as seen from the barrier before it, which a moving barrier changes."""
         impact, barrier = self.impact, self.barrier

@@ -135,7 +135,7 @@ class Verdict:
         """May it be used at any inclination: the worst of the answers here and elsewhere."""
         both = {self.answer, self.elsewhere.graded(self.tolerance) if self.elsewhere else "undecided"}
         both |= {"undecided"} if self.not_known[0] else set()
-        return next(answer for answer in vibration.WORST_FIRST if answer in both)
+        return min(both, key=vibration.WORST_FIRST.index)
 
 
 def assess(
@@ -200,7 +200,7 @@ def assess(
         def estimate(levels: Sequence[LevelRun]) -> vibration.VibrationEffect | None:
             return vibration.solid_effect([level.runs for level in levels], of)
 
-        pair, means = twins(vibration.untargeted(scene)), (budget_s, workers)
+        pair, means = twins(scene.untargeted), (budget_s, workers)
         try:
             solid, sentences, more = by_levels(pair, estimate, _told, tolerance, means, tell, steps)
         except (SceneError, RunError) as refused:
@@ -215,7 +215,7 @@ def assess(
             effect, used, notes = quick, "modal", [*notes, WIDER.format(_told(solid))]
         more = {"fidelity": fidelity, **more} if more and fidelity == "solid" else more
     else:
-        more = finite_elements(twins(vibration.untargeted(scene))[0], budget_s) if open_still else {}
+        more = finite_elements(twins(scene.untargeted)[0], budget_s) if open_still else {}
     off = 0.0 if quick is None or effect is None else abs(quick.value - effect.value)
     others, not_known = _over_angles(scene, of, tolerance, off) if reduced else (None, ((), ""))
     return Verdict(
@@ -326,7 +326,7 @@ def sequence_verdict(scene: Scene, tolerance: float) -> list[str]:
     half = _half(modal, last, "E_after_J") if last <= certain else inf
     rubbing = inf if isinstance(modal.friction_half, Unknown) else modal.friction_half
     whole = _all_within([(rubs, allowed, rubbing), (all_, allowed, half)])
-    whole = "no" if "no" in (hardest, whole) else "undecided" if "undecided" in (hardest, whole) else "yes"
+    whole = min(hardest, whole, key=vibration.WORST_FIRST.index)
     rigidly, by_modes = (f"{lost_all:.3g} J, {rubbed:.3g} J of it by friction" for rubbed, lost_all in lost)
     ratios = modal.other_end, rigid.other_end
     ends = (

@@ -129,7 +129,7 @@ class Rigidity(Criterion):
 
     def meshed(self, scene: Scene) -> tuple[Scene, Scene | None]:
         """Return the twins."""
-        return twins(vibration.untargeted(scene))
+        return twins(scene.untargeted)
 
     def solid(self, levels: Sequence[LevelRun]) -> Bound | None:
         """Return the change and the band of the levels."""
@@ -182,7 +182,7 @@ class Limited(Criterion):
 
     def meshed(self, scene: Scene) -> tuple[Scene, Scene | None]:
         """Return the scene without a film."""
-        return vibration.untargeted(replace(scene, measured=None, save=replace(scene.save, frames=0))), None
+        return replace(scene.untargeted, measured=None, save=replace(scene.save, frames=0)), None
 
     def solid(self, levels: Sequence[LevelRun]) -> Bound | None:
         """Return the limit and the half-width of the levels."""

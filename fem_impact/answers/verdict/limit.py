@@ -173,8 +173,7 @@ def judge(
     check_means(fidelity, budget_s)
     scene = scene.first_impact
     criterion.require(scene)
-    stated = {**_over_friction(scene), **(uncertain or {})}
-    intervals = [interval_of(scene, key, ends) for key, ends in stated.items()]
+    intervals = [interval_of(scene, *one) for one in {**_over_friction(scene), **(uncertain or {})}.items()]
     scenes, lacking = _places(scene, intervals), not_reduced(Case(scene).bodies)
     reduced = not lacking or fidelity == "modal"
     steps, notes = list[str](), [*left_out(scene, intervals), *([] if reduced else [LACKING.format(lacking)])]
@@ -186,6 +185,7 @@ def judge(
     mildest = min(known, key=lambda at: (known[at].value, known[at].low), default=worst)
     shown = max(known, key=lambda at: known[at].rank(limit), default=worst)
     bound, by, solids = known.get(shown), "the reduced model", dict[Place, Bound]()
+    more: Means = {}
     every = [one.answer(limit) for one in known.values()]  # the told error holds no body that lacks the model
     answer = "undecided" if lacking else _together(every, bool(why) or not known)
     if bound is not None:
@@ -210,7 +210,7 @@ def judge(
                 low = [one.high - known[at].value for at, one in solids.items() if at in known]
                 within = worst in known and known[worst].value + max(low) <= limit and not why
                 answer, notes = ("yes", [*notes, CONFIRMED]) if within else ("undecided", notes)
-    else:
+    elif answer == "undecided":
         more = finite_elements(criterion.meshed(scene)[0], budget_s, criterion.needed, 1 + bool(intervals))
     return LimitVerdict(
         scene,

@@ -15,7 +15,6 @@ from fem_impact.answers.verdict.vibration import (
     PROBABLY,
     GradedAnswer,
     VibrationEffect,
-    untargeted,
 )
 from fem_impact.case.case import Case
 from fem_impact.outcome.groups import texts
@@ -93,7 +92,7 @@ def _but(v: Verdict) -> str:
     if refused := _refused(v):
         return f"But --fidelity rigid has no answer here: {refused}"
     key = CHANGED[v.of]
-    theirs, ours = key.of(simulate(untargeted(v.scene), "rigid")), key.of(v.here.free)
+    theirs, ours = key.of(simulate(v.scene.untargeted, "rigid")), key.of(v.here.free)
     if v.scene.restitution is not None or isinstance(theirs, Unknown) or isinstance(ours, Unknown):
         return ""
     if abs(theirs - ours) <= v.tolerance:
@@ -104,7 +103,7 @@ def _but(v: Verdict) -> str:
 
 def _refused(v: Verdict) -> str:
     """Return why rigid theory has no law for the contact, as ``check`` tells it; nothing where it has one."""
-    return refused_by(untargeted(v.scene), "rigid")
+    return refused_by(v.scene.untargeted, "rigid")
 
 
 def _beyond(v: Verdict) -> str:

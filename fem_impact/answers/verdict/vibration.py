@@ -280,7 +280,7 @@ def unfinished(pair: Pair, of: str = "e") -> str:
 
 def modal_pair(scene: Scene) -> Pair:
     """Return the twins of a scene by the reduced model."""
-    free, stiff = twins(untargeted(scene))
+    free, stiff = twins(scene.untargeted)
     return simulate(free, "modal"), simulate(stiff, "modal")
 
 
@@ -289,7 +289,7 @@ def modal_effect(scene: Scene, pair: Pair, of: str = "e") -> VibrationEffect:
 
     Shares of E_0 have the half-widths that the run itself tells.
     """
-    value, case = difference(pair, of), Case(untargeted(scene), "modal")
+    value, case = difference(pair, of), Case(scene.untargeted, "modal")
     half, far = known_error(case, pair[0], of, value)
     e = or_none(pair[0].restitution.edge.e)
     thin = half_space_error(case.bodies) * abs(1.0 if e is None else e) if is_thin(case.bodies) else 0.0
@@ -377,8 +377,3 @@ def worst(effects: Sequence[VibrationEffect], tolerance: float) -> VibrationEffe
         return WORST_FIRST.index(effect.graded(tolerance)), -abs(effect.value)
 
     return min(effects, key=order)
-
-
-def untargeted(scene: Scene) -> Scene:
-    """Return the scene without the error that it asks for: the verdict chooses fidelity and meshes itself."""
-    return replace(scene, accuracy=replace(scene.accuracy, target=None))

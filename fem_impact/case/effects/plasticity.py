@@ -114,8 +114,7 @@ def struck(bodies: Bodies) -> list[Material]:
 def number(bodies: Bodies) -> float:
     """Return the peak pressure over that of first yield in the rod, by the strongest that it strikes."""
     pair = bodies.contact
-    metals = struck(bodies) if bodies.barrier.layers else [pair.barrier]
-    return max(first_yield_ratio(pair, pair.rod, metal) for metal in metals)
+    return max(first_yield_ratio(pair, pair.rod, metal) for metal in struck(bodies))
 
 
 def fill(bodies: Bodies, spec: ModelSpec) -> None:

@@ -24,7 +24,6 @@ from fem_impact.answers.verdict.vibration import (
     VibrationEffect,
     solid_effect,
     twins,
-    untargeted,
 )
 from fem_impact.errors import FemImpactError, ResultError, SceneError
 from fem_impact.evidence.studies.coverage.scenes import DrawnScene
@@ -285,7 +284,7 @@ def _changes(scene: Scene, budget_s: float, levels: int) -> dict[str, tuple[floa
             return None
         return _Effects(known, len(done) >= levels if levels else known["e"].band <= NARROW)
 
-    pair, means = twins(untargeted(scene)), (budget_s, 1)
+    pair, means = twins(scene.untargeted), (budget_s, 1)
     found, _, _ = by_levels(pair, estimate, str, NARROW, means, lambda _: None, [])
     if found is None or (levels and not found.enough):
         return {}
