@@ -25,7 +25,8 @@ if TYPE_CHECKING:
     from fem_impact.answers.sweep_results import Results
     from fem_impact.answers.validate import Validation, validate
     from fem_impact.answers.verdict.assess import Verdict, assess
-    from fem_impact.answers.verdict.limit import LimitVerdict, judge
+    from fem_impact.answers.verdict.limit import judge
+    from fem_impact.answers.verdict.limit_verdict import LimitVerdict
     from fem_impact.case.case import Case
     from fem_impact.fem.exchange import to_meshio, to_pyvista, to_skfem
     from fem_impact.figures.runs import draw_waves
@@ -81,7 +82,7 @@ __all__ = [
 
 _PLACES = {
     "Case": "case.case:Case",
-    "LimitVerdict": "answers.verdict.limit:LimitVerdict",
+    "LimitVerdict": "answers.verdict.limit_verdict:LimitVerdict",
     "Outcome": "outcome.record:Outcome",
     "Results": "answers.sweep_results:Results",
     "RunOptions": "options:RunOptions",

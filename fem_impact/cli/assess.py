@@ -9,7 +9,8 @@ from fem_impact.answers.verdict.assess import assess as assessed
 from fem_impact.answers.verdict.chart import chart
 from fem_impact.answers.verdict.criteria import LIMITED, Criterion, Rigidity
 from fem_impact.answers.verdict.dropped import RodDropInput, dropped, scene_of
-from fem_impact.answers.verdict.limit import judge, limit_document
+from fem_impact.answers.verdict.limit import judge
+from fem_impact.answers.verdict.limit_verdict import limit_document
 from fem_impact.answers.verdict.sentences import document, lines_of
 from fem_impact.answers.verdict.text import transfer_text
 from fem_impact.answers.verdict.transfer import transfer

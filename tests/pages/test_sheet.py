@@ -7,7 +7,8 @@ import result_maker
 
 from fem_impact.answers.verdict.assess import assess
 from fem_impact.answers.verdict.criteria import LIMITED
-from fem_impact.answers.verdict.limit import judge, limit_document
+from fem_impact.answers.verdict.limit import judge
+from fem_impact.answers.verdict.limit_verdict import limit_document
 from fem_impact.answers.verdict.sentences import document
 from fem_impact.errors import ResultError
 from fem_impact.files.atomic import signed

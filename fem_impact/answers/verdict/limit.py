@@ -4,14 +4,11 @@ The reduced model looks at places over the intervals, and finite elements at the
 where its error leaves the answer open.
 """
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass
-from decimal import ROUND_CEILING
+from collections.abc import Mapping, Sequence
 from functools import partial
 from itertools import product
 from math import inf
 from time import perf_counter
-from typing import Any
 
 import numpy as np
 
@@ -25,122 +22,31 @@ from fem_impact.answers.verdict.levels import (
     Tell,
     by_levels,
     finite_elements,
-    next_step,
     with_budget,
 )
-from fem_impact.answers.verdict.sentences import case_sentence, never_covered
+from fem_impact.answers.verdict.limit_verdict import SOLIDS, LimitVerdict, bound_text, in_unit
 from fem_impact.answers.verdict.vibration import Answer
 from fem_impact.case.case import Case
 from fem_impact.case.limits import not_reduced
 from fem_impact.errors import RunError, SceneError, UsageError
-from fem_impact.outcome.groups import texts
 from fem_impact.outcome.keys import Unknown
-from fem_impact.outcome.record import installed_versions
 from fem_impact.progress import tell_cell
-from fem_impact.scene.types import Scene, digest
+from fem_impact.scene.types import Scene
 from fem_impact.scene.units import parse_change, parse_quantity
-from fem_impact.tables.text import digits_apart, plain, plain_bound
 
-Write = Callable[[float, int], str]
-upwards = partial(plain_bound, rounding=ROUND_CEILING)
 PLACES = {1: 21, 2: 7, 3: 5, 4: 3}
 """Values of each of so many intervals at which the reduced model looks."""
 CONFIRMED = (
     "Finite elements ran where the reduced model has its largest number and its least; as far as their upper "
     "end lies above it at one of them, it counts as too low at all places."
 )
-UNCONFIRMED = (
-    "a smaller error of finite elements: they stay below the limit where the reduced model has its largest "
-    "number and its least, but as far as their upper end lies above it at one of them it may be too low at "
-    "all places, and that passes the limit. Assess parts of the intervals, or a limit with more margin."
+ENDS = (
+    "No reduced model tells the number here: finite elements ran at the middle of the intervals and at all "
+    "their ends. Between them the number counts as being higher by as much as these differ."
 )
 LEAST = ", where the number is least: above {} there it does not stay below the limit at all places"
-SOLIDS = "finite elements"
-ALONE = "finite elements where the reduced model has its least number, too: notes say why they tell none."
-UNLIKE = (
-    "No scene that both models computed is like this one, so that the reduced model's error is told as wide "
-    "as it is where scenes differ most: finite elements, --fidelity solid, tell more."
-)
 Place = tuple[float, ...]
 """A place in the intervals, each from 0 to 1."""
-CELSIUS = 273.15  # K, of 0 degC
-
-
-@dataclass(frozen=True, slots=True, repr=False)
-class LimitVerdict:
-    """Whether a number stays below a limit.
-
-    Attributes
-    ----------
-    scene, criterion, limit : the question; SI
-    intervals : lowest to highest value by key, as stated
-    answer : for all of the intervals
-    worst, bound, by : values by key where the number is largest, the number there, and by which model; by
-        finite elements the worse of the places that these computed
-    reduced : smallest and largest number of the reduced model over the intervals, None where it has none
-    places, not_known : where the reduced model looked, and why it has no answer at some
-    computed : places at which finite elements tell the number
-    steps, notes : what was computed one after the other, and what the reader should know
-    more : arguments of `judge` with which it may decide what is undecided
-    """
-
-    scene: Scene
-    criterion: Criterion
-    limit: float
-    intervals: Mapping[str, str]
-    answer: Answer
-    worst: Mapping[str, str]
-    bound: Bound | None
-    by: str
-    reduced: tuple[float, float] | None
-    places: int
-    not_known: str
-    computed: int
-    steps: tuple[str, ...]
-    notes: tuple[str, ...]
-    more: Means
-
-    def __repr__(self) -> str:
-        told = "not known" if self.bound is None else f"{_told(self.criterion, self.bound)} by {self.by}"
-        limit = _in_unit(self.criterion, self.limit)
-        return (
-            f"LimitVerdict({self.scene.id!r}: {self.criterion.called} below {limit}: {self.answer}, {told})"
-        )
-
-    @property
-    def missing(self) -> str:
-        """What an undecided answer lacks, empty of a decided one."""
-        if self.answer != "undecided":
-            return ""
-        if self.hopeless and self.bound is not None:
-            return f"a limit that can be judged: {self.bound.beyond}."
-        if self.bound is not None and self.bound.answer(self.limit) == "undecided":
-            lies = "a smaller error: the limit lies within that of the number"
-            if self.bound.beyond:
-                return f"{lies}."
-            digits = digits_apart(self.limit, self.bound.high, 3)
-            high = _in_unit(self.criterion, self.bound.high, digits, upwards)
-            return f"{lies}; or a limit above {high}."
-        if self.not_known:
-            return f"an answer: {self.not_known}"
-        if self.bound is None:
-            return "a model that tells the number: the notes say what was tried."
-        return ALONE if self.computed == 1 else UNCONFIRMED
-
-    @property
-    def hopeless(self) -> bool:
-        """Whether the number is not known up to the limit, by any model."""
-        return self.bound is not None and self.limit >= self.bound.ceiling
-
-    @property
-    def margin(self) -> float | None:
-        """How far the number stays below the limit at the worst place with its error, SI; below 0: beyond.
-
-        None where no number is known, or none beyond a ceiling.
-        """
-        if self.bound is None or (self.bound.beyond and self.bound.answer(self.limit) != "no"):
-            return None
-        return self.limit - (self.bound.low if self.bound.answer(self.limit) == "no" else self.bound.high)
 
 
 def judge(
@@ -181,8 +87,7 @@ def judge(
     known = {place: one for place, one in bounds.items() if isinstance(one, Bound)}
     why = next((one.reason for one in bounds.values() if isinstance(one, Unknown)), "")
     why = LACKING.format(lacking) if lacking and bounds else why
-    worst = max(known, key=lambda at: (known[at].value, known[at].low), default=(0.5,) * len(intervals))
-    mildest = min(known, key=lambda at: (known[at].value, known[at].low), default=worst)
+    worst, limits = _planned(scenes, known, bool(why), limit)
     shown = max(known, key=lambda at: known[at].rank(limit), default=worst)
     bound, by, solids = known.get(shown), "the reduced model", dict[Place, Bound]()
     more: Means = {}
@@ -190,13 +95,11 @@ def judge(
     answer = "undecided" if lacking else _together(every, bool(why) or not known)
     if bound is not None:
         where = f" at the worst of {len(known)} places" if intervals else ""
-        steps.append(f"{by}: {_told(criterion, bound)}{where}: {answer}")
+        steps.append(f"{by}: {bound_text(criterion, bound)}{where}: {answer}")
         tell(steps[-1])
     open_still = answer == "undecided" or not all(one.alike for one in known.values())
     if fidelity == "solid" or (fidelity == "auto" and open_still):
-        apart = known[worst].value - known[mildest].value if known else 0.0
-        two = {worst: (scenes[worst], limit)} | {mildest: (scenes[mildest], limit - apart)}
-        solids, said, more = _by_solids(two, criterion, (budget_s, workers), tell, steps)
+        solids, said, more = _by_solids(scenes, limits, criterion, (budget_s, workers), tell, steps)
         notes += said
         if fidelity == "solid" and worst not in solids:  # what was asked for tells nothing
             bound, answer = None, "undecided"
@@ -205,13 +108,12 @@ def judge(
         if worst in solids and not (quick and quick.holds_against(solids[worst], limit)):
             shown = max(solids, key=lambda at: solids[at].rank(limit))
             bound, by = solids[shown], SOLIDS
-            answer = _together([one.answer(limit) for one in solids.values()], mildest not in solids)
+            answer = _together([one.answer(limit) for one in solids.values()], limits.keys() > solids.keys())
             if answer == "yes" and intervals:
-                low = [one.high - known[at].value for at, one in solids.items() if at in known]
-                within = worst in known and known[worst].value + max(low) <= limit and not why
-                answer, notes = ("yes", [*notes, CONFIRMED]) if within else ("undecided", notes)
+                most, rests = _most(solids, {} if why else known)
+                answer, notes = ("yes", [*notes, rests]) if most <= limit else ("undecided", notes)
     elif answer == "undecided":
-        more = finite_elements(criterion.meshed(scene)[0], budget_s, criterion.needed, 1 + bool(intervals))
+        more = finite_elements(criterion.meshed(scene)[0], budget_s, criterion.needed, len(limits))
     return LimitVerdict(
         scene,
         criterion,
@@ -221,9 +123,10 @@ def judge(
         _values(intervals, shown),
         bound,
         by,
-        (known[mildest].value, known[worst].value) if known else None,
+        (min(one.value for one in known.values()), known[worst].value) if known else None,
         len(bounds),
         why,
+        len(limits),
         len(solids),
         tuple(steps),
         tuple(notes),
@@ -238,7 +141,7 @@ def _question(of: Criterion | str, limit: float | str) -> tuple[Criterion, float
         limit = parse_quantity(limit, criterion.dimension, "limit")
     limit = parse_change(limit, "limit")
     if not 0.0 < limit < inf:
-        raise SceneError("must lie above 0.", key="limit", value=_in_unit(criterion, limit))
+        raise SceneError("must lie above 0.", key="limit", value=in_unit(criterion, limit))
     return criterion, limit
 
 
@@ -287,7 +190,8 @@ def _scanned(scenes: Mapping[Place, Scene], criterion: Criterion, tell: Tell) ->
 
 
 def _by_solids(
-    scenes: Mapping[Place, tuple[Scene, float]],
+    scenes: Mapping[Place, Scene],
+    limits: Mapping[Place, float],
     criterion: Criterion,
     means: tuple[float, int | None],
     tell: Tell,
@@ -295,18 +199,21 @@ def _by_solids(
 ) -> tuple[dict[Place, Bound], list[str], Means]:
     """Return what finite elements say at places until one does not stay below its limit; notes; more means.
 
-    ``means`` are the budget of all of them, s, and runs at a time.
+    ``limits`` are those of the places to compute, the first one's that of the question; ``means`` are the
+    budget of all of them, s, and runs at a time.
     """
     (budget_s, workers), begun = means, perf_counter()
     solids, notes = dict[Place, Bound](), list[str]()
     more: Means = {}
-    for place, (scene, limit) in scenes.items():
-        least = LEAST.format(_in_unit(criterion, limit)) if solids else ""
+    alike, whole = len({*limits.values()}) == 1, next(iter(limits.values()))
+    for place, limit in limits.items():
+        where = f" at place {len(solids) + 1} of {len(limits)}" if alike and len(limits) > 1 else ""
+        where = LEAST.format(in_unit(criterion, limit)) if limit != whole else where
         before = perf_counter() - begun
         left = max(budget_s - before, 1.0), workers
         try:
-            pair = criterion.meshed(scene)
-            as_text = partial(_told, criterion, where=least)
+            pair = criterion.meshed(scenes[place])
+            as_text = partial(bound_text, criterion, where=where)
             told = tell, steps, before, criterion.needed
             bound, said, more = by_levels(pair, criterion.solid, as_text, limit, left, *told)
         except (SceneError, RunError) as refused:
@@ -319,79 +226,39 @@ def _by_solids(
     return solids, notes, more
 
 
+def _planned(
+    scenes: Mapping[Place, Scene], known: Mapping[Place, Bound], incomplete: bool, limit: float
+) -> tuple[Place, dict[Place, float]]:
+    """Return where a number counts as largest, and the places for finite elements with a limit for each.
+
+    They are where the reduced model has its largest number and its least; the middle and all ends, too, where
+    that is ``incomplete`` or tells none at all.
+    """
+    middle = (0.5,) * len(next(iter(scenes)))
+    worst = max(known, key=lambda at: (known[at].value, known[at].low), default=middle)
+    if incomplete or not known:
+        return worst, dict.fromkeys([worst, middle, *(at for at in scenes if {*at} <= {0.0, 1.0})], limit)
+    mildest = min(known, key=lambda at: (known[at].value, known[at].low))
+    limits = {worst: limit}
+    limits.setdefault(mildest, limit - known[worst].value + known[mildest].value)
+    return worst, limits
+
+
+def _most(solids: Mapping[Place, Bound], known: Mapping[Place, Bound]) -> tuple[float, str]:
+    """Return the most that a number may be over intervals, and what that rests on.
+
+    ``solids`` are the places that finite elements computed: where the reduced model has its largest number
+    and its least if that is ``known`` everywhere, or the middle and all ends.
+    """
+    if not known:
+        values = [one.value for one in solids.values()]
+        return max(one.high for one in solids.values()) + max(values) - min(values), ENDS
+    too_low = max(one.high - known[at].value for at, one in solids.items())
+    return max(one.value for one in known.values()) + too_low, CONFIRMED
+
+
 def _together(answers: Sequence[Answer], missing: bool) -> Answer:
     """Return the answer for all places: no if it is at one, yes if it is at each and none is missing."""
     if "no" in answers:
         return "no"
     return "yes" if {*answers} == {"yes"} and not missing else "undecided"
-
-
-def _in_unit(criterion: Criterion, number: float, digits: int = 3, write: Write = plain) -> str:
-    """Return a number in the unit of its criterion, a temperature in degC, too."""
-    celsius = f" = {write(number - CELSIUS, digits)} degC" if criterion.dimension == "temperature" else ""
-    return f"{_apart(criterion, number, digits, write)}{celsius}"
-
-
-def _apart(criterion: Criterion, number: float, digits: int = 3, write: Write = plain) -> str:
-    """Return the distance between two numbers of a criterion in its unit."""
-    return f"{write(number / criterion.per_unit, digits)} {criterion.unit}".rstrip()
-
-
-def _told(criterion: Criterion, bound: Bound, where: str = "") -> str:
-    """Return a number between its least and most, in the unit of its criterion, and where that is."""
-    value, low = _in_unit(criterion, bound.value), _in_unit(criterion, bound.low)
-    if bound.low == bound.ceiling:
-        return f"at least {value} ({bound.beyond}){where}"
-    if bound.beyond:
-        more = " or more" if bound.value == bound.ceiling else ""
-        return f"{low} or more, at the best estimate {value}{more} ({bound.beyond}){where}"
-    return f"{value} ({low} to {_in_unit(criterion, bound.high)}){where}"
-
-
-def limit_document(v: LimitVerdict, command: str) -> dict[str, Any]:
-    """Return the verdict as plain JSON, its sentences with it; ``command`` is that which gives it again."""
-    of, bound = v.criterion, v.bound
-    over = " and ".join(f"{key} from {ends}" for key, ends in v.intervals.items())
-    where = f", {over}" if over else ""
-    question = f"Does {of.called} stay below {_in_unit(of, v.limit)} in the first impact{where}?"
-    box = [[question, f"{v.answer.upper()}."]]
-    if bound is not None:
-        at = ", ".join(f"{key} {value}" for key, value in v.worst.items())
-        size = "" if v.margin is None else _apart(of, abs(v.margin))
-        far = {
-            "yes": f", at least {size} below the limit",
-            "no": f", at least {size} above the limit",
-            "undecided": f", up to {size} above the limit" if size else "",
-        }
-        worst = "At the worst place" if v.reduced else "Where all have their middle values"
-        worst += " that finite elements computed" * bool(v.reduced and v.by == SOLIDS)
-        place = f"{worst}, {at}:" if at else "Here:"
-        box.append([place, f"{_told(of, bound)}{far[bound.answer(v.limit)]}, by {v.by}."])
-    if bound is not None and bound.counts:
-        box.append(["It counts", bound.counts])
-    if v.reduced and over:
-        least, most = (_in_unit(of, number) for number in v.reduced)
-        box.append([f"Of {v.places} places of the reduced model", f"the least has {least}, the most {most}."])
-    lacking = [f"The reduced model does not answer everywhere: {v.not_known}"] if v.not_known else []
-    lacking += [UNLIKE] if v.by == "the reduced model" and bound is not None and not bound.alike else []
-    return {
-        "scene_digest": digest(v.scene),
-        "versions": installed_versions(),
-        "criterion": of.called,
-        "limit": v.limit,
-        "over": dict(v.intervals),
-        "answer": v.answer,
-        "margin": v.margin,
-        "worst": dict(v.worst),
-        "bound": bound and {name: None if value == inf else value for name, value in asdict(bound).items()},
-        "rests_on": v.by,
-        "box": box,
-        "missing": v.missing or None,
-        "next_step": next_step(command, {} if v.hopeless else v.more),
-        "basis": [
-            ["case", case_sentence(v.scene)],
-            *([f"step {number}", f"{step}."] for number, step in enumerate(v.steps, 1)),
-            *(["note", note] for note in [*v.notes, *lacking]),
-        ],
-        "not_covered": [*texts(Case(v.scene).limitations), *never_covered(v.scene)],
-    }

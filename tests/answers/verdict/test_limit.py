@@ -15,7 +15,8 @@ from fem_impact.answers.friction_spread import friction_spread
 from fem_impact.answers.verdict import criteria, levels
 from fem_impact.answers.verdict import limit as module
 from fem_impact.answers.verdict.criteria import LIMITED, Bound, ForceCriterion, Limited
-from fem_impact.answers.verdict.limit import judge, limit_document
+from fem_impact.answers.verdict.limit import judge
+from fem_impact.answers.verdict.limit_verdict import limit_document
 from fem_impact.case.case import Case
 from fem_impact.case.effects.heating import halves
 from fem_impact.cli.main import main
@@ -90,6 +91,34 @@ def test_a_body_without_a_reduced_model_is_decided_by_none(monkeypatch, scene):
     assert judge(scene, Sloped(), 49.0, ANGLE, "modal").answer == "undecided"
 
 
+@pytest.mark.parametrize(
+    ("high", "limit", "answer", "ran", "told"),
+    [
+        (60.0, 100.0, "undecided", [40, 20, 60], "between them the number may be higher"),
+        (60.0, 102.0, "yes", [40, 20, 60], ""),
+        (60.0, 60.0, "undecided", [40, 20, 60], "the limit lies within"),
+        (None, 102.0, "undecided", [40, 20, 60], "at all 3 places: finite elements have it at 2"),
+        (60.0, 30.0, "no", [40], ""),
+    ],
+)
+def test_without_a_reduced_model_finite_elements_run_at_the_middle_and_all_ends(
+    monkeypatch, scene, high, limit, answer, ran, told
+):
+    """A limit far above the number at all of them left a fork undecided, however long it computed."""
+    monkeypatch.setattr(module, "not_reduced", lambda bodies: "a body of several prongs")
+    where = solids(monkeypatch, {40: 40.0, 20: 20.0, 60: high})
+    found = judge(scene, Sloped(), limit, ANGLE)
+    assert (found.answer, where) == (answer, ran) and told in found.missing
+    assert (answer == "yes") == any("at the middle of the intervals" in note for note in found.notes)
+
+
+def test_finite_elements_run_at_all_ends_where_the_reduced_model_tells_no_number_at_some(monkeypatch, scene):
+    where = solids(monkeypatch, {58: 58.0, 40: 40.0, 20: 20.0, 60: 60.0})
+    found = judge(scene, Sloped(missing=(60.0,)), 110.0, ANGLE)
+    assert found.answer == "yes" and where == [58, 40, 20, 60]  # the largest that is known comes first
+    assert judge(scene, Sloped(missing=(60.0,)), 100.0, ANGLE).answer == "undecided"
+
+
 def solids(monkeypatch, values):
     """Let finite elements tell a bound by the angle in degrees; return the angles at which they ran.
 
@@ -146,7 +175,7 @@ def test_a_limit_that_is_passed_at_the_mildest_place_is_told_by_the_number_there
 
 
 @pytest.mark.parametrize(
-    ("mildest", "missing"), [(None, "least number, too"), (30.0, "upper end lies above")]
+    ("mildest", "missing"), [(None, "at all 2 places: finite elements have it at 1 "), (30.0, "upper end lies above")]
 )
 def test_what_lacks_at_the_mildest_place_is_said(monkeypatch, scene, mildest, missing):
     solids(monkeypatch, {60: 50.0, 20: mildest})
