@@ -12,31 +12,38 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import islice, product
 from math import inf
+from statistics import NormalDist
 from typing import Any
 
 import numpy as np
 
 from fem_impact.answers.compare import MEASURED, measured_value
 from fem_impact.answers.simulate import simulate
-from fem_impact.answers.v_and_v import COVERAGE, ERRORS, TERMS, Comparison, joint_or_why
+from fem_impact.answers.v_and_v import (
+    COVERAGE,
+    ERRORS,
+    TERMS,
+    Comparison,
+    compared_with,
+    independent,
+    joint_or_why,
+)
 from fem_impact.answers.vary import in_unit, measure
 from fem_impact.arrays import Array
 from fem_impact.errors import SceneError, UsageError
-from fem_impact.options import FIDELITIES, RunOptions
+from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import Num, Unknown, known
 from fem_impact.progress import CaseProgress, silent, watched
-from fem_impact.run.tests import NUMBERS, SingleTests, tests_of
+from fem_impact.run.modal_error import HELD
+from fem_impact.run.tests import NUMBERS, tests_freedom, tests_of
 from fem_impact.scene.shipped import bare, named, replace_all
 from fem_impact.scene.types import Scene, to_dict
 from fem_impact.tables.table import Table
-from rigid.experiments import Statistic
 
 SAMPLES = 64  # of each of the two samples that Sobol's indices are made of
 SEED = 20260101
-FOLLOWS = ("E_ln_over_E_0", "E_lt_over_E_0", "E_r_over_E_0")
-MOVES = ("V_n", "V_t", "e_t")
-"""Quantities that follow from e, mu and Omega, and are no further evidence in the joint statement; velocities
-and their ratio are where neither e nor mu is measured."""
+WIDTHS = {"solid": COVERAGE, "modal": NormalDist().inv_cdf(0.5 + 0.5 * HELD)}
+"""Standard uncertainties in a half-width: that of levels holds 95 of 100, that of the reduced model 90."""
 KEYS = {q.measured: q.key.name for q in MEASURED if q.measured}
 """Keys of an outcome by the names of measured numbers."""
 FRICTION = "surface.friction"
@@ -106,7 +113,7 @@ class Validation:
         of_inputs = total / np.maximum(total.sum(axis=0), 1e-300)
         u = np.array([(c.u_input, c.u_D, c.u_num) for c in self.comparisons]).T ** 2
         parts = np.vstack([of_inputs * u[0], u[1:]])
-        return np.asarray(parts / parts.sum(axis=0))
+        return np.asarray(parts / np.maximum(parts.sum(axis=0), 1e-300))
 
     @property
     def better(self) -> tuple[str, float]:
@@ -129,8 +136,8 @@ def validate(
     ----------
     uncertain : lowest and highest value of each uncertain input by its key, such as
         ``{"impact.angle": ("44 deg", "46 deg")}``, or how far it may lie from the scene's value,
-        ``{"impact.v_n": "+-2 %"}`` or ``"+-0.1 m/s"``; each is uniform between. By default friction over its
-        interval
+        ``{"impact.v_n": "+-2 %"}`` or ``"+-0.1 m/s"``; each is uniform between. Friction over the interval
+        that the scene states is one of them unless it stands there
     fidelity : of the compared run
     samples : a power of two; (inputs + 2) times as many runs are made
     inputs_by : fidelity in which the inputs are varied; by default rigid for "rigid", else modal, which takes
@@ -155,17 +162,14 @@ def validate(
     tests = tests_of(scene)
     if tests is None:
         raise SceneError("is missing: there is nothing to compare with.", key="measured", remedy=_TESTS)
-    intervals = _intervals(scene, _friction(scene) if uncertain is None else uncertain)
+    intervals = _intervals(scene, uncertain or {})
     quick = inputs_by or ("rigid" if fidelity == "rigid" else "modal")
-    if quick not in FIDELITIES:
-        remedy = f"Known: {', '.join(FIDELITIES)}."
-        raise UsageError("is no fidelity.", key="inputs_by=", value=inputs_by, remedy=remedy)
     plain = {by: scene if by == "solid" else scene.untargeted for by in (fidelity, quick)}
     names = [name for name in tests.statistics() if name in KEYS or name in NUMBERS]
     keys = [KEYS.get(name, name) for name in names]
     with watched(options.progress) as meter:
-        options = replace(options, progress=meter)
-        compared, nominal = (simulate(plain[by], by, options) for by in (fidelity, quick))
+        heard = replace(options, progress=meter)
+        nominal, compared = (simulate(plain[by], by, heard) for by in (quick, fidelity))
         computed = [measured_value(compared, key) for key in keys]
         varied = [measured_value(nominal, key)[0] for key in keys]
         unknown = {
@@ -183,23 +187,24 @@ def validate(
 
         total, drawn = sobol(numbers, len(intervals), samples, meter)
     moved = drawn - np.array([known(varied[i]) for i in seen])[:, None]
-    statistics = tests.statistics()
+    u_num = [(computed[i][1] or 0.0) / WIDTHS.get(fidelity, inf) for i in seen]
+    u_input = np.sqrt(np.mean(moved**2, axis=1)).tolist()
     comparisons = tuple(
-        _comparison(scene.id, names[i], computed[i], statistics[names[i]], float(np.sqrt(np.mean(change**2))))
-        for i, change in zip(seen, moved, strict=True)
+        compared_with(tests, names[i], known(computed[i][0]), num, by, scene.id)
+        for i, num, by in zip(seen, u_num, u_input, strict=True)
     )
-    follow = {*FOLLOWS, *(MOVES if {"e", "mu"} & set(names) else MOVES[2:] if "V_t" in names else ())}
-    free = [at for at, i in enumerate(seen) if names[i] not in follow] or list(range(len(seen)))
-    C = moved[free] @ moved[free].T / moved.shape[1] + np.diag([comparisons[j].u_num ** 2 for j in free])
-    C += tests.covariance([names[seen[j]] for j in free])
-    E = np.array([comparisons[j].E for j in free])
-    distance, p = joint_or_why(E, C, tests.count if isinstance(tests, SingleTests) else inf)
+    free = independent([names[i] for i in seen])
+    joined = [names[seen[j]] for j in free]
+    C = np.diag(np.square(u_num)[free]) + tests.covariance(joined)
+    C += moved[free] @ moved[free].T / moved.shape[1]
+    E = np.array([one.E for one in comparisons])
+    distance, p = joint_or_why(E[free], C, tests.scatter(joined), tests_freedom(tests, joined))
     return Validation(
         comparisons=comparisons,
         unknown=unknown,
         inputs=tuple(key for key, *_ in intervals),
         total=total,
-        joined=tuple(names[seen[j]] for j in free),
+        joined=tuple(joined),
         distance=distance,
         p=p,
         varied=quick,
@@ -214,10 +219,16 @@ def validate(
 
 def _intervals(scene: Scene, uncertain: Mapping[str, Ends]) -> list[Interval]:
     """Return the stated intervals, at corners of which the scene can be computed."""
+    uncertain = {**friction_of(scene), **uncertain}
     if not uncertain:
-        remedy = 'Give one, such as {"impact.angle": ("44 deg", "46 deg")}.'
-        raise UsageError("names no interval.", key="uncertain=", remedy=remedy)
+        remedy = "State one, such as impact.angle=44,46deg."
+        raise UsageError("is missing: no input of the scene is uncertain.", key="uncertain=", remedy=remedy)
     intervals = [interval_of(scene, key, ends) for key, ends in uncertain.items()]
+    for key, own in left_out(scene, intervals).items():
+        remedy = f"The model is computed at that value: give it one in the interval, --set {key}=VALUE."
+        raise UsageError(
+            f"does not hold the scene's own value, {own}.", key=f"uncertain {key}", remedy=remedy
+        )
     for corner in islice(product((0.0, 1.0), repeat=len(intervals)), CORNERS):
         at_place(scene, intervals, np.array(corner))
     return intervals
@@ -276,13 +287,10 @@ def _not_varied(value: Num, quick: str) -> str:
     return f"the inputs are varied in the {quick} model, which does not know it: {value.reason}. {remedy}"
 
 
-def _friction(scene: Scene) -> dict[str, Ends]:
-    """Return the interval of friction of a scene as its one uncertain input (UsageError: it has none)."""
-    surface = scene.surface
-    if surface.friction_low == surface.friction_high:
-        remedy = "State one, such as impact.angle=44,46deg."
-        raise UsageError("is missing: no input of the scene is uncertain.", key="uncertain=", remedy=remedy)
-    return {FRICTION: (surface.friction_low, surface.friction_high)}
+def friction_of(scene: Scene) -> dict[str, Ends]:
+    """Return the interval of friction that a scene states, by its key; none where it states none."""
+    low, high = scene.surface.friction_low, scene.surface.friction_high
+    return {FRICTION: (low, high)} if low < high else {}
 
 
 def interval_of(scene: Scene, key: str, ends: Ends) -> Interval:
@@ -312,7 +320,8 @@ def _about(scene: Scene, key: str, text: str) -> Interval:
     if of == "%" and not isinstance(half, str) and not isinstance(value, str):
         half = abs(value) * half / 100
     elif of or unit:
-        half = in_unit(f"{half} {of}", unit)
+        half, none = (in_unit(f"{number} {of}", unit) for number in (half, 0))  # 5 degC are 5 K
+        half = half - none if not isinstance(half, str) and not isinstance(none, str) else half
     if isinstance(value, str) or isinstance(half, str) or not half > 0:
         where = f"value, {named(value_there)}" if value_there != "" else "value: it states none"
         problem = f"gives no interval about the scene's {where}."
@@ -333,10 +342,10 @@ def _own(scene: Scene, key: str) -> Any:
     return value
 
 
-def left_out(scene: Scene, intervals: Sequence[Interval]) -> list[str]:
-    """Say of which keys the scene has a value of its own that the interval does not hold, or none."""
+def left_out(scene: Scene, intervals: Sequence[Interval]) -> dict[str, str]:
+    """Return the scene's own values, by key, that intervals do not hold; "none" where it states none."""
     ends = [at_place(scene, intervals, np.full(len(intervals), end)) for end in (0.0, 1.0)]
-    said = []
+    left = {}
     for key, *_ in intervals:
         own, low, high = (_own(one, bare(key)) for one in (scene, *ends))
         unit = measure(low)[1]
@@ -344,8 +353,8 @@ def left_out(scene: Scene, intervals: Sequence[Interval]) -> list[str]:
         if isinstance(least, str) or isinstance(most, str):
             continue  # not written as one value
         if isinstance(value, str) or not least <= value <= most:
-            said.append(f"{key}: the scene has {own or 'none'}, the answer holds for its interval alone.")
-    return said
+            left[key] = str(own or "none")
+    return left
 
 
 def at_place(scene: Scene, intervals: Sequence[Interval], place: Array) -> Scene:
@@ -383,11 +392,3 @@ def _refused(
     )
     remedy = f"{error.remedy} (Within the stated {where}.)".strip()
     return SceneError(error.problem, key=error.key, value=error.value, remedy=remedy)
-
-
-def _comparison(
-    scene: str, name: str, computed: tuple[Any, float | None], measured: Statistic, u_input: float
-) -> Comparison:
-    value, band = computed
-    u_D = float(np.hypot(measured.sd / np.sqrt(measured.n), measured.systematic))
-    return Comparison(scene, name, float(value), measured.mean, (band or 0.0) / COVERAGE, u_input, u_D)

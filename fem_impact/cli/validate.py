@@ -4,7 +4,7 @@ from contextlib import closing
 from typing import Any
 
 from fem_impact.answers.refine.level_meshes import LevelMeshes
-from fem_impact.answers.v_and_v import TERMS
+from fem_impact.answers.v_and_v import LEVEL, TERMS
 from fem_impact.answers.validate import Validation
 from fem_impact.answers.validate import validate as validated
 from fem_impact.case.case import Case
@@ -96,10 +96,12 @@ def _better(found: Validation, fidelity: str, solid: tuple[str, str]) -> list[st
     holds = f"holds {100 * part:.0f} % of u_val squared, mean of the numbers"
     if name != "model":
         return wrapped(f"Measure better: {name}. It {holds}.")
+    refuted = any(one.in_error for one in found.comparisons) or (or_none(found.p) or 1.0) < LEVEL
+    begin = "T" if refuted else "Little can be refuted: t"
     if fidelity == "modal":
-        what = f"Little can be refuted: the error told of the reduced model {holds}."
+        what = f"{begin}he error told of the reduced model {holds}."
         return [*wrapped(f"{what} Finite elements know more, in {solid[0]} of computing:"), f"  {solid[1]}"]
     return wrapped(
-        f"Little can be refuted: the band of the meshes {holds}. A smaller one: --set accuracy='5 %'; "
+        f"{begin}he band of the meshes {holds}. A smaller one: --set accuracy='5 %'; "
         "`fem-impact cost` says what it takes."
     )

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from math import hypot
+from math import hypot, inf, sqrt
 from pathlib import Path
 from typing import Protocol
 
@@ -32,6 +32,9 @@ class MeasuredTests(Protocol):
 
     def covariance(self, names: Sequence[str]) -> Array:
         """Return the covariance (k, k) of the means of named quantities, SI."""
+
+    def scatter(self, names: Sequence[str]) -> Array:
+        """Return the part (k, k) of it by which single tests differ: what is left is known from outside."""
 
 
 Estimate = tuple[Num, float | None]
@@ -84,11 +87,19 @@ class MeanTests:
 
     def covariance(self, names: Sequence[str]) -> Array:
         """Return the covariance (k, k) of means; those whose correlation is not stated have none."""
+        means = [self.means[name] for name in names]
+        return self._correlated(names, [hypot(one.sd / sqrt(one.n), one.systematic) for one in means])
+
+    def scatter(self, names: Sequence[str]) -> Array:
+        """Return the part (k, k) of it by which single tests differ."""
+        return self._correlated(names, [self.means[name].sd / sqrt(self.means[name].n) for name in names])
+
+    def _correlated(self, names: Sequence[str], u: Sequence[float]) -> Array:
+        """Return the covariance (k, k) of standard uncertainties (k,) with the stated correlations."""
         statistics = [self.means[name] for name in names]
         r = np.array([[statistic.correlation.get(name, 0.0) for name in names] for statistic in statistics])
         r = np.where(r == 0, r.T, r)  # stated in one of the two rows
         np.fill_diagonal(r, 1.0)
-        u = np.sqrt([statistic.sd**2 / statistic.n + statistic.systematic**2 for statistic in statistics])
         return np.asarray(r * np.outer(u, u))
 
 
@@ -112,13 +123,12 @@ class SingleTests:
         """Return mean, standard deviation and 95 % interval of the mean, of what follows from them too."""
         return {name: experiments.statistic(values) for name, values in self._columns().items()}
 
-    @property
-    def count(self) -> int:
-        """How many tests there are."""
-        return len(self.motion["v_n"])
-
     def covariance(self, names: Sequence[str]) -> Array:
         """Return the covariance (k, k) of means, from how they vary together between tests."""
+        return self.scatter(names)
+
+    def scatter(self, names: Sequence[str]) -> Array:
+        """Return that covariance (k, k): all of it is scatter."""
         return experiments.covariance_of_means(self._columns(), names)
 
     def _columns(self) -> dict[str, Array]:
@@ -148,6 +158,12 @@ def tests_of(scene: Scene) -> MeasuredTests | None:
 def count(tests: MeasuredTests) -> int:
     """Return the number of tests, the largest of all quantities."""
     return max(one.n for one in tests.statistics().values())
+
+
+def tests_freedom(tests: MeasuredTests, names: Sequence[str]) -> float:
+    """Return the degrees of freedom of the scatter of numbers: tests less one, infinite without scatter."""
+    statistics = tests.statistics()
+    return min((statistics[name].n for name in names if statistics[name].sd > 0), default=inf) - 1
 
 
 FAR = 0.2

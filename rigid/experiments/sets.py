@@ -14,7 +14,7 @@ from ..coefficients import coefficients
 from ..inputs import ArrayLike, DataError, Floats, floats
 from ..losses import losses
 from ..massive import solve
-from ..uncertainty import MOTION, sensitivities
+from ..uncertainty import MOTION, Errors, sensitivities
 from .statistics import Statistic, covariance_of_means, statistic
 from .tables import decimals, printed_statistics, statistic_decimals, table
 
@@ -95,8 +95,20 @@ class MeasuredSet:
         return {name: statistic(values) for name, values in self.recomputed().items()}
 
     def covariance(self, names: Sequence[str]) -> Floats:
-        """Covariance (k, k) of the means of named quantities."""
+        """Covariance (k, k) of the means of named quantities, with what all tests share: tracking."""
+        return self.scatter(names) + self._by_tracking(names)
+
+    def scatter(self, names: Sequence[str]) -> Floats:
+        """Part (k, k) of it by which single tests differ."""
         return covariance_of_means(self.recomputed(), names)
+
+    def _by_tracking(self, names: Sequence[str]) -> Floats:
+        """Part (k, k) of it by the error of tracked velocities, the same in all tests of a set."""
+        at = {name: np.asarray(np.mean(self.motion[name])) for name in MOTION}
+        slopes = sensitivities(lambda **v: {**v, **derived_columns(v, **self.body, mass=self.mass)}, at)
+        J = np.array([[float(slopes[name][by]) for by in MOTION] for name in names])
+        sd = Errors().tracking_sd * np.array([float(at[by]) for by in MOTION])
+        return np.asarray((J * sd) @ (J * sd).T)
 
 
 def derived_columns(

@@ -1,16 +1,19 @@
 """A scene beside its own tests: errors, parts of their uncertainty, the joint statement, any number."""
 
 import json
+from math import inf, sqrt
 
 import numpy as np
 import pytest
+from scipy.stats import chi2
 
 from fem_impact.answers import validate as module
 from fem_impact.answers.compare import compare, measured_value
-from fem_impact.answers.v_and_v import NOT_APART, joint
+from fem_impact.answers.v_and_v import NOT_APART, Comparison, freedom, joint, joint_or_why
 from fem_impact.answers.validate import _not_compared, interval_of, validate
 from fem_impact.cli.main import main
 from fem_impact.errors import ResultError, SceneError, UsageError
+from fem_impact.outcome.keys import Unknown
 from fem_impact.run import tests as own_tests
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.read import read_dict
@@ -77,6 +80,60 @@ def test_numbers_that_one_input_moves_together_count_once():
     assert joint(np.array([1.96]), np.eye(1))[1] == pytest.approx(0.05, abs=1e-3)
 
 
+@pytest.mark.parametrize(("tests", "others"), [(4, 0.0), (8, 0.0), (5, 0.5)])
+def test_a_model_without_error_is_rejected_as_seldom_by_few_tests_as_is_said(tests, others):
+    """With a chi-square distribution 63 % of perfect models were rejected at 5 % by four tests."""
+    rng = np.random.default_rng(5)
+    true = np.array([[1.0, 0.5, -0.4], [0.5, 2.0, 0.3], [-0.4, 0.3, 0.5]])
+    known, rejected, errors = others * true, 0, []
+    for _ in range(2000):
+        sample = rng.multivariate_normal(np.zeros(3), true, tests)
+        S = np.cov(sample.T) / tests
+        E = sample.mean(axis=0) + rng.multivariate_normal(np.zeros(3), known)
+        _, p = joint_or_why(E, S + known, S, tests - 1)
+        rejected += not isinstance(p, Unknown) and p < 0.05
+        C = S[:1, :1] + known[:1, :1]
+        dof = freedom(C, S[:1, :1], tests - 1)
+        one = Comparison("s", "V_n", E[0], 0.0, 0.0, sqrt(known[0, 0]), sqrt(S[0, 0]), dof=dof)
+        errors.append(one.in_error)
+    assert 0.02 < rejected / 2000 < 0.07 and 0.03 < np.mean(errors) < 0.065
+
+
+def test_as_many_numbers_as_tests_are_not_told_apart():
+    assert isinstance(joint_or_why(np.ones(3), np.eye(3), 0.5 * np.eye(3), 2)[1], Unknown)
+    assert joint_or_why(np.ones(3), np.eye(3), 0.0 * np.eye(3), inf)[1] == pytest.approx(chi2.sf(3, 3))
+
+
+def test_what_nothing_makes_uncertain_is_not_judged():
+    assert Comparison("s", "e", 0.4, 0.3, 0.0, 0.0, 0.0).verdict == "not judged: nothing is uncertain"
+    assert isinstance(joint_or_why(np.ones(1), np.zeros((1, 1)), np.zeros((1, 1)), inf)[1], Unknown)
+
+
+def test_published_means_count_the_error_of_tracking_as_the_study_does():
+    """u_D of e of t2 was 0.0059 where the study of validation has 0.0137."""
+    found = {one.quantity: one.u_D for one in validate(load("t2"), fidelity="rigid", samples=2).comparisons}
+    assert (found["e"], found["mu"], found["Omega"]) == pytest.approx((0.0137, 0.0217, 0.42), rel=0.01)
+
+
+def test_the_friction_of_the_scene_counts_beside_other_uncertain_inputs():
+    """Another input given made u_input of V_n smaller, and the model wrong."""
+    alone, both = (
+        {one.quantity: one.u_input for one in validate(load("t5b"), more, "rigid", samples=8).comparisons}
+        for more in (None, {"impact.angle": "+-0.5 deg"})
+    )
+    assert both["V_n"] > 0.8 * alone["V_n"]
+
+
+def test_an_interval_without_the_scenes_own_value_is_refused():
+    with pytest.raises(UsageError, match=r"does not hold the scene's own value, 0\.57"):
+        validate(load("t5b"), {"surface.friction": (0.1, 0.2)}, "rigid", samples=2)
+
+
+def test_half_a_width_in_degrees_celsius_is_a_difference():
+    _, low, high, _ = interval_of(load("t5b"), "heating.ambient", "+-5 degC")
+    assert high - low == pytest.approx(10.0)
+
+
 def test_single_tests_bring_their_own_correlation(tmp_path):
     rows = ["v_n_m_per_s,v_t_m_per_s,V_n_m_per_s,V_t_m_per_s,Omega_rad_per_s"]
     rows += [f"-1,-9,{0.3 + a},{-8.7 + 0.3 * a + b},{20 * a}" for a, b in ((0, 0), (0.1, 0.02), (0.05, 0.05))]
@@ -99,7 +156,7 @@ def test_inputs_are_varied_in_the_fidelity_asked_for_and_a_number_that_it_lacks_
     found = validate(scene, UNCERTAIN, "modal", samples=2, inputs_by="rigid")
     assert (found.varied, found.runs) == ("rigid", 9)
     assert "varied in the rigid model, which does not know it" in found.unknown["E_vib_over_E_0"]
-    with pytest.raises(UsageError, match="is no fidelity"):
+    with pytest.raises(UsageError, match="is not a fidelity"):
         validate(scene, UNCERTAIN, inputs_by="coarse")
 
 
@@ -124,7 +181,7 @@ def test_velocities_are_evidence_where_neither_e_nor_mu_is_measured(tmp_path):
     means = "quantity,mean,sd,n\nV_t_m_per_s,-8.5,0.2,4\nOmega_rad_per_s,20,5,4\n"
     assert validate(scene_with(tmp_path, means), UNCERTAIN, "rigid", samples=2).joined == ("V_t", "Omega")
     found = validate(scene_with(tmp_path, means + "mu,0.3,0.04,4\n"), UNCERTAIN, "rigid", samples=2)
-    assert found.joined == ("Omega", "mu")
+    assert found.joined == ("V_t", "Omega", "mu")  # V_n follows, and then e: three are three
 
 
 def test_a_tangential_ratio_is_that_of_the_velocities_with_their_band(tmp_path):
@@ -175,12 +232,15 @@ def test_an_interval_with_impossible_materials_is_refused_before_any_run_and_nam
 
 def test_the_command_says_first_that_the_reduced_model_refutes_little(tmp_path, capsys):
     file = tmp_path / "scene.toml"
-    scene = scene_with(tmp_path, "quantity,mean,sd,n,systematic\nOmega_rad_per_s,1,0.1,4,0\n")
+    own = simulate(scene_with(tmp_path, MU), "modal").motion.Omega
+    scene = scene_with(tmp_path, f"quantity,mean,sd,n,systematic\nOmega_rad_per_s,{own:.4g},0.1,4,0\n")
     file.write_text(to_toml(scene, tmp_path))
     line = ["validate", str(file), "--samples", "2", "--quiet", "--uncertain", "surface.friction=+-1%"]
     assert main(line) == 0
     said = capsys.readouterr().out
     assert said.startswith("Little can be refuted: the error told of the reduced model holds 100 %")
+    (tmp_path / "my_means.csv").write_text("quantity,mean,sd,n,systematic\nOmega_rad_per_s,-900,0.1,4,0\n")
+    assert main(line) == 0 and capsys.readouterr().out.startswith("The error told of the reduced model")
     assert "s of computing:" in " ".join(said.split())
     assert f"\n  fem-impact validate {file} --uncertain surface.friction=+-1% --fidelity solid\n" in said
 
@@ -274,7 +334,7 @@ def test_an_error_that_a_scene_wants_of_meshes_refuses_no_model_without_them(tmp
 @pytest.mark.parametrize(
     ("asked", "words"),
     [
-        ({"uncertain": {}}, "names no interval"),
+        ({"uncertain": {}}, "no input of the scene is uncertain"),
         *(({"uncertain": UNCERTAIN, "samples": samples}, "no power of two") for samples in (3, 1, 0)),
     ],
 )

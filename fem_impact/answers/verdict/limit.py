@@ -13,7 +13,7 @@ from time import perf_counter
 import numpy as np
 
 from fem_impact.answers.refine.forecast import budget_of
-from fem_impact.answers.validate import FRICTION, Ends, Interval, at_place, interval_of, left_out
+from fem_impact.answers.validate import Ends, Interval, at_place, friction_of, interval_of, left_out
 from fem_impact.answers.verdict.assess import BUDGET, LACKING, check_means
 from fem_impact.answers.verdict.criteria import Bound, Criterion, criterion_of
 from fem_impact.answers.verdict.levels import (
@@ -44,6 +44,7 @@ ENDS = (
     "No reduced model tells the number here: finite elements ran at the middle of the intervals and at all "
     "their ends. Between them the number counts as being higher by as much as these differ."
 )
+LEFT_OUT = "{}: the scene has {}, the answer holds for its interval alone."
 LEAST = ", where the number is least: above {} there it does not stay below the limit at all places"
 Place = tuple[float, ...]
 """A place in the intervals, each from 0 to 1."""
@@ -79,10 +80,12 @@ def judge(
     check_means(fidelity, budget_s)
     scene = scene.first_impact
     criterion.require(scene)
-    intervals = [interval_of(scene, *one) for one in {**_over_friction(scene), **(uncertain or {})}.items()]
+    intervals = [interval_of(scene, *one) for one in {**friction_of(scene), **(uncertain or {})}.items()]
     scenes, lacking = _places(scene, intervals), not_reduced(Case(scene).bodies)
     reduced = not lacking or fidelity == "modal"
-    steps, notes = list[str](), [*left_out(scene, intervals), *([] if reduced else [LACKING.format(lacking)])]
+    steps = list[str]()
+    notes = [LEFT_OUT.format(*one) for one in left_out(scene, intervals).items()]
+    notes += [] if reduced else [LACKING.format(lacking)]
     bounds = _scanned(scenes, criterion, tell) if reduced else {}
     known = {place: one for place, one in bounds.items() if isinstance(one, Bound)}
     why = next((one.reason for one in bounds.values() if isinstance(one, Unknown)), "")
@@ -151,12 +154,6 @@ def _values(intervals: Sequence[Interval], place: Place) -> dict[str, str]:
         key: f"{low + share * (high - low):.4g} {unit}".rstrip()
         for (key, low, high, unit), share in zip(intervals, place, strict=True)
     }
-
-
-def _over_friction(scene: Scene) -> dict[str, Ends]:
-    """Return the interval of friction that a scene states, by its key; none where it states none."""
-    low, high = scene.surface.friction_low, scene.surface.friction_high
-    return {FRICTION: (low, high)} if low < high else {}
 
 
 def _places(scene: Scene, intervals: Sequence[Interval]) -> dict[Place, Scene]:

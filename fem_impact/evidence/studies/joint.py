@@ -4,7 +4,7 @@ One input, such as friction, moves e, mu and Omega together, so that numbers whi
 disagree jointly. The distance of Mahalanobis D2 = E' C^-1 E of the three errors E = S - D counts that. By
 ASME V&V 20 the covariance C is the sum of those of mesh, inputs and measurement; without an error of the
 model D2 follows a chi-square distribution of three degrees of freedom, as V&V 10 takes it for several
-quantities at once.
+quantities at once; Hotelling's as far as the scatter of few tests makes C.
 
 Finite elements give the errors and their standard uncertainties, by the sheet ``validation`` of the study of
 that name (a copy stands in ``data/validation.csv``); the reduced model, over the same sample of all inputs,
@@ -19,7 +19,7 @@ import numpy as np
 
 from fem_impact import Outcome, load, replace_all
 from fem_impact.answers.report import Request, Sheet, StudyReport
-from fem_impact.answers.v_and_v import COVERAGE, joint
+from fem_impact.answers.v_and_v import COVERAGE, LEVEL, freedom, joint
 from fem_impact.arrays import Array
 from fem_impact.evidence.data import read_table
 from fem_impact.evidence.studies.inputs import sample_jobs
@@ -32,8 +32,6 @@ from rigid.experiments import measured_set
 
 SIZE, QUICK_SIZE = 64, 8  # runs of a set's sample
 FEWEST = 6  # finished runs that tell how changes belong together
-LEVEL = 0.05
-"""Probability of a distance so large without an error of the model, below which a set is rejected."""
 AT = [NAMES.index(name) for name in SHOWN]
 HEAD = ("set", *SHOWN, "D2", "p", "jointly", "alone", *(f"share of {name}" for name in SHOWN))
 
@@ -47,12 +45,14 @@ class JointError:
     set : str
     E, u : (k,) errors S - D, and their standard uncertainties u_val
     C : (k, k) covariance of E
+    dof : its degrees of freedom: the tests of a set are few
     """
 
     set: str
     E: Array
     u: Array
     C: Array
+    dof: float
 
     @property
     def distance(self) -> float:
@@ -62,7 +62,7 @@ class JointError:
     @property
     def p(self) -> float:
         """Probability of a distance as large or larger without an error of the model."""
-        return joint(self.E, self.C)[1]
+        return joint(self.E, self.C, self.dof)[1]
 
     @property
     def shares(self) -> Array:
@@ -86,8 +86,11 @@ def joint_error(name: str, rows: Sequence[dict[str, float]], by_inputs: Array, t
     """
     of = {key: np.array([row[key] for row in rows]) for key in rows[0]}
     C = np.diag(of["u_num"] ** 2)
-    C = C + _scaled(by_inputs.T @ by_inputs, of["u_input"]) + _scaled(np.cov(tests.T), of["u_D"])
-    return JointError(name, of["S"] - of["D"], np.sqrt(np.diag(C)), C)
+    by_tests = np.cov(tests.T)
+    C = C + _scaled(by_inputs.T @ by_inputs, of["u_input"]) + _scaled(by_tests, of["u_D"])
+    scatter = np.minimum(of["u_D"], np.sqrt(np.diag(by_tests) / len(tests)))  # u_D has that of tracking, too
+    dof = freedom(C, _scaled(by_tests, scatter), len(tests) - 1)
+    return JointError(name, of["S"] - of["D"], np.sqrt(np.diag(C)), C, dof)
 
 
 def _scaled(covariance: Array, u: Array) -> Array:

@@ -5,22 +5,22 @@ sphere is a scene. Nothing is fitted: strengths are those of the library, fricti
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from math import cos, exp, radians, sin, sqrt
+from dataclasses import dataclass, replace
+from math import cos, exp, inf, radians, sin, sqrt
 from typing import Any
 
 import numpy as np
+from scipy.stats import chi2, f
 
 from fem_impact import Scene, Unknown
 from fem_impact.answers.refine.extrapolate import level_limits
 from fem_impact.answers.refine.work import Levels, LevelsJob
 from fem_impact.answers.report import Request, Sheet, StudyReport
-from fem_impact.answers.v_and_v import COVERAGE, Comparison, joint
+from fem_impact.answers.v_and_v import COVERAGE, LEVEL, Comparison, joint
 from fem_impact.arrays import Array
 from fem_impact.evidence.data import read_table
 from fem_impact.evidence.problems import taylor_bar
 from fem_impact.evidence.problems.problem import defaults
-from fem_impact.evidence.studies.joint import LEVEL
 from fem_impact.evidence.studies.report_parts import comparison_table, error_panel, rests_on
 from fem_impact.figures.panels import Picture
 from fem_impact.jobs.job import Failure
@@ -131,16 +131,29 @@ def _asked(points: dict[str, Any], request: Request) -> dict[str, Any]:
 
 @dataclass(frozen=True, slots=True)
 class OthersSeries:
-    """Comparisons of one series (k of them) and the covariance (k, k) of their errors."""
+    """Comparisons of one series (k of them) and the covariance (k, k) of their errors.
+
+    ``dofs`` are the degrees of freedom of the scatter of each number's tests, infinite where that is known.
+    """
 
     name: str
     comparisons: tuple[Comparison, ...]
     C: Array
+    dofs: tuple[float, ...]
 
     @property
     def together(self) -> tuple[float, float]:
-        """Return distance squared of all errors, and the probability of a larger one without error."""
-        return joint(np.array([comparison.E for comparison in self.comparisons]), self.C)
+        """Return distance squared of all errors, and the probability of a larger one without error.
+
+        Lengths have one scatter and feet another, each estimated from few tests: their degrees of freedom are
+        added up as by Satterthwaite 1946 (doi:10.2307/3002019), of the parts that they make of C.
+        """
+        E = np.array([comparison.E for comparison in self.comparisons])
+        k, distance = len(E), joint(E, self.C)[0]
+        parts = np.diag(np.linalg.inv(self.C)) * [one.u_D**2 for one in self.comparisons]
+        dofs = np.array(self.dofs)
+        size = sum(float(parts[dofs == dof].sum()) ** 2 / dof for dof in {*self.dofs})
+        return distance, float(f.sf(distance / k, k, k**2 / size) if size else chi2.sf(distance, k))
 
 
 def compared_rods(tests: Sequence[Rod]) -> OthersSeries:
@@ -148,9 +161,9 @@ def compared_rods(tests: Sequence[Rod]) -> OthersSeries:
 
     The scatter of single tests is that about their own curve over rho v^2.
     """
-    lengths, scatter, comparisons, moved = {}, {}, [], []
+    lengths, comparisons, moved, dofs = {}, [], [], []
     for name, column in (("final", 0), ("foot", 1)):
-        scatter[name] = _scatter(tests, name)
+        scatter, dof = _scatter(tests, name)
         for at, rod in enumerate(tests):
             measured = getattr(rod, name)
             if np.isnan(measured):
@@ -162,21 +175,27 @@ def compared_rods(tests: Sequence[Rod]) -> OthersSeries:
             part = ("length", "foot")[column]
             label = f"{part} at {rod.speed:.0f} m/s, L/D {rod.length / rod.diameter:.1f}"
             u_num, moves = abs(S - coarse) / COVERAGE, change / sqrt(3)  # uniform from the nominal value
-            comparisons.append(Comparison(rod.series, label, S, measured, u_num, abs(moves), scatter[name]))
+            one = Comparison(rod.series, label, S, measured, u_num, abs(moves), scatter)
+            comparisons.append(replace(one, dof=dof * (one.u_val / scatter) ** 4 if scatter else inf))
             moved.append(moves)
+            dofs.append(dof if scatter else inf)
     C = np.outer(moved, moved) + np.diag(
         [comparison.u_num**2 + comparison.u_D**2 for comparison in comparisons]
     )
-    return OthersSeries(tests[0].series, tuple(comparisons), C)
+    return OthersSeries(tests[0].series, tuple(comparisons), C, tuple(dofs))
 
 
-def _scatter(tests: Sequence[Rod], name: str) -> float:
-    """Return the standard deviation of tests about 1 + a x + b x^2, x = rho v^2 over the yield stress."""
+def _scatter(tests: Sequence[Rod], name: str) -> tuple[float, int]:
+    """Return the standard deviation of tests about 1 + a x + b x^2 and its degrees of freedom.
+
+    x is rho v^2 over the yield stress.
+    """
     x, y = np.array([(rod.drive, getattr(rod, name)) for rod in tests]).T
     x, y = x[~np.isnan(y)], y[~np.isnan(y)]
     powers = np.column_stack([x, x**2][: max(1, min(2, len(x) - 1))])
     left = y - 1 - powers @ np.linalg.lstsq(powers, y - 1)[0]
-    return float(sqrt(left @ left / max(1, len(x) - powers.shape[1])))
+    dof = max(1, len(x) - powers.shape[1])
+    return float(sqrt(left @ left / dof)), dof
 
 
 def compared_spheres(request: Request, results: Results) -> OthersSeries | None:
@@ -198,9 +217,8 @@ def compared_spheres(request: Request, results: Results) -> OthersSeries | None:
         comparisons.append(Comparison(KHARAZ, name, S, measured, u_num, 0.0, READ[quantity]))
     if not comparisons:
         return None
-    return OthersSeries(
-        KHARAZ, tuple(comparisons), np.diag([comparison.u_val**2 for comparison in comparisons])
-    )
+    C = np.diag([comparison.u_val**2 for comparison in comparisons])
+    return OthersSeries(KHARAZ, tuple(comparisons), C, (inf,) * len(comparisons))
 
 
 def conclude(request: Request, results: Results) -> StudyReport:

@@ -13,6 +13,7 @@ import numpy as np
 from fem_impact import Outcome, RunOptions, Scene, known, load, replace_all, simulate
 from fem_impact.answers.compare import MEASURED
 from fem_impact.answers.report import Request, Sheet, StudyReport
+from fem_impact.answers.v_and_v import LEVEL
 from fem_impact.evidence.studies import joint
 from fem_impact.evidence.studies.report_parts import asked_sets, error_panel, rests_on
 from fem_impact.evidence.studies.validated import SHOWN
@@ -77,7 +78,7 @@ def conclude(request: Request, results: JobResults) -> StudyReport:
                 for at in range(len(SHOWN))
                 for number in (error.E[at] + D[at], error.E[at], error.u[at])
             ),
-            *(error.distance, error.p, "rejected" if error.p < joint.LEVEL else "agrees"),
+            *(error.distance, error.p, "rejected" if error.p < LEVEL else "agrees"),
         )
         for name, of_inputs in errors.items()
         for D in [[row["D"] for row in joint.stored_rows()[name]]]
@@ -131,7 +132,7 @@ def _sentences(errors: Mapping[str, Mapping[str, joint.JointError]]) -> list[str
         of = [error[inputs] for error in errors.values() if inputs in error]
         if not of:
             continue
-        rejected = [error.set for error in of if error.p < joint.LEVEL]
+        rejected = [error.set for error in of if error.p < LEVEL]
         away = np.sqrt(np.mean([(error.E / error.u) ** 2 for error in of], axis=0))
         parts = ", ".join(f"{name} {far:.2g}" for name, far in zip(SHOWN, away, strict=True))
         sentences.append(

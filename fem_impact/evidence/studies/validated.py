@@ -5,24 +5,22 @@ far the inputs reach towards a measurement that the model misses.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations_with_replacement
-from math import hypot, sqrt
 
 import numpy as np
 from scipy.stats import qmc
 
 from fem_impact import Outcome, known, load
 from fem_impact.answers.compare import MEASURED, verdict
-from fem_impact.answers.v_and_v import COVERAGE, Comparison
+from fem_impact.answers.v_and_v import COVERAGE, Comparison, compared_with
 from fem_impact.arrays import Array
 from fem_impact.errors import RunError
 from fem_impact.evidence.studies.inputs import UNCERTAIN_INPUTS, sample_values
 from fem_impact.jobs.job import Failure
 from fem_impact.outcome.keys import or_none
-from rigid import Errors
 from rigid.experiments import MeasuredSet, derived_columns, measured_set
-from rigid.uncertainty import MOTION, sensitivities
+from rigid.uncertainty import MOTION
 
 SPARE = 1.3  # runs over coefficients that a surface of second order needs
 
@@ -144,17 +142,12 @@ def compared(
     bands : half-widths of their bands
     u_input : (outputs,) float64, root mean square changes over the uncertain inputs
     """
-    statistics, tracking = measured.statistics(), tracking_uncertainty(measured)
+    statistics = measured.statistics()
     return tuple(
-        Comparison(
-            measured.id,
-            quantity.name,
-            float(S[i]),
-            statistics[name].mean,
-            bands[i] / COVERAGE,
-            float(u_input[i]),
-            hypot(statistics[name].sd / sqrt(statistics[name].n), tracking[name]),
-            verdict(float(S[i]), bands[i], statistics[name]),
+        replace(
+            compared_with(measured, name, float(S[i]), bands[i] / COVERAGE, float(u_input[i]), measured.id),
+            quantity=quantity.name,
+            scatter=verdict(float(S[i]), bands[i], statistics[name]),
         )
         for i, (quantity, name) in enumerate(zip(MEASURED, NAMES, strict=True))
     )
@@ -186,14 +179,6 @@ def outputs(run: Outcome, measured: MeasuredSet) -> list[float]:
     body = {**measured.body, "k2": m.k_squared}
     derived: dict[str, Array] = {**motion, **derived_columns(motion, **body, mass=measured.mass)}
     return [*(float(derived[name]) for name in NAMES), known(run.energy.vibration)]
-
-
-def tracking_uncertainty(measured: MeasuredSet) -> dict[str, float]:
-    """Return the standard uncertainty of the measured means, by name, by the error of tracked velocities."""
-    at = {name: np.asarray(np.mean(measured.motion[name])) for name in MOTION}
-    slopes = sensitivities(lambda **v: {**v, **derived_columns(v, **measured.body, mass=measured.mass)}, at)
-    sd = {name: Errors().tracking_sd * value for name, value in at.items()}
-    return {q: hypot(*(float(by[name] * sd[name]) for name in by)) for q, by in slopes.items()}
 
 
 def validated_set(

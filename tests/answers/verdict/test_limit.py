@@ -175,7 +175,8 @@ def test_a_limit_that_is_passed_at_the_mildest_place_is_told_by_the_number_there
 
 
 @pytest.mark.parametrize(
-    ("mildest", "missing"), [(None, "at all 2 places: finite elements have it at 1 "), (30.0, "upper end lies above")]
+    ("mildest", "missing"),
+    [(None, "at all 2 places: finite elements have it at 1 "), (30.0, "upper end lies above")],
 )
 def test_what_lacks_at_the_mildest_place_is_said(monkeypatch, scene, mildest, missing):
     solids(monkeypatch, {60: 50.0, 20: mildest})

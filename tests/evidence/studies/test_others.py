@@ -4,8 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.stats import chi2, f
 
 from fem_impact.answers.report import Request
+from fem_impact.answers.v_and_v import Comparison
 from fem_impact.evidence.studies import others
 from fem_impact.evidence.studies.others import Rod
 
@@ -38,4 +40,14 @@ def test_one_flow_stress_moves_all_numbers_of_a_series(monkeypatch):
 def test_the_scatter_of_tests_is_that_about_their_curve():
     rods = [replace(ROD, speed=100.0, final=0.9 + change) for change in (-0.01, 0.01, -0.01, 0.01)]
     rods.append(replace(ROD, speed=200.0, final=0.7))
-    assert others._scatter(rods, "final") == pytest.approx((4 * 0.01**2 / 3) ** 0.5)
+    assert others._scatter(rods, "final") == pytest.approx(((4 * 0.01**2 / 3) ** 0.5, 3))
+
+
+def test_the_scatter_of_two_tests_about_one_parameter_is_hardly_known():
+    """Two feet of wilkins-guinan-1973 made p = 6e-17 of a distance that a scatter so badly known allows."""
+    ones = tuple(Comparison("s", f"foot {at}", 1.0, 0.0, 0.0, 0.0, 0.1, dof=1.0) for at in range(2))
+    badly, well = (
+        others.OthersSeries("s", ones, 0.01 * np.eye(2), (dof, dof)).together for dof in (1.0, np.inf)
+    )
+    assert badly == pytest.approx((200.0, f.sf(100.0, 2, 1)))
+    assert well == pytest.approx((200.0, chi2.sf(200.0, 2)))
