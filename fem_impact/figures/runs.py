@@ -376,9 +376,13 @@ def comparison_picture(rows: Sequence[Mapping[str, Any]]) -> Picture:
     return Picture("comparison", caption, tuple(panels), 4, numbers)
 
 
+def quantity_title(row: Mapping[str, Any]) -> str:
+    """Return the quantity of a row of ``comparison`` with its unit."""
+    unit = "" if row["unit"] in ("", "-") else f", {row['unit']}"
+    return f"{row['quantity']}{unit}"
+
+
 def _compared(rows: Sequence[Mapping[str, Any]], sets: list[str]) -> Panel:
-    unit = rows[0]["unit"]
-    title = rows[0]["quantity"] + (f", {unit}" if unit not in ("", "-") else "")
     at = np.array([sets.index(row["set"]) for row in rows])
     mean, sd, low, high, model, band = (
         np.array([np.nan if row[name] is None else row[name] for row in rows], float)
@@ -392,4 +396,4 @@ def _compared(rows: Sequence[Mapping[str, Any]], sets: list[str]) -> Panel:
         Series("measured mean", mean, above, "points", "ink"),
         Series("model, two-mesh band", model, at + 0.16, "diamonds", "vermilion", band),
     )
-    return Panel(title, "", "", series, rows=tuple(sets))
+    return Panel(quantity_title(rows[0]), "", "", series, rows=tuple(sets))

@@ -172,12 +172,8 @@ class FilmBackground:
         origin(drawn, layout, [made])
         fade = ", fading to × 1 at the contact" if motion.peak > 1.0 else ""
         _caption(drawn, layout, layout.rod, f"whole projectile, deformation × {motion.peak:g}{fade}")
-        _caption(
-            drawn,
-            layout,
-            layout.close,
-            CLOSE_UP.format(CLOSE_WIDTH * motion.span * 1e3) if waves is None else ALONG,
-        )
+        beside = CLOSE_UP.format(CLOSE_WIDTH * motion.span * 1e3) if waves is None else ALONG
+        _caption(drawn, layout, layout.close, beside)
         colour_bar(drawn, layout, layout.rod, motion.field, motion.far)
         if waves is None:
             colour_bar(drawn, layout, layout.close, motion.field, motion.near)

@@ -86,12 +86,6 @@ def rigid_motion(points: np.ndarray, moved: np.ndarray, weights: np.ndarray) -> 
     return carried
 
 
-def magnified(rigid: np.ndarray, moved: np.ndarray, factor: np.ndarray) -> np.ndarray:
-    """Return ``(n, 3) m``: the rigid motion as it is, the deformation times ``(n,)`` factors."""
-    shown: np.ndarray = rigid + factor[:, None] * (moved - rigid)
-    return shown
-
-
 def nice_factor(limit: float) -> float:
     """Return the largest of 1, 2, 5, 10, 20, 50, ... not above ``limit``, and 1 at least."""
     if not np.isfinite(limit) or limit <= 1.0:
@@ -188,7 +182,7 @@ class FilmData:
         true = self.movement.points(time)
         shown, rod = true.copy(), self.rod_nodes
         rigid = rigid_motion(self.fields.points[rod], true[rod], self.weights[rod])
-        shown[rod] = magnified(rigid, true[rod], self.factor[rod])
+        shown[rod] = rigid + self.factor[rod][:, None] * (true[rod] - rigid)
         return true, shown
 
 
@@ -217,7 +211,7 @@ def prepare(movement: Movement, field: str, times: Sequence[float] | np.ndarray)
     span = 2.0 * float(fields.points[rod, 1].max())
     distance = np.linalg.norm(fields.points - lowest, axis=1) / span
     looked = np.asarray(times)[np.unique(np.linspace(0, len(times) - 1, LOOKED).round()).astype(int)]
-    fields, away, largest = movement.fields, distance[rod] > 2.0, 0.0
+    away, largest = distance[rod] > 2.0, 0.0
     for time in looked:
         moved = movement.points(time)
         furthest = float(np.abs(moved - fields.points).max())

@@ -222,20 +222,25 @@ def data_link(content: bytes, name: str, label: str) -> str:
 
 def image(path: Path, alt: str) -> Markup:
     """Return a picture embedded."""
-    data = base64.b64encode(_bytes(path)).decode("ascii")
-    return Markup(f'<figure><img src="data:{TYPES[path.suffix]};base64,{data}" alt="{escape(alt)}"></figure>')
+    return Markup(f'<figure><img src="{_embedded(path)}" alt="{escape(alt)}"></figure>')
 
 
-def film(folder: Path, caption: str) -> Markup:
-    """Return the run's film embedded, nothing when there is none."""
-    path = next((folder / name for name in FILMS if (folder / name).is_file()), None)
-    if path is None:
-        return Markup("")
-    data = f"data:{TYPES[path.suffix]};base64,{base64.b64encode(_bytes(path)).decode('ascii')}"
-    shown = f'<img src="{data}" alt="{escape(caption)}">'
+def film_of(folder: Path) -> Path | None:
+    """Return the film of a run in a format that a page can show, None where there is none."""
+    return next((folder / name for name in FILMS if (folder / name).is_file()), None)
+
+
+def film(path: Path, caption: str) -> Markup:
+    """Return a film embedded."""
+    data, words = _embedded(path), escape(caption)
+    shown = f'<img src="{data}" alt="{words}">'
     if path.suffix == ".mp4":
-        shown = f'<video src="{data}" controls loop muted playsinline aria-label="{escape(caption)}"></video>'
-    return Markup(f'<figure class="film">{shown}<figcaption>{escape(caption)}</figcaption></figure>')
+        shown = f'<video src="{data}" controls loop muted playsinline aria-label="{words}"></video>'
+    return Markup(f'<figure class="film">{shown}<figcaption>{words}</figcaption></figure>')
+
+
+def _embedded(path: Path) -> str:
+    return f"data:{TYPES[path.suffix]};base64,{base64.b64encode(_bytes(path)).decode('ascii')}"
 
 
 def _bytes(path: Path) -> bytes:

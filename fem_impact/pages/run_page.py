@@ -167,7 +167,7 @@ def run_page(folder: Path) -> str:
         sections.unknown([outcome]),
         sections.validity([outcome]),
         html.section("Cost", html.details("Time, memory and elements", costs)),
-        html.sources([*outcome.provenance.effects, *(["film"] if sections.has_film(folder) else [])]),
+        html.sources([*outcome.provenance.effects, *(["film"] if html.film_of(folder) else [])]),
         html.section("Record", _scene_text(folder), sections.all_keys(outcome)),
     )
     origin = outcome.provenance
@@ -260,18 +260,15 @@ def _cards(outcome: Outcome, rigid: Outcome | None, friction: FrictionSpread | N
 
 
 def _vibration_card(outcome: Outcome, rigid: Outcome | None) -> html.Markup:
-    energy = outcome.energy
-    share, floor = outcome.told("E_vib_over_E_0", 100.0), or_none(energy.vibration_floor)
-    notes = (
-        *(["rigid theory: none"] if rigid else []),
-        *([] if floor is None else [f"less than {percent(floor)} is not resolved"]),
-    )
-    note = ". ".join(notes)
+    energy, name = outcome.energy, "vibration, of E₀"
     if isinstance(energy.vibration, Unknown):
-        return sections.card("vibration, of E₀", DASH, energy.vibration.reason)
-    if or_none(energy.below_floor):
-        return sections.card("vibration, of E₀", "below floor", note)
-    return sections.card("vibration, of E₀", f"{html.signed(share)} %", note)
+        return sections.card(name, DASH, energy.vibration.reason)
+    floor = or_none(energy.vibration_floor)
+    theory = "rigid theory: none" if rigid else ""
+    resolved = "" if floor is None else f"less than {percent(floor)} is not resolved"
+    share = f"{html.signed(outcome.told('E_vib_over_E_0', 100.0))} %"
+    shown = "below floor" if or_none(energy.below_floor) else share
+    return sections.card(name, shown, ". ".join(filter(None, (theory, resolved))))
 
 
 def _arms(outcome: Outcome) -> html.Markup:

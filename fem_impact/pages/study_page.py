@@ -217,7 +217,7 @@ def study_page(folder: Path, again: bool = True) -> str:
     """
     study, since = read_study(folder), None if again else folder / "study.json"
     rows = list(study.rows)
-    filmed = any(sections.has_film(folder / row.provenance.scene_id) for row in rows)
+    filmed = any(html.film_of(folder / row.provenance.scene_id) for row in rows)
     body = (
         findings_section(study, lead=sections.comparison_part(study.comparison, study.folder, since)),
         _cards(study),
@@ -227,9 +227,7 @@ def study_page(folder: Path, again: bool = True) -> str:
         html.section("Over time, run by run", *(_run(row, folder) for row in rows)),
         sections.unknown(rows),
         sections.validity(rows),
-        html.section(
-            "Cost", html.details("Time, memory and elements", _costs(rows)) if rows else html.Markup("")
-        ),
+        html.section("Cost", *([html.details("Time, memory and elements", _costs(rows))] if rows else [])),
         html.sources([*study.sources, *(["film"] if filmed else [])]),
     )
     return html.page(study.title, "Study", "", _footer(study), body)
@@ -266,7 +264,7 @@ def _run(row: Outcome, folder: Path) -> html.Markup:
     e, mu = (sections.estimated(row, KEY_TABLE[name]) for name in ("e_paper", "mu"))
     title = f"{row.provenance.scene_id}: {row.provenance.scene_title} (e = {e}, µ = {mu})"
     link = ""  # to the film: those of all runs would make this page too large
-    if sections.has_film(place) and (place / "report.html").is_file():
+    if html.film_of(place) and (place / "report.html").is_file():
         link = f'<p><a href="{escape(place.name)}/report.html">The film of its waves</a></p>'
     return html.details(title, sections.history_figures(row, place, again=False), html.Markup(link))
 

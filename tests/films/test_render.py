@@ -21,7 +21,6 @@ from fem_impact.films.motion import (
     axis_of,
     fibres,
     hex_volumes,
-    magnified,
     nice_factor,
     nodal_volumes,
     prepare,
@@ -69,12 +68,6 @@ def test_best_rigid_motion_leaves_no_drift_and_no_spin():
     arm, rest = rigid - np.average(rigid, axis=0, weights=WEIGHTS), moved - rigid
     assert np.allclose(WEIGHTS @ rest, 0.0, atol=1e-12)
     assert WEIGHTS @ (arm[:, 0] * rest[:, 2] - arm[:, 2] * rest[:, 0]) == pytest.approx(0.0, abs=1e-12)
-
-
-def test_magnification_leaves_rigid_motion_alone():
-    moved = turned(POINTS, 0.2) + np.array([0.1, 0.0, 0.0])
-    rigid = rigid_motion(POINTS, moved, WEIGHTS)
-    assert np.allclose(magnified(rigid, moved, np.full(len(POINTS), 50.0)), moved)
 
 
 @given(st.floats(-2.0, 2.0), st.floats(-1e-3, 1e-3))
