@@ -235,16 +235,9 @@ ARROW = 70.0
 
 @dataclass(frozen=True, slots=True)
 class Overlay:
-    """Marks over the view of the whole rod.
+    """Marks over the view of the whole rod, at its place in the frame.
 
-    Parameters
-    ----------
-    place : Rectangle
-        Of the view in the frame, px.
-    view : RodPicture
-    motion : FilmData
-    fastest : float, m/s
-        Speed of the centre at the start, whose arrow is `ARROW` long.
+    ``fastest`` is the speed of the centre at the start, m/s, whose arrow is `ARROW` long.
     """
 
     place: Rectangle

@@ -97,14 +97,9 @@ FILMS = ("film.mp4", "film.webp", "film.gif")
 
 
 def page(title: str, kind: str, lead: str, footer: str, body: Iterable[Markup]) -> str:
-    """Return the whole document; it refers to nothing outside itself.
+    """Return the whole document around its sections; it refers to nothing outside itself.
 
-    Parameters
-    ----------
-    title, kind, lead, footer : str
-        Plain texts; escaped here.
-    body : iterable of Markup
-        The sections.
+    ``title``, ``kind``, ``lead`` and ``footer`` are plain texts, escaped here.
     """
     content = join(body).text
     policy, scripts = _scripts() if 'class="live"' in content else ("", "")
@@ -149,13 +144,7 @@ def _scripts() -> tuple[str, str]:
 
 
 def sources(named: Iterable[str]) -> Markup:
-    """Return the section of papers behind what was used.
-
-    Parameters
-    ----------
-    named : iterable of str
-        Names of effects, and "film" where there is one.
-    """
+    """Return the section of papers behind what was used: effects by name, and "film" where there is one."""
     papers = bullets(one.text for one in behind(["figures", *named]))
     return section("Sources", details("Papers behind what was used", papers))
 

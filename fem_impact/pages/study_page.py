@@ -66,21 +66,13 @@ STUDY_SCHEMA = _record(
 class StudyRecord:
     """What a study published (`fem_impact.answers.report.StudyReport`), as its page needs it.
 
-    Parameters
+    Attributes
     ----------
-    folder : Path
-        Directory of the study, with its figures and CSV tables.
-    study, title, command : str
-    findings, assumptions, sources : tuple of str
-    conclusions, figures, sheets : tuple of mappings
-    runs : int
-        Jobs of the study.
-    failures : tuple of mappings
-        Runs that gave no record: ``scene_id`` and ``error``.
-    rows : tuple of Outcome
-        Runs that the page shows one by one.
-    comparison : tuple of mappings
-        Rows with the keys of `fem_impact.tables.table.COMPARISON`.
+    folder : directory of the study, with its figures and CSV tables
+    runs : number of its jobs
+    failures : runs that gave no record: ``scene_id`` and ``error``
+    rows : runs that the page shows one by one
+    comparison : rows with the keys of `fem_impact.tables.table.COMPARISON`
     """
 
     folder: Path

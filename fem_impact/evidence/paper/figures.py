@@ -26,13 +26,7 @@ Pairs = dict[tuple[str, str], experiments.Correlation]
 
 
 def figure_4(out: Path) -> Drawn:
-    """Draw e, mu and e_m of Table 2 against each other, recomputed and as printed.
-
-    Parameters
-    ----------
-    out : Path
-        Directory for picture and data.
-    """
+    """Draw e, mu and e_m of Table 2 against each other, recomputed and as printed."""
     picture = out / "figure-4.png"
     s = experiments.measured_set("t2")
     recomputed = {name: s.recomputed()[name] for name in NAMES}
