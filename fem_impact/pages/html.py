@@ -17,6 +17,7 @@ from fem_impact.errors import MissingLibraryError, ResultError
 from fem_impact.figures.live import live
 from fem_impact.figures.panels import Picture
 from fem_impact.figures.still import draw
+from fem_impact.files.atomic import make_directory
 from fem_impact.pages.bibliography import behind
 from fem_impact.tables.table import Table
 from fem_impact.tables.text import markup
@@ -158,10 +159,16 @@ def figure(picture: Picture, figures: Path, since: Path | None = None) -> Markup
 
     Files newer than ``since``, the file of the data shown, are not written again.
     """
-    drawn = figures / f"{picture.name}.svg"
+    drawn = make_directory(figures) / f"{picture.name}.svg"
     if not since or not drawn.is_file() or drawn.stat().st_mtime <= since.stat().st_mtime:
         draw(picture, drawn)
     return live_figure(live(picture))
+
+
+def figure_with_data(picture: Picture, figures: Path, since: Path | None) -> Markup:
+    """Return a picture as `figure` does, and the link to its numbers."""
+    shown = figure(picture, figures, since)
+    return join([shown, download(figures / f"{picture.name}.csv", "its data")])
 
 
 def stored_figure(stem: Path) -> Markup:

@@ -140,9 +140,7 @@ def run_page(folder: Path) -> str:
     outcome = Outcome.read(folder / "outcome.json")
     scene = _stated(folder)
     rigid = rigid_theory(outcome, scene)
-    shares = html.figure(
-        sections.named(partition_picture(outcome), scene), make_directory(folder / "figures")
-    )
+    shares = html.figure(sections.named(partition_picture(outcome), scene), folder / "figures")
     stop = "" if outcome.validity.finished else ": at the stop of this unfinished run"
     costs = sections.key_table(outcome, _keys("cost"))
     body = (
@@ -181,24 +179,24 @@ def _strikes(outcome: Outcome, scene: Scene | None, folder: Path) -> html.Markup
         return html.Markup("")
     g, vertical = gravity_of(scene), scene.impact.vertical
     shape, pull = outline(scene.projectile.rigid_body), (g * cos(vertical), g * sin(vertical))
-    figures, spread = make_directory(folder / "figures"), or_none(outcome.strikes.spread)
+    figures, spread = folder / "figures", or_none(outcome.strikes.spread)
     return html.section(
         "From the first strike to rest",
         html.paragraph(" ".join(told(outcome.strikes))),
         html.figure(path_picture(each, shape, pull), figures),
         html.figure(accounts_picture(each), figures),
-        *_other_end(outcome, scene, figures),
+        _other_end(outcome, scene, figures),
         html.details("Each strike of the path computed", html.table(strikes_table(outcome.strikes))),
         *([html.details("What strikes in 64 sequences", html.table(spread_table(spread)))] if spread else []),
     )
 
 
-def _other_end(outcome: Outcome, scene: Scene, figures: Path) -> list[html.Markup]:
+def _other_end(outcome: Outcome, scene: Scene, figures: Path) -> html.Markup:
     """Return the chart of the other end's speed over the inclination, nothing where it does not strike."""
     ratio = outcome.strikes.other_end
     if isinstance(ratio, Unknown):
-        return []
-    return [html.figure(tail_picture(other_end_curve(scene), (scene.impact.angle, ratio)), figures)]
+        return html.Markup("")
+    return html.figure(tail_picture(other_end_curve(scene), (scene.impact.angle, ratio)), figures)
 
 
 def _stated(folder: Path) -> Scene | None:

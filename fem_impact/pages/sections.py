@@ -17,7 +17,6 @@ from fem_impact.figures.runs import (
     waves_picture,
 )
 from fem_impact.figures.still import percent
-from fem_impact.files.atomic import make_directory
 from fem_impact.files.waves import read_waves
 from fem_impact.films.movement import FRAMES, STUDY_FRAMES
 from fem_impact.outcome.groups import WRONG_NUMBERS, EffectChoice, LimitationKind, texts
@@ -113,8 +112,7 @@ def history_figures(
         return html.section("Over time", html.paragraph("No curves over time: a rigid impact takes no time."))
     since = None if again else folder / "history.csv"
     try:
-        history = read_history(folder / "history.csv")
-        figures = make_directory(folder / "figures")
+        history, figures = read_history(folder / "history.csv"), folder / "figures"
         ledger = html.figure(named(ledger_picture(history, outcome.energy.E_0), scene), figures, since)
         force = html.figure(force_picture(history, or_none(outcome.contact.intervals) or ()), figures, since)
     except ResultError as error:
@@ -128,7 +126,7 @@ def waves_section(folder: Path) -> html.Markup:
     if not stored.is_file():
         return html.Markup("")
     try:
-        drawn = html.figure(waves_picture(read_waves(stored)), make_directory(folder / "figures"))
+        drawn = html.figure(waves_picture(read_waves(stored)), folder / "figures")
     except ResultError as error:
         drawn = html.paragraph(f"No diagram of the waves: {error}")
     return html.section("Waves along the projectile", drawn)
@@ -328,9 +326,7 @@ def comparison_part(
     """Return the figure of model and measurement; one newer than the file ``since`` is not drawn again."""
     if all(row["measured_mean"] is None for row in rows):
         return html.Markup("")
-    figures = make_directory(folder / "figures")
-    drawn = html.figure(comparison_picture(rows), figures, since)
-    return html.join([drawn, html.download(figures / "comparison.csv", "its data")])
+    return html.figure_with_data(comparison_picture(rows), folder / "figures", since)
 
 
 def comparison_tables(rows: Sequence[Mapping[str, Any]]) -> html.Markup:

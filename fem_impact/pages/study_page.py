@@ -13,7 +13,7 @@ import fastjsonschema
 from fem_impact.answers.report import SCHEMA
 from fem_impact.errors import ResultError
 from fem_impact.figures.runs import study_partition_picture
-from fem_impact.files.atomic import make_directory, read_signed, read_text
+from fem_impact.files.atomic import read_signed, read_text
 from fem_impact.outcome.keys import or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.pages import html, sections
@@ -244,9 +244,7 @@ def partition_part(study: StudyRecord, since: Path | None = None) -> html.Markup
     """Return the figure of the shares of E_0; one newer than the file ``since`` is not drawn again."""
     if not study.rows:
         return html.Markup("")
-    figures = make_directory(study.folder / "figures")
-    drawn = html.figure(study_partition_picture(study.rows), figures, since)
-    return html.join([drawn, html.download(figures / "partition.csv", "its data")])
+    return html.figure_with_data(study_partition_picture(study.rows), study.folder / "figures", since)
 
 
 def _run(row: Outcome, folder: Path) -> html.Markup:
