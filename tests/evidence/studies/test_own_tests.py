@@ -172,10 +172,7 @@ def test_means_may_be_in_units_and_without_arms(tmp_path):
         ("quantity,mean,n\ne,0.3,8\n", "the header must be quantity,mean,sd,n"),
         ("quantity,mean,sd,standard_error,n\ne,0.3,0.1,0.1,8\n", "the header must be"),
         ("quantity,mean,sd,n\n", "holds no line below its header"),
-        (
-            "quantity,mean,sd,n\nomga,3,0.1,8\n",
-            "'omga' is not a quantity of tests. Did you mean Omega?",
-        ),
+        ("quantity,mean,sd,n\nomga,3,0.1,8\n", "'omga' is not a quantity of tests. Did you mean Omega?"),
         ("quantity,mean,sd,n\nOmega,3,1,8\n", "quantity 'Omega' names no unit"),
         ("quantity,mean,sd,n\nOmega_m_per_s,3,1,8\n", "is not a unit of angular speed"),
         ("quantity,mean,sd,n\nmu_rad,3,1,8\n", "mu is a pure number"),
