@@ -169,7 +169,13 @@ def run_page(folder: Path) -> str:
         html.section("Record", _scene_text(folder), sections.all_keys(outcome)),
     )
     origin = outcome.provenance
-    return html.page(origin.scene_title, f"Run · {origin.scene_id}", _lead(outcome), _footer(outcome), body)
+    lead = (
+        f"Why the run ended: {outcome.validity.stopped_because} Fidelity: {origin.fidelity}. "
+        f"Effects in the model: {', '.join(origin.effects) or 'none'}."
+    )
+    versions = html.versions_text(origin.versions)
+    footer = f"Computed {origin.created_utc} with {versions}. Scene {origin.scene_digest}."
+    return html.page(origin.scene_title, f"Run · {origin.scene_id}", lead, footer, body)
 
 
 def _strikes(outcome: Outcome, scene: Scene | None, folder: Path) -> html.Markup:
@@ -290,16 +296,3 @@ def _scene_text(folder: Path) -> html.Markup:
     if not path.is_file():
         return html.Markup("")
     return html.details("The scene", html.Markup(f"<pre>{escape(read_text(path))}</pre>"))
-
-
-def _lead(outcome: Outcome) -> str:
-    origin = outcome.provenance
-    effects = ", ".join(origin.effects) or "none"
-    ended = f"Why the run ended: {outcome.validity.stopped_because}"
-    return f"{ended} Fidelity: {origin.fidelity}. Effects in the model: {effects}."
-
-
-def _footer(outcome: Outcome) -> str:
-    origin = outcome.provenance
-    versions = html.versions_text(origin.versions)
-    return f"Computed {origin.created_utc} with {versions}. Scene {origin.scene_digest}."
