@@ -91,7 +91,7 @@ def write_sheet(folder: Path, document: str = "", revision: str = "") -> Path:
             _dent(outcome),
             html.bullets(unknown),
         ),
-        html.section("Inputs and their sources", html.table(inputs(scene), compact=False)),
+        html.section("Inputs and their sources", html.table(inputs(scene))),
         html.section("Not covered", html.bullets((*uncovered, *never_covered(scene)))),
         html.section("Signatures", html.table(signatures)),
     )
