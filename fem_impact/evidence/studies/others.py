@@ -207,12 +207,7 @@ def conclude(request: Request, results: Results) -> StudyReport:
     for name in [*dict.fromkeys(rod.series for rod in every)][: 1 if request.quick else None]:
         tests = [rod for rod in every if rod.series == name]
         compared.append(compared_rods(tests[:3] if request.quick else tests))
-    return report_of(compared)
-
-
-def report_of(every_series: Sequence[OthersSeries]) -> StudyReport:
-    """Return the study of series."""
-    every = [comparison for series in every_series for comparison in series.comparisons]
+    numbers = [comparison for series in compared for comparison in series.comparisons]
     table = [
         (
             series.name,
@@ -222,18 +217,18 @@ def report_of(every_series: Sequence[OthersSeries]) -> StudyReport:
             *series.together,
             "rejected" if series.together[1] < LEVEL else "agrees",
         )
-        for series in every_series
+        for series in compared
     ]
     head = ("series", "numbers", "in error", "mean E/D", "D2", "p", "jointly")
-    sentences = [_sentence(series) for series in every_series]
+    sentences = [_sentence(series) for series in compared]
     return StudyReport(
         "others",
         "Tests of other people: rods on anvils, spheres on glass (ASME V&V 20)",
         sentences,
-        [_picture(every_series)] if every_series else (),
+        [_picture(compared)],
         [
             Sheet("series", "Each series", Table.of(head, table)),
-            Sheet("others", "Every number: E = S - D", comparison_table(every, "series", "number")),
+            Sheet("others", "Every number: E = S - D", comparison_table(numbers, "series", "number")),
         ],
         rests_on("others", LEVEL=LEVEL, aluminium=FASTER["aluminium-6061-t6"], steel=FASTER["steel-4340"]),
         conclusions=[("others", sentence) for sentence in sentences],
