@@ -250,8 +250,8 @@ MUTANTS = (
     Mutant(
         "cells of a ball counted over its diameter, not where it touches",
         "fem_impact/evidence/problems/spheres.py",
-        "levels = levels_for_radius(meshes.pole_edge(R, across), touch",
-        "levels = levels_for_radius(base, touch",
+        'edge = meshes.pole_edge(p["radius"], int(p["across"]))',
+        'edge = 2 * p["radius"] / p["across"]',
         "tests/evidence/problems/test_verify_tips.py::test_the_fewest_cells_are_enough",
     ),
     Mutant(

@@ -9,9 +9,9 @@ from fem_impact.tables.text import wrapped
 
 def figure(options: Options) -> int:
     """Draw one figure of the paper, and print which of the paper's statements hold on it."""
-    from fem_impact.evidence.paper.figures import draw_figure
+    from fem_impact.evidence.paper.figures import FIGURES
 
-    drawn = draw_figure(options.number, options.out or Path("results") / "paper")
+    drawn = FIGURES[options.number](Path(options.out or "results/paper"))
     document = {
         "figure": drawn.number,
         "picture": str(drawn.picture),

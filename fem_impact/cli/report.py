@@ -33,9 +33,9 @@ def report(options: Options) -> int:
 
 def _missing_film(result: Path, options: Options) -> list[str]:
     """Make the film of a run that has fields and no film yet; return why there is none."""
-    from fem_impact.pages.sections import has_film
+    from fem_impact.pages.html import film_of
 
-    if has_film(result) or not (result / FIELDS).is_file():
+    if film_of(result) or not (result / FIELDS).is_file():
         return []
     from fem_impact.films import film as films
 

@@ -24,7 +24,6 @@ Look = Literal[
     "diamonds",
     "squares",
     "triangles",
-    "crosses",
     "area",
     "bars",
     "interval",

@@ -153,12 +153,6 @@ MOST = 800
 def force_picture(history: Table, contacts: Sequence[ContactInterval]) -> Picture:
     """Return normal and tangential contact force on the whole projectile, contact intervals shaded.
 
-    Parameters
-    ----------
-    history : Table
-        history.csv, forces in N.
-    contacts : sequence of ContactInterval
-
     Raises
     ------
     ResultError
@@ -177,14 +171,7 @@ def force_picture(history: Table, contacts: Sequence[ContactInterval]) -> Pictur
 
 
 def ledger_picture(history: Table, e_0: float) -> Picture:
-    """Return the energy accounts over time as stacked areas, fractions of E_0.
-
-    Parameters
-    ----------
-    history : Table
-        history.csv, energies in J.
-    e_0 : float, J
-        Kinetic energy at first contact.
+    """Return the energy accounts over time as stacked areas, fractions of E_0, ``e_0`` J.
 
     Raises
     ------
@@ -357,11 +344,8 @@ def study_partition_picture(rows: Sequence[Outcome]) -> Picture:
 def comparison_picture(rows: Sequence[Mapping[str, Any]]) -> Picture:
     """Return measured means with their 95 % intervals, and the model with its two-mesh band.
 
-    Parameters
-    ----------
-    rows : sequence of mappings
-        Rows of ``comparison`` in study.json; null values are left out of the picture, and
-        quantities that nobody measured.
+    ``rows`` are those of ``comparison`` in study.json; null values are left out of the picture, and
+    quantities that nobody measured.
     """
     quantities, sets = ([*dict.fromkeys(row[name] for row in rows)] for name in ("quantity", "set"))
     groups = ([row for row in rows if row["quantity"] == name] for name in quantities)
@@ -376,9 +360,13 @@ def comparison_picture(rows: Sequence[Mapping[str, Any]]) -> Picture:
     return Picture("comparison", caption, tuple(panels), 4, numbers)
 
 
+def quantity_title(row: Mapping[str, Any]) -> str:
+    """Return the quantity of a row of ``comparison`` with its unit."""
+    unit = "" if row["unit"] in ("", "-") else f", {row['unit']}"
+    return f"{row['quantity']}{unit}"
+
+
 def _compared(rows: Sequence[Mapping[str, Any]], sets: list[str]) -> Panel:
-    unit = rows[0]["unit"]
-    title = rows[0]["quantity"] + (f", {unit}" if unit not in ("", "-") else "")
     at = np.array([sets.index(row["set"]) for row in rows])
     mean, sd, low, high, model, band = (
         np.array([np.nan if row[name] is None else row[name] for row in rows], float)
@@ -392,4 +380,4 @@ def _compared(rows: Sequence[Mapping[str, Any]], sets: list[str]) -> Panel:
         Series("measured mean", mean, above, "points", "ink"),
         Series("model, two-mesh band", model, at + 0.16, "diamonds", "vermilion", band),
     )
-    return Panel(title, "", "", series, rows=tuple(sets))
+    return Panel(quantity_title(rows[0]), "", "", series, rows=tuple(sets))

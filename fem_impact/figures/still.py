@@ -126,11 +126,7 @@ ERROR = {"capsize": 1.8, "elinewidth": 0.9, "capthick": 0.9}
 def draw(picture: Picture, path: str | Path) -> Path:
     """Draw a picture over one legend that names more than one series; its numbers go beside it as CSV.
 
-    Parameters
-    ----------
-    picture : Picture
-    path : path
-        Its suffix is the format.
+    The suffix of the path is the format.
 
     Raises
     ------

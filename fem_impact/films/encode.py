@@ -140,7 +140,7 @@ def require_gl() -> None:
     MissingLibraryError
         A trial picture in a child process failed; the message names the packages to install.
     """
-    fault = _trial(tuple(sorted(WINDOW.items())))
+    fault = _trial()
     if fault:
         raise MissingLibraryError(
             f"Off-screen drawing does not work here ({fault}). Install the packages "
@@ -151,11 +151,11 @@ def require_gl() -> None:
 
 
 @cache
-def _trial(window: tuple[tuple[str, str], ...]) -> str:
+def _trial() -> str:
     try:
         done = subprocess.run(
             [sys.executable, "-c", _TRIAL],
-            env={**os.environ, **dict(window)},
+            env={**os.environ, **WINDOW},
             capture_output=True,
             text=True,
             timeout=120,

@@ -24,16 +24,9 @@ from fem_impact.tables.history import read_history
 
 @dataclass(frozen=True, slots=True)
 class RenderResult:
-    """A film that was made.
+    """A film that was made: its file or folder of frames, warnings, and the number of frames.
 
-    Parameters
-    ----------
-    path : Path
-        The film, or the folder of frames.
-    notes : tuple of str
-        Warnings: another format than MP4, a missing title or force curve.
-    frames : int
-        Number of frames.
+    Warnings tell of another format than MP4, a missing title or force curve.
     """
 
     path: Path
@@ -186,14 +179,7 @@ def _on_one_scale(motions: Sequence[FilmData]) -> list[FilmData]:
 class PairBackground:
     """The parts that are equal in all frames.
 
-    Parameters
-    ----------
-    layout : SideBySideLayout
-    base : Image
-        The still picture that the views are pasted into.
-    strips : tuple of Strip
-    ends : tuple of float
-        End of each run, s.
+    Views are pasted into ``base``; ``ends`` are those of the runs, s.
     """
 
     layout: SideBySideLayout

@@ -44,13 +44,7 @@ class Rectangle:
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """A picture of a film.
-
-    Parameters
-    ----------
-    width, height : int, px
-        Multiples of 16, as video encoders want them.
-    """
+    """A picture of a film: its sides in px are multiples of 16, as video encoders want them."""
 
     width: int
     height: int
@@ -98,13 +92,7 @@ class FrameLayout(Frame):
 
 @dataclass(frozen=True, slots=True)
 class SideBySideLayout(Frame):
-    """Views of several rods side by side, each over its own force curve.
-
-    Parameters
-    ----------
-    count : int
-        Number of rods.
-    """
+    """Views of ``count`` rods side by side, each over its own force curve."""
 
     count: int
 
@@ -147,14 +135,7 @@ Limits = tuple[float, float, float]
 class FilmBackground:
     """The parts that are equal in all frames.
 
-    Parameters
-    ----------
-    layout : FrameLayout
-    base : Image
-        The still picture that the views are pasted into.
-    strip : Strip
-    profile : StrainProfile, optional
-        The strain along the axis, in the place of the close-up.
+    Views are pasted into ``base``; a ``profile``, the strain along the axis, takes the place of the close-up.
     """
 
     layout: FrameLayout
@@ -172,12 +153,8 @@ class FilmBackground:
         origin(drawn, layout, [made])
         fade = ", fading to × 1 at the contact" if motion.peak > 1.0 else ""
         _caption(drawn, layout, layout.rod, f"whole projectile, deformation × {motion.peak:g}{fade}")
-        _caption(
-            drawn,
-            layout,
-            layout.close,
-            CLOSE_UP.format(CLOSE_WIDTH * motion.span * 1e3) if waves is None else ALONG,
-        )
+        beside = CLOSE_UP.format(CLOSE_WIDTH * motion.span * 1e3) if waves is None else ALONG
+        _caption(drawn, layout, layout.close, beside)
         colour_bar(drawn, layout, layout.rod, motion.field, motion.far)
         if waves is None:
             colour_bar(drawn, layout, layout.close, motion.field, motion.near)
@@ -298,12 +275,7 @@ def curve_axes(drawn: Figure, frame: Frame, place: Rectangle, x: str, y: str) ->
 class Strip:
     """A drawn force curve.
 
-    Parameters
-    ----------
-    curve : Curve
-    limits : Limits
-    track : tuple of float
-        Pixel positions: x of the first and last time, y of zero and of the largest force.
+    ``track`` holds pixels: x of the first and last time, y of zero and of the largest force.
     """
 
     curve: Curve
@@ -349,13 +321,7 @@ CURVES = (("stretch: mean of the section", "blue"), ("bending: side facing the b
 class StrainProfile:
     """Axes drawn once into the still picture, and the curves of each frame.
 
-    Parameters
-    ----------
-    waves : Waves
-    corner : tuple of float
-        Pixel of position 0 and strain 0.
-    slope : tuple of float
-        px per m, and px per unit of strain, downwards.
+    ``corner`` is the pixel of position 0 and strain 0, ``slope`` px per m and, downwards, per unit of strain.
     """
 
     waves: Waves

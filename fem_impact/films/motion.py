@@ -20,13 +20,7 @@ def hex_volumes(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
 def fibres(points: np.ndarray, cells: np.ndarray, axis: np.ndarray) -> np.ndarray:
     """Return weights ``(m, 8)`` of the corners of cells: their sum of places is F a, F = dx/dX at the centre.
 
-    Parameters
-    ----------
-    points : (n, 3) float64, m
-        Reference positions.
-    cells : (m, 8) int
-    axis : (3,) float64
-        The unit vector a in the reference positions.
+    ``points`` are the reference positions ``(n, 3) m``, ``axis`` is the unit vector a ``(3,)`` in them.
     """
     along = np.linalg.solve(jacobian(points, cells).transpose(0, 2, 1), axis[:, None])[:, :, 0]
     return np.asarray(along @ CORNERS.T / 8.0)
@@ -63,16 +57,8 @@ def rigid_motion(points: np.ndarray, moved: np.ndarray, weights: np.ndarray) -> 
     """Return the points ``(n, 3) m`` moved by the best-fitting rigid motion in the plane (t, n).
 
     The rotation about b that minimises the weighted square distance to the moved half has the tangent
-    ``sum w (X x x)_b / sum w X . x``, with X and x taken from the weighted centres.
-
-    Parameters
-    ----------
-    points : (n, 3) float64, m
-        Reference positions (t, b, n).
-    moved : (n, 3) float64, m
-        Present positions.
-    weights : (n,) float64
-        Volumes at the points.
+    ``sum w (X x x)_b / sum w X . x``, with the reference positions X and the present ones x, ``moved``, taken
+    from their centres weighted by the volumes w at the points.
     """
     plane = [0, 2]
     centre = np.average(points[:, plane], axis=0, weights=weights)
@@ -84,12 +70,6 @@ def rigid_motion(points: np.ndarray, moved: np.ndarray, weights: np.ndarray) -> 
     carried = points.copy()
     carried[:, plane] = arm @ turn + present
     return carried
-
-
-def magnified(rigid: np.ndarray, moved: np.ndarray, factor: np.ndarray) -> np.ndarray:
-    """Return ``(n, 3) m``: the rigid motion as it is, the deformation times ``(n,)`` factors."""
-    shown: np.ndarray = rigid + factor[:, None] * (moved - rigid)
-    return shown
 
 
 def nice_factor(limit: float) -> float:
@@ -137,27 +117,17 @@ Colours = Callable[[float], np.ndarray]
 class FilmData:
     """The motion of a run made ready to be drawn.
 
-    Parameters
+    Attributes
     ----------
-    movement : Movement
-    field : str
-        One of ``FIELDS``.
-    rod_nodes : (n,) bool
-        Points of the rod.
-    weights : (n,) float64, m3
-        Volume at each point, zero off the rod.
-    fade : (n,) float64
-        Share of the magnification: 1 in the rod, 0 at the contact.
-    peak : float
-        The factor that is written on the picture.
-    contact : (3,) float64, m
-        Where the rod first touches, on the barrier's surface.
-    span : float, m
-        Diameter of the rod.
-    colours : function
-        The field at the points ``(n,)`` or in the cells ``(m,)`` at a time, s, in the shown unit.
-    near, far : tuple of float
-        Fixed colour ranges of the close-up and of the whole rod, in the shown unit.
+    field : one of `FIELDS`
+    rod_nodes : (n,) bool, points of the rod
+    weights : (n,) m3, volume at each point, zero off the rod
+    fade : (n,) share of the magnification: 1 in the rod, 0 at the contact
+    peak : the factor that is written on the picture
+    contact : (3,) m, where the rod first touches, on the barrier's surface
+    span : diameter of the rod, m
+    colours : function of a time, s, to the field at the points (n,) or in the cells (m,), in the shown unit
+    near, far : fixed colour ranges of the close-up and of the whole rod, in the shown unit
     """
 
     movement: Movement
@@ -188,7 +158,7 @@ class FilmData:
         true = self.movement.points(time)
         shown, rod = true.copy(), self.rod_nodes
         rigid = rigid_motion(self.fields.points[rod], true[rod], self.weights[rod])
-        shown[rod] = magnified(rigid, true[rod], self.factor[rod])
+        shown[rod] = rigid + self.factor[rod][:, None] * (true[rod] - rigid)
         return true, shown
 
 
@@ -217,7 +187,7 @@ def prepare(movement: Movement, field: str, times: Sequence[float] | np.ndarray)
     span = 2.0 * float(fields.points[rod, 1].max())
     distance = np.linalg.norm(fields.points - lowest, axis=1) / span
     looked = np.asarray(times)[np.unique(np.linspace(0, len(times) - 1, LOOKED).round()).astype(int)]
-    fields, away, largest = movement.fields, distance[rod] > 2.0, 0.0
+    away, largest = distance[rod] > 2.0, 0.0
     for time in looked:
         moved = movement.points(time)
         furthest = float(np.abs(moved - fields.points).max())

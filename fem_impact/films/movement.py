@@ -17,13 +17,8 @@ class Movement:
     """The stored motion of a run.
 
     Positions and stored fields between two frames are interpolated; the strain of the cylinder along its axis
-    comes from waves.h5, which resolves every wave.
-
-    Parameters
-    ----------
-    fields : FieldFile
-    waves : Waves, optional
-        Strain along the axis and free flight; None where the run did not store them.
+    comes from waves.h5, which resolves every wave. ``waves``, strain along the axis and free flight, are None
+    where the run did not store them.
     """
 
     fields: FieldFile

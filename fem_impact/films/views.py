@@ -10,12 +10,7 @@ from PIL import Image
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints, vtkUnsignedCharArray
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
-from vtkmodules.vtkRenderingCore import (
-    vtkActor,
-    vtkPolyDataMapper,
-    vtkRenderer,
-    vtkRenderWindow,
-)
+from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow
 
 from fem_impact.figures.still import INK, PALETTE, QUIET
 from fem_impact.films.frame import CLOSE_WIDTH, Rectangle, font
@@ -235,16 +230,9 @@ ARROW = 70.0
 
 @dataclass(frozen=True, slots=True)
 class Overlay:
-    """Marks over the view of the whole rod.
+    """Marks over the view of the whole rod, at its place in the frame.
 
-    Parameters
-    ----------
-    place : Rectangle
-        Of the view in the frame, px.
-    view : RodPicture
-    motion : FilmData
-    fastest : float, m/s
-        Speed of the centre at the start, whose arrow is `ARROW` long.
+    ``fastest`` is the speed of the centre at the start, m/s, whose arrow is `ARROW` long.
     """
 
     place: Rectangle

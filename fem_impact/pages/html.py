@@ -17,6 +17,7 @@ from fem_impact.errors import MissingLibraryError, ResultError
 from fem_impact.figures.live import live
 from fem_impact.figures.panels import Picture
 from fem_impact.figures.still import draw
+from fem_impact.files.atomic import make_directory
 from fem_impact.pages.bibliography import behind
 from fem_impact.tables.table import Table
 from fem_impact.tables.text import markup
@@ -97,14 +98,9 @@ FILMS = ("film.mp4", "film.webp", "film.gif")
 
 
 def page(title: str, kind: str, lead: str, footer: str, body: Iterable[Markup]) -> str:
-    """Return the whole document; it refers to nothing outside itself.
+    """Return the whole document around its sections; it refers to nothing outside itself.
 
-    Parameters
-    ----------
-    title, kind, lead, footer : str
-        Plain texts; escaped here.
-    body : iterable of Markup
-        The sections.
+    ``title``, ``kind``, ``lead`` and ``footer`` are plain texts, escaped here.
     """
     content = join(body).text
     policy, scripts = _scripts() if 'class="live"' in content else ("", "")
@@ -149,13 +145,7 @@ def _scripts() -> tuple[str, str]:
 
 
 def sources(named: Iterable[str]) -> Markup:
-    """Return the section of papers behind what was used.
-
-    Parameters
-    ----------
-    named : iterable of str
-        Names of effects, and "film" where there is one.
-    """
+    """Return the section of papers behind what was used: effects by name, and "film" where there is one."""
     papers = bullets(one.text for one in behind(["figures", *named]))
     return section("Sources", details("Papers behind what was used", papers))
 
@@ -169,10 +159,16 @@ def figure(picture: Picture, figures: Path, since: Path | None = None) -> Markup
 
     Files newer than ``since``, the file of the data shown, are not written again.
     """
-    drawn = figures / f"{picture.name}.svg"
+    drawn = make_directory(figures) / f"{picture.name}.svg"
     if not since or not drawn.is_file() or drawn.stat().st_mtime <= since.stat().st_mtime:
         draw(picture, drawn)
     return live_figure(live(picture))
+
+
+def figure_with_data(picture: Picture, figures: Path, since: Path | None) -> Markup:
+    """Return a picture as `figure` does, and the link to its numbers."""
+    shown = figure(picture, figures, since)
+    return join([shown, download(figures / f"{picture.name}.csv", "its data")])
 
 
 def stored_figure(stem: Path) -> Markup:
@@ -222,20 +218,25 @@ def data_link(content: bytes, name: str, label: str) -> str:
 
 def image(path: Path, alt: str) -> Markup:
     """Return a picture embedded."""
-    data = base64.b64encode(_bytes(path)).decode("ascii")
-    return Markup(f'<figure><img src="data:{TYPES[path.suffix]};base64,{data}" alt="{escape(alt)}"></figure>')
+    return Markup(f'<figure><img src="{_embedded(path)}" alt="{escape(alt)}"></figure>')
 
 
-def film(folder: Path, caption: str) -> Markup:
-    """Return the run's film embedded, nothing when there is none."""
-    path = next((folder / name for name in FILMS if (folder / name).is_file()), None)
-    if path is None:
-        return Markup("")
-    data = f"data:{TYPES[path.suffix]};base64,{base64.b64encode(_bytes(path)).decode('ascii')}"
-    shown = f'<img src="{data}" alt="{escape(caption)}">'
+def film_of(folder: Path) -> Path | None:
+    """Return the film of a run in a format that a page can show, None where there is none."""
+    return next((folder / name for name in FILMS if (folder / name).is_file()), None)
+
+
+def film(path: Path, caption: str) -> Markup:
+    """Return a film embedded."""
+    data, words = _embedded(path), escape(caption)
+    shown = f'<img src="{data}" alt="{words}">'
     if path.suffix == ".mp4":
-        shown = f'<video src="{data}" controls loop muted playsinline aria-label="{escape(caption)}"></video>'
-    return Markup(f'<figure class="film">{shown}<figcaption>{escape(caption)}</figcaption></figure>')
+        shown = f'<video src="{data}" controls loop muted playsinline aria-label="{words}"></video>'
+    return Markup(f'<figure class="film">{shown}<figcaption>{words}</figcaption></figure>')
+
+
+def _embedded(path: Path) -> str:
+    return f"data:{TYPES[path.suffix]};base64,{base64.b64encode(_bytes(path)).decode('ascii')}"
 
 
 def _bytes(path: Path) -> bytes:

@@ -140,9 +140,7 @@ def run_page(folder: Path) -> str:
     outcome = Outcome.read(folder / "outcome.json")
     scene = _stated(folder)
     rigid = rigid_theory(outcome, scene)
-    shares = html.figure(
-        sections.named(partition_picture(outcome), scene), make_directory(folder / "figures")
-    )
+    shares = html.figure(sections.named(partition_picture(outcome), scene), folder / "figures")
     stop = "" if outcome.validity.finished else ": at the stop of this unfinished run"
     costs = sections.key_table(outcome, _keys("cost"))
     body = (
@@ -167,11 +165,17 @@ def run_page(folder: Path) -> str:
         sections.unknown([outcome]),
         sections.validity([outcome]),
         html.section("Cost", html.details("Time, memory and elements", costs)),
-        html.sources([*outcome.provenance.effects, *(["film"] if sections.has_film(folder) else [])]),
+        html.sources([*outcome.provenance.effects, *(["film"] if html.film_of(folder) else [])]),
         html.section("Record", _scene_text(folder), sections.all_keys(outcome)),
     )
     origin = outcome.provenance
-    return html.page(origin.scene_title, f"Run · {origin.scene_id}", _lead(outcome), _footer(outcome), body)
+    lead = (
+        f"Why the run ended: {outcome.validity.stopped_because} Fidelity: {origin.fidelity}. "
+        f"Effects in the model: {', '.join(origin.effects) or 'none'}."
+    )
+    versions = html.versions_text(origin.versions)
+    footer = f"Computed {origin.created_utc} with {versions}. Scene {origin.scene_digest}."
+    return html.page(origin.scene_title, f"Run · {origin.scene_id}", lead, footer, body)
 
 
 def _strikes(outcome: Outcome, scene: Scene | None, folder: Path) -> html.Markup:
@@ -181,24 +185,24 @@ def _strikes(outcome: Outcome, scene: Scene | None, folder: Path) -> html.Markup
         return html.Markup("")
     g, vertical = gravity_of(scene), scene.impact.vertical
     shape, pull = outline(scene.projectile.rigid_body), (g * cos(vertical), g * sin(vertical))
-    figures, spread = make_directory(folder / "figures"), or_none(outcome.strikes.spread)
+    figures, spread = folder / "figures", or_none(outcome.strikes.spread)
     return html.section(
         "From the first strike to rest",
         html.paragraph(" ".join(told(outcome.strikes))),
         html.figure(path_picture(each, shape, pull), figures),
         html.figure(accounts_picture(each), figures),
-        *_other_end(outcome, scene, figures),
+        _other_end(outcome, scene, figures),
         html.details("Each strike of the path computed", html.table(strikes_table(outcome.strikes))),
         *([html.details("What strikes in 64 sequences", html.table(spread_table(spread)))] if spread else []),
     )
 
 
-def _other_end(outcome: Outcome, scene: Scene, figures: Path) -> list[html.Markup]:
+def _other_end(outcome: Outcome, scene: Scene, figures: Path) -> html.Markup:
     """Return the chart of the other end's speed over the inclination, nothing where it does not strike."""
     ratio = outcome.strikes.other_end
     if isinstance(ratio, Unknown):
-        return []
-    return [html.figure(tail_picture(other_end_curve(scene), (scene.impact.angle, ratio)), figures)]
+        return html.Markup("")
+    return html.figure(tail_picture(other_end_curve(scene), (scene.impact.angle, ratio)), figures)
 
 
 def _stated(folder: Path) -> Scene | None:
@@ -260,18 +264,15 @@ def _cards(outcome: Outcome, rigid: Outcome | None, friction: FrictionSpread | N
 
 
 def _vibration_card(outcome: Outcome, rigid: Outcome | None) -> html.Markup:
-    energy = outcome.energy
-    share, floor = outcome.told("E_vib_over_E_0", 100.0), or_none(energy.vibration_floor)
-    notes = (
-        *(["rigid theory: none"] if rigid else []),
-        *([] if floor is None else [f"less than {percent(floor)} is not resolved"]),
-    )
-    note = ". ".join(notes)
+    energy, name = outcome.energy, "vibration, of E₀"
     if isinstance(energy.vibration, Unknown):
-        return sections.card("vibration, of E₀", DASH, energy.vibration.reason)
-    if or_none(energy.below_floor):
-        return sections.card("vibration, of E₀", "below floor", note)
-    return sections.card("vibration, of E₀", f"{html.signed(share)} %", note)
+        return sections.card(name, DASH, energy.vibration.reason)
+    floor = or_none(energy.vibration_floor)
+    theory = "rigid theory: none" if rigid else ""
+    resolved = "" if floor is None else f"less than {percent(floor)} is not resolved"
+    share = f"{html.signed(outcome.told('E_vib_over_E_0', 100.0))} %"
+    shown = "below floor" if or_none(energy.below_floor) else share
+    return sections.card(name, shown, ". ".join(filter(None, (theory, resolved))))
 
 
 def _arms(outcome: Outcome) -> html.Markup:
@@ -295,16 +296,3 @@ def _scene_text(folder: Path) -> html.Markup:
     if not path.is_file():
         return html.Markup("")
     return html.details("The scene", html.Markup(f"<pre>{escape(read_text(path))}</pre>"))
-
-
-def _lead(outcome: Outcome) -> str:
-    origin = outcome.provenance
-    effects = ", ".join(origin.effects) or "none"
-    ended = f"Why the run ended: {outcome.validity.stopped_because}"
-    return f"{ended} Fidelity: {origin.fidelity}. Effects in the model: {effects}."
-
-
-def _footer(outcome: Outcome) -> str:
-    origin = outcome.provenance
-    versions = html.versions_text(origin.versions)
-    return f"Computed {origin.created_utc} with {versions}. Scene {origin.scene_digest}."

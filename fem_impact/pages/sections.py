@@ -9,9 +9,14 @@ from typing import Any
 from fem_impact.answers.compare import compare, told
 from fem_impact.errors import ResultError, SceneError
 from fem_impact.figures.panels import Picture
-from fem_impact.figures.runs import comparison_picture, force_picture, ledger_picture, waves_picture
+from fem_impact.figures.runs import (
+    comparison_picture,
+    force_picture,
+    ledger_picture,
+    quantity_title,
+    waves_picture,
+)
 from fem_impact.figures.still import percent
-from fem_impact.files.atomic import make_directory
 from fem_impact.files.waves import read_waves
 from fem_impact.films.movement import FRAMES, STUDY_FRAMES
 from fem_impact.outcome.groups import WRONG_NUMBERS, EffectChoice, LimitationKind, texts
@@ -107,8 +112,7 @@ def history_figures(
         return html.section("Over time", html.paragraph("No curves over time: a rigid impact takes no time."))
     since = None if again else folder / "history.csv"
     try:
-        history = read_history(folder / "history.csv")
-        figures = make_directory(folder / "figures")
+        history, figures = read_history(folder / "history.csv"), folder / "figures"
         ledger = html.figure(named(ledger_picture(history, outcome.energy.E_0), scene), figures, since)
         force = html.figure(force_picture(history, or_none(outcome.contact.intervals) or ()), figures, since)
     except ResultError as error:
@@ -122,7 +126,7 @@ def waves_section(folder: Path) -> html.Markup:
     if not stored.is_file():
         return html.Markup("")
     try:
-        drawn = html.figure(waves_picture(read_waves(stored)), make_directory(folder / "figures"))
+        drawn = html.figure(waves_picture(read_waves(stored)), folder / "figures")
     except ResultError as error:
         drawn = html.paragraph(f"No diagram of the waves: {error}")
     return html.section("Waves along the projectile", drawn)
@@ -130,18 +134,14 @@ def waves_section(folder: Path) -> html.Markup:
 
 def film_section(folder: Path) -> html.Markup:
     """Return the film of the run, nothing when there is none."""
-    shown = html.film(folder, "Waves in the projectile; scales are written on the picture.")
-    return html.section("Film of the waves", *([shown, html.paragraph(LENGTHS)] if shown.text else []))
+    film = html.film_of(folder)
+    if film is None:
+        return html.Markup("")
+    shown = html.film(film, "Waves in the projectile; scales are written on the picture.")
+    return html.section("Film of the waves", shown, html.paragraph(LENGTHS))
 
 
-def has_film(folder: Path) -> bool:
-    """Return whether the run was filmed in a format that a page can show."""
-    return any((folder / name).is_file() for name in html.FILMS)
-
-
-def key_table(
-    outcome: Outcome, keys: Iterable[Key], caption: str = "", rigid: Outcome | None = None
-) -> html.Markup:
+def key_table(outcome: Outcome, keys: Iterable[Key], rigid: Outcome | None = None) -> html.Markup:
     """Return a table of meaning, value and unit of keys; of two meshes the limit and its band.
 
     Keys that are not known are left out: `unknown` lists them. With ``rigid``, what rigid theory predicts
@@ -158,10 +158,10 @@ def key_table(
             cells.append(Missing(value.reason) if isinstance(value, Unknown) else number(or_none(value)))
         rows.append([*cells, _unit(key)])
     head = ("quantity", "value", *(["rigid theory"] if rigid else []), "unit")
-    return html.table(Table.of(head, rows, left=(0, len(head) - 1)), caption)
+    return html.table(Table.of(head, rows, left=(0, len(head) - 1)))
 
 
-def card(name: str, value: str, note: str = "") -> html.Markup:
+def card(name: str, value: str, note: str) -> html.Markup:
     """Return a card that shows one number with its name and a note."""
     small = f'<div class="note">{markup(note)}</div>' if note else ""
     inner = f'<div class="name">{markup(name)}</div><div class="value">{escape(value)}</div>{small}'
@@ -315,13 +315,9 @@ def beside_tests(outcome: Outcome, scene: Scene | None, folder: Path) -> html.Ma
         f"{inside} of {len(known)} computed quantities lie inside the 95 % interval of the measured mean "
         f"({max(row['n'] for row in rows)} tests, {name})."
     )
-    shown = Table.of(("quantity", *COMPARED), [[_titled(row), *_cells(row)] for row in rows], left=(0, 5))
+    lines = [[quantity_title(row), *_cells(row)] for row in rows]
+    shown = Table.of(("quantity", *COMPARED), lines, left=(0, 5))
     return html.section(title, summary, html.table(shown, compact=True), comparison_part(rows, folder))
-
-
-def _titled(row: Mapping[str, Any]) -> str:
-    unit = "" if row["unit"] in ("", "-") else f", {row['unit']}"
-    return f"{row['quantity']}{unit}"
 
 
 def comparison_part(
@@ -330,9 +326,7 @@ def comparison_part(
     """Return the figure of model and measurement; one newer than the file ``since`` is not drawn again."""
     if all(row["measured_mean"] is None for row in rows):
         return html.Markup("")
-    figures = make_directory(folder / "figures")
-    drawn = html.figure(comparison_picture(rows), figures, since)
-    return html.join([drawn, html.download(figures / "comparison.csv", "its data")])
+    return html.figure_with_data(comparison_picture(rows), folder / "figures", since)
 
 
 def comparison_tables(rows: Sequence[Mapping[str, Any]]) -> html.Markup:
@@ -345,25 +339,22 @@ def comparison_tables(rows: Sequence[Mapping[str, Any]]) -> html.Markup:
         inside = sum(is_inside(row["verdict"]) for row in measured)
         lines = [[str(row["set"]), *_cells(row)] for row in of_sets]
         shown = html.table(Table.of(("set", *COMPARED), lines, left=(0, 5)), compact=True)
-        tables.append(html.details(f"{_titled(of_sets[0])}: {inside} of {len(measured)} inside", shown))
+        title = f"{quantity_title(of_sets[0])}: {inside} of {len(measured)} inside"
+        tables.append(html.details(title, shown))
     return html.join(tables)
 
 
 def _cells(row: Mapping[str, Any]) -> list[Cell]:
     low, high = row["measured_low"], row["measured_high"]
-    measured = row["measured_mean"] is not None
-    style = ("inside" if is_inside(row["verdict"]) else "outside") if measured else ""
+    mean, sd = row["measured_mean"], row["measured_sd"]
+    style = "" if mean is None else "inside" if is_inside(row["verdict"]) else "outside"
     return [
         Marked(DASH if row["model"] is None else html.signed(told(row)), style),
-        _with(row["measured_mean"], row["measured_sd"]),
+        _three(mean) if mean is None or sd is None else html.signed(with_band(mean, sd)),
         None if low is None or high is None else f"{_three(low)} to {_three(high)}",
         row["n"],
         Marked(str(row["verdict"] or DASH), style),
     ]
-
-
-def _with(value: float | None, spread: float | None) -> str:
-    return _three(value) if value is None or spread is None else html.signed(with_band(value, spread))
 
 
 def _three(value: float | None) -> str:

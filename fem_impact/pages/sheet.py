@@ -91,15 +91,15 @@ def write_sheet(folder: Path, document: str = "", revision: str = "") -> Path:
             _dent(outcome),
             html.bullets(unknown),
         ),
-        html.section("Inputs and their sources", html.table(inputs(scene), compact=False)),
+        html.section("Inputs and their sources", html.table(inputs(scene))),
         html.section("Not covered", html.bullets((*uncovered, *never_covered(scene)))),
         html.section("Signatures", html.table(signatures)),
     )
-    film = next((name for name in html.FILMS if (folder / name).is_file()), "")
+    film = html.film_of(folder)
     footer = (
         f"Run {origin.created_utc}, fidelity {origin.fidelity}, {html.versions_text(origin.versions)}. "
         f"Digest of the scene {origin.scene_digest}; of the record {checksum(outcome.to_dict())}. "
-        f"Film: {film or 'none'} in the folder of the run."
+        f"Film: {film.name if film else 'none'} in the folder of the run."
     )
     lead = f"Document {document or BLANK}  ·  revision {revision or BLANK}  ·  {origin.created_utc[:10]}"
     inner = html.Markup(f'<div class="sheet">\n{html.join(body).text}\n</div>')

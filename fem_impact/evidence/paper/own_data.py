@@ -19,18 +19,12 @@ def own_coefficients(
 
     Parameters
     ----------
-    camera : Camera
-        Velocities of the tests, SI.
-    rod : Body
-        The projectile: mass and k2 are used.
-    tip : str and float
-        Its tip and the radius of that, m, for the report.
-    alpha : float
-        Inclination, rad.
-    arms : Arms
-        Arms of the contact point, m.
-    source : str
-        Source of the arms, for the report.
+    camera : velocities of the tests, SI
+    rod : the projectile: mass and k2 are used
+    tip : its tip and the radius of that, m, for the report
+    alpha : inclination, rad
+    arms : of the contact point, m
+    source : of the arms, for the report
 
     Returns
     -------

@@ -34,7 +34,7 @@ import rigid
 from fem_impact import Case
 from fem_impact.errors import SceneError
 from fem_impact.evidence.problems import setups
-from fem_impact.evidence.problems.discretisation import BarMesh, contact_error, lean_error, radiation_error
+from fem_impact.evidence.problems.discretisation import RADIATION_ERROR, BarMesh, contact_error, lean_error
 from fem_impact.evidence.problems.problem import Check, Solved, Values, within
 from fem_impact.evidence.references import hertz
 from fem_impact.evidence.references.free_modes import free_bar_flexibility
@@ -79,9 +79,8 @@ class RodDrop:
     def E_star(self) -> float:
         """Return E* of rod and barrier, Pa."""
         p = self.p
-        return hertz.contact_modulus(
-            p["E"], p["nu"], p["barrier_E"] if p["elastic_barrier"] else inf, p["nu"]
-        )
+        barrier_E = p["barrier_E"] if p["elastic_barrier"] else inf
+        return hertz.contact_modulus(p["E"], p["nu"], barrier_E, p["nu"])
 
     @property
     def ellipse(self) -> hertz.Ellipse:
@@ -126,12 +125,10 @@ class RodDrop:
     def lean(self) -> float:
         """Return the slope of the interface over friction and contact radius, 1/m; none on a rigid plane."""
         p = self.p
+        if not p["elastic_barrier"]:
+            return 0.0
         G = p["barrier_E"] / (2 + 2 * p["nu"])
-        return (
-            hertz.row_lean(self.E_star, p["nu"], G, self.radius, self.ellipse)
-            if p["elastic_barrier"]
-            else 0.0
-        )
+        return hertz.row_lean(self.E_star, p["nu"], G, self.radius, self.ellipse)
 
     def rebound(self, change: ReferenceChange) -> ObliqueRebound:
         """Return the motion after the last contact."""
@@ -162,7 +159,7 @@ class RodDrop:
         yield ReferenceChange(stiffness=-contact_error(size, half))
         if p["elastic_barrier"]:
             yield ReferenceChange(friction=self.lean() * p["f"] * self.touch() * lean_error(size, half))
-            yield ReferenceChange(waves=radiation_error())
+            yield ReferenceChange(waves=RADIATION_ERROR)
         else:
             yield ReferenceChange(friction=-p["f"] * self.sideways())
         mesh = BarMesh(p["nu"], p["across"], p["diameter"] / 2, p["diameter"] / p["across"])

@@ -59,10 +59,8 @@ class PlateStrike:
     def of(cls, p: Values, model: Model, end: float) -> "PlateStrike":
         """Run a model until ``end``, s."""
         E_0 = 0.5 * spheres.ball_mass(p) * p["speed"] ** 2
-        impact, ledger = (
-            setups.run_strike(model, end, spheres.plain_hertz(p, p["speed"]).duration),
-            model.ledger(),
-        )
+        impact = setups.run_strike(model, end, spheres.plain_hertz(p, p["speed"]).duration)
+        ledger = model.ledger()
         ledger.start = E_0
         spent = ledger.sample(impact.state)
         held = sum(spent.get(name, 0.0) for name in ("kinetic_barrier", "strain_barrier"))

@@ -61,18 +61,12 @@ class StruckPlate:
     speed: float
 
 
-def contact_zone(radius: float, depth: float) -> Zone:
-    """Return the fine zone around the pole at the origin for a contact radius, m."""
-    half = REACH * radius
-    return Zone(np.zeros(3), np.eye(3), np.array([-half, 0.0, -depth]), np.array([half, half, depth]))
-
-
 def block_reach(radius: float, base: float) -> float:
     """Return how far the faces of a block lie from the middle of a contact of ``radius``, m."""
     return REACH * radius + max(MARGIN * radius, 2 * base)
 
 
-def block_under(radius: float, base: float, levels: int, slide: float = 0.0) -> HexMesh:
+def block_under(radius: float, base: float, levels: int, slide: float) -> HexMesh:
     """Return a block whose cells of edge ``base`` are split as often as the tip's, for a contact radius.
 
     The tip moves on by ``slide``, m, towards -t while it touches.
@@ -86,9 +80,10 @@ def block_under(radius: float, base: float, levels: int, slide: float = 0.0) -> 
     return meshes.block(low, high, base, [zone] * levels)
 
 
-def plate_under(radius: float, base: float, levels: int, thickness: float, edges: float) -> HexMesh:
-    """Return a plate of ``thickness``, m, fine like `block_under`, whose edges are ``edges``, m, away."""
-    rows, half = max(ROWS, round(thickness / base)), REACH * radius
+def plate_under(radius: float, base: float, levels: int, plate: StruckPlate) -> HexMesh:
+    """Return the mesh of a plate, fine like `block_under`."""
+    thickness, edges, half = plate.thickness, plate.edges, REACH * radius
+    rows = max(ROWS, round(thickness / base))
     depth = rows * base  # before its rows are drawn to the thickness
     low, high = np.array([-half, 0.0, -radius * depth / thickness]), np.array([half, half, 0.0])
     zone = Zone(np.zeros(3), np.eye(3), low, high)
@@ -97,9 +92,11 @@ def plate_under(radius: float, base: float, levels: int, thickness: float, edges
     return meshes.with_rows_at(mesh, np.array([0.0, depth]), np.array([0.0, thickness]))
 
 
-def levels_for_radius(base: float, radius: float, cells: float) -> int:
-    """Return how often cells of edge ``base`` are split to have so many over the contact radius."""
-    return max(0, ceil(log2(base * cells / radius) - 0.1))
+def pole_cells(p: Values, radius: float) -> tuple[int, float]:
+    """Return how often the ball's cells at its pole are split for a contact radius, m, and their edge, m."""
+    edge = meshes.pole_edge(p["radius"], int(p["across"]))
+    levels = max(0, ceil(log2(edge * p["cells"] / radius) - 0.1))
+    return levels, edge / 2**levels
 
 
 def sphere_model(
@@ -116,16 +113,18 @@ def sphere_model(
     """
     R, across = p["radius"], int(p["across"])
     base = 2 * R / across
-    levels = levels_for_radius(meshes.pole_edge(R, across), touch.radius, p["cells"])
-    zone = contact_zone(touch.radius, touch.radius)
-    mesh = meshes.RodMesh.plain(meshes.sphere(R, across, [zone] * levels))
+    levels, _ = pole_cells(p, touch.radius)
+    depth, half = touch.radius, REACH * touch.radius
+    fine = Zone(np.zeros(3), np.eye(3), np.array([-half, 0.0, -depth]), np.array([half, half, depth]))
+    mesh = meshes.RodMesh.plain(meshes.sphere(R, across, [fine] * levels))
     points = placed(mesh.mesh.points, 0.0, 0.0)
     velocity = np.array([-v_t, 0.0, -v_n])
     block = None
     if p["block"]:
-        under = block_under(touch.radius, base, levels, v_t * touch.duration)
         if plate:
-            under = plate_under(touch.radius, base, levels, plate.thickness, plate.edges)
+            under = plate_under(touch.radius, base, levels, plate)
+        else:
+            under = block_under(touch.radius, base, levels, v_t * touch.duration)
         # a block of the sphere's kind unless the values state another
         E, nu, rho = (p.get(f"barrier_{name}", p[name]) for name in ("E", "nu", "rho"))
         block = Block(under, base / 2**levels, E, nu, rho, bending=plate.speed if plate else None)
@@ -183,19 +182,16 @@ class SphereErrors:
     def of(cls, p: Values, exact: HertzImpact) -> "SphereErrors":
         """Return those of the parameters."""
         base, touch = 2 * p["radius"] / p["across"], plain_hertz(p, p["speed"]).radius
-        edge = meshes.pole_edge(p["radius"], int(p["across"]))
-        cell = edge / 2 ** levels_for_radius(edge, touch, p["cells"])
         wave = sqrt(p["E"] / (2 + 2 * p["nu"]) / p["rho"]) * exact.duration
         E_0 = 0.5 * ball_mass(p) * p["speed"] ** 2
         radiated = radiated_energy(exact, p["E"], p["nu"], p["rho"]) / E_0 if p["block"] else 0.0
-        return cls(p["radius"], touch, cell, block_reach(touch, base), wave, radiated)
+        return cls(p["radius"], touch, pole_cells(p, touch)[1], block_reach(touch, base), wave, radiated)
 
     @property
     def radiation(self) -> float:
         """Relative error of the radiated energy."""
-        return discretisation.boundary_error(self.reach, self.wave) + discretisation.grid_radiation_error(
-            self.cell, self.touch
-        )
+        boundary = discretisation.boundary_error(self.reach, self.wave)
+        return boundary + discretisation.grid_radiation_error(self.cell, self.touch)
 
     @property
     def force(self) -> float:
@@ -212,9 +208,8 @@ class SphereErrors:
 
         Nodes that join one by one make it longer, coarse cells around them shorter.
         """
-        mesh = max(
-            discretisation.grid_force_error(self.cell, self.touch), 0.4 * discretisation.graded_error(REACH)
-        )
+        grid = discretisation.grid_force_error(self.cell, self.touch)
+        mesh = max(grid, 0.4 * discretisation.graded_error(REACH))
         return mesh + self._reference() + self._block(OF_TIME)
 
     def _reference(self) -> float:
@@ -291,11 +286,10 @@ def _sliding_errors(
     has another ``inertia`` over m R^2.
     """
     v_n, v_t = p["speed"] * cos(p["angle"]), p["speed"] * sin(p["angle"])
-    edge = meshes.pole_edge(p["radius"], int(p["across"]))
-    cell = edge / 2 ** levels_for_radius(edge, normal.radius, p["cells"])
     lost = radiated_energy(normal, p["E"], p["nu"], p["rho"]) / (0.5 * ball_mass(p) * v_n**2)
     bounce = 0.5 * (lost * p["block"] + ENERGY)
-    missed = (1 - leaning / p["f"]) * discretisation.lean_error(cell, normal.radius)
+    lean_error = discretisation.lean_error(pole_cells(p, normal.radius)[1], normal.radius)
+    missed = (1 - leaning / p["f"]) * lean_error
     of_ratio, given = 1 - SLIDING + missed * p["block"], p["f"] * v_n / v_t
     back = given * (2 * of_ratio + bounce)
     of_arm = normal.approach / p["radius"] + missed * (1 - p["block"])

@@ -87,10 +87,7 @@ def strike(p: Values, slices: float) -> tuple[Array, float, State, int]:
 def _beside(shape: Array, exact: Array, near: Array, note: str = "") -> list[Check]:
     names = (f"{name}{note}" for name in ("final length", "foot radius"))
     numbers = zip(names, shape.tolist(), exact.tolist(), near.tolist(), strict=True)
-    return [
-        Check(name, "m", computed, reference, apart, "absolute")
-        for name, computed, reference, apart in numbers
-    ]
+    return [Check(name, "m", found, wanted, apart, "absolute") for name, found, wanted, apart in numbers]
 
 
 def _reference(p: Values, cells: int) -> Array:
@@ -112,14 +109,8 @@ def solve(p: Values) -> Solved:
     """
     setups.slender(p, "radius", *SLENDER)
     fastest = float(np.sqrt(HARDEST * p["yield_stress"] / p["rho"]))
-    within(
-        p,
-        "speed",
-        0.0,
-        fastest,
-        "m/s",
-        f"cells are crushed where rho v^2 is over {HARDEST:g} yield stresses.",
-    )
+    why = f"cells are crushed where rho v^2 is over {HARDEST:g} yield stresses."
+    within(p, "speed", 0.0, fastest, "m/s", why)
     shape, missed, state, cells = strike(p, p["slices"])
     coarse, *_ = strike(p, p["slices"] // 2)
     exact = _reference(p, CELLS)

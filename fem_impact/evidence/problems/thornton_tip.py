@@ -93,10 +93,7 @@ def solve(p: Values) -> Solved:
     slope = float(np.polyfit(np.log(speeds), np.log([run[0] for run in runs]), 1)[0])
     middle = speeds[SPEEDS // 2]
     fine = _restitution(p, middle, FINER * p["cells"])
-    E_star, mass = hertz.contact_modulus(p["E"], p["nu"]), ball_mass(p)
-    full, first = (
-        hertz.yield_speed(c * p["yield_stress"], E_star, p["radius"], mass) for c in (hertz.MEAN, FIRST)
-    )
+    full = hertz.yield_speed(hertz.MEAN * p["yield_stress"], E_star, p["radius"], mass)
     law, fit = hertz.thornton_restitution(middle, full), hertz.fitted_restitution(middle, first)
     checks = (
         judged_slope(p, slope),

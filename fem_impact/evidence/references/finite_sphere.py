@@ -57,7 +57,7 @@ def legendre(theta: Array, orders: int) -> tuple[Array, Array]:
 
 def pressure_rings(a: float) -> tuple[Array, Array]:
     """Return angles (k,) from the pole and p rho d(rho) (k,) of Hertz' pressure of a unit force."""
-    node, weight = np.polynomial.legendre.leggauss(GAUSS)
+    node, weight = leggauss(GAUSS)
     s = pi / 4 * (node + 1)  # rho = a sin(s) makes the pressure's edge smooth
     ring = 3 / (2 * pi) * np.sin(s) * np.cos(s) ** 2 * pi / 4 * weight
     return np.arcsin(a * np.sin(s)), ring
@@ -308,10 +308,9 @@ INERTIA = 0.4  # K^2 of a solid sphere
 
 @dataclass(frozen=True, slots=True)
 class SphereRebound:
-    """Motion after the impact: velocities of centre and contact point, m/s; spin R Omega, m/s; ratio mu."""
+    """Motion after the impact: velocity of the centre and spin R Omega, m/s; ratio mu."""
 
     centre_t: float
-    contact_t: float
     spin: float
     ratio: float
 
@@ -377,4 +376,4 @@ def _rebound(
         slip -= dt * T / mass * (1 + 1 / INERTIA)
         impulse += dt * F
         pushed += dt * T
-    return SphereRebound(v_t - pushed / mass, slip, pushed / mass / INERTIA, pushed / impulse)
+    return SphereRebound(v_t - pushed / mass, pushed / mass / INERTIA, pushed / impulse)

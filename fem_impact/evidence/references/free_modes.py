@@ -45,11 +45,6 @@ class BarModes:
         return self.deflection @ values, self.angle @ values
 
 
-def shear_factor(nu: float) -> float:
-    """Return kappa of a round section."""
-    return 6 * (1 + nu) ** 2 / (7 + 12 * nu + 4 * nu**2)
-
-
 def _legendre_tables(count: int, length: float) -> tuple[Array, Array, Array]:
     """Return values and slopes of ``count`` polynomials at Gauss points, and weights, m."""
     s, weight = legendre.leggauss(count + 2)
@@ -61,11 +56,12 @@ def _legendre_tables(count: int, length: float) -> tuple[Array, Array, Array]:
 def _ritz(E: float, nu: float, rho: float, length: float, radius: float, n: int) -> tuple[Array, Array]:
     """Return the squares of all circular frequencies (2 n,) and shapes (2 n, 2 n) in ``n`` polynomials."""
     area, second, G = pi * radius**2, pi * radius**4 / 4, E / (2 * (1 + nu))
+    kappa = 6 * (1 + nu) ** 2 / (7 + 12 * nu + 4 * nu**2)
     P, D, weight = _legendre_tables(n, length)
     shear = np.concatenate([D, -P], axis=1)
     bend = np.concatenate([np.zeros_like(D), D], axis=1)
     K = E * second * bend.T @ (weight[:, None] * bend)
-    K += shear_factor(nu) * G * area * shear.T @ (weight[:, None] * shear)
+    K += kappa * G * area * shear.T @ (weight[:, None] * shear)
     single = P.T @ (weight[:, None] * P)
     M = rho * np.block([[area * single, 0 * single], [0 * single, second * single]])
     square, shape = eigh(K, M)
@@ -175,10 +171,8 @@ def _class_frequencies(
     return np.asarray(np.sqrt(np.maximum(eigh(K, M, eigvals_only=True), 0.0)) / (2 * pi))
 
 
-def cylinder_frequencies(
-    E: float, nu: float, rho: float, length: float, radius: float, count: int = 3
-) -> Frequencies:
-    """Return the lowest bending, longitudinal and torsional frequencies.
+def cylinder_frequencies(E: float, nu: float, rho: float, length: float, radius: float) -> Frequencies:
+    """Return the three lowest bending, longitudinal and torsional frequencies.
 
     Examples
     --------
@@ -190,5 +184,5 @@ def cylinder_frequencies(
     bending = _class_frequencies([(0, 0), (1, 1), (1, 0)], *size)
     stretching = _class_frequencies([(1, 0), (0, 1), (0, 0)], *size)
     c_s = sqrt(E / (2 * (1 + nu)) / rho)
-    torsion = np.asarray(c_s / (2 * length) * np.arange(1, count + 1), dtype=np.float64)
-    return Frequencies(bending[2 : 2 + count], stretching[1 : 1 + count], torsion)
+    torsion = np.asarray(c_s / (2 * length) * np.arange(1, 4), dtype=np.float64)
+    return Frequencies(bending[2:5], stretching[1:4], torsion)

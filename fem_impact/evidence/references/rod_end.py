@@ -38,12 +38,10 @@ STEPS = 4000  # time steps per round trip of the wave through the rod
 
 @dataclass(frozen=True, slots=True)
 class AxialImpact:
-    """Largest force, N, and when, s; contact time, s; restitution; vibration share of E_0."""
+    """Largest force, N; contact time, s; vibration share of E_0."""
 
     force: float
-    peak_time: float
     duration: float
-    restitution: float
     vibration: float
 
 
@@ -171,8 +169,7 @@ def rod_impact(
     dt = 2 * length / c0 / STEPS
     F = _history(law, rho * c0 * area, speed, dt, STEPS)
     rebound = float(F.sum()) * dt / (rho * area * length) - speed
-    e = rebound / speed
-    return AxialImpact(float(F.max()), dt * int(F.argmax()), dt * (len(F) - 1), e, 1 - e**2)
+    return AxialImpact(float(F.max()), dt * (len(F) - 1), 1 - (rebound / speed) ** 2)
 
 
 def sears(

@@ -6,6 +6,7 @@ potential and the two parts of a solenoidal field, each a Bessel function times 
 in units of c0.
 """
 
+from collections.abc import Callable
 from functools import cache
 from math import pi, sqrt
 
@@ -63,8 +64,9 @@ def _flexural(c: float, k: float, nu: float) -> float:
     return float(np.linalg.det(np.array(rows)))
 
 
-def _first_root(equation: object, low: float, high: float, k: float, nu: float) -> float:
-    assert callable(equation)
+def _first_root(
+    equation: Callable[[float, float, float], float], low: float, high: float, k: float, nu: float
+) -> float:
     grid = np.linspace(low, high, SCAN)
     values = [equation(c, k, nu) for c in grid]
     change = np.flatnonzero(np.sign(values[:-1]) != np.sign(values[1:]))

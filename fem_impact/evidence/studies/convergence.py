@@ -131,18 +131,14 @@ QUANTITIES = {
 }
 
 
-def job_of(name: str, quick: bool) -> LevelsJob:
-    """Return the levels of a set, each but the first at two places of the grid.
+def plan(request: Request, results: Results) -> list[LevelsJob]:
+    """Return the levels of the requested sets, by default of `SETS`, each but the first at two places.
 
     If quick they are those of the default run.
     """
-    places = {} if quick else {"accuracy.offsets": 2}
-    return LevelsJob(name, replace_all(load(name), {"save.frames": 0, **places}), 0 if quick else FINER)
-
-
-def plan(request: Request, results: Results) -> list[LevelsJob]:
-    """Return the jobs of the requested sets, by default of `SETS`."""
-    return [job_of(name, request.quick) for name in request.ids or SETS]
+    finer, places = (0, {}) if request.quick else (FINER, {"accuracy.offsets": 2})
+    changes = {"save.frames": 0, **places}
+    return [LevelsJob(name, replace_all(load(name), changes), finer) for name in request.ids or SETS]
 
 
 def conclude(request: Request, results: Results) -> StudyReport:

@@ -19,7 +19,7 @@ from fem_impact.evidence.studies import gamma_table as runs
 from fem_impact.evidence.studies.gamma_figures import pictures
 from fem_impact.evidence.studies.gamma_findings import LEVELS, STEEPEST, findings
 from fem_impact.evidence.studies.gamma_table import VIBRATION, Results, RodRun, among, crossing, exponent
-from fem_impact.evidence.studies.report_parts import rests_on
+from fem_impact.evidence.studies.report_parts import frame_rows, rests_on
 from fem_impact.evidence.studies.rod_theory import static_restitution
 from fem_impact.evidence.studies.rods import (
     BODY,
@@ -167,10 +167,7 @@ def conclude(request: Request, results: Results) -> StudyReport:
         "Rods of 19 mm": ("rods", as_table(body[RODS_CSV])),
     }
     files = {
-        "Yielding tip, frictionless, 19 mm: e with quasi-static bending alone": (
-            "static_give",
-            upright[GIVE_CSV],
-        ),
+        GIVE_CAPTION: ("static_give", upright[GIVE_CSV]),
         "Every contact of every point by finite elements": ("contacts", contacts_of(points)),
         "Every run of a rod, by family": ("points", table.drop(columns=["rod", "intervals"])),
     }
@@ -192,6 +189,7 @@ def conclude(request: Request, results: Results) -> StudyReport:
 INPUTS = ("point", *DroppedRod(0.1).inputs)
 GIVE_CSV = ["gamma", "angle_deg", "e_edge_rigid", "e_static_give", "e_edge"]
 RODS_CSV = "contact gamma diameter_m length_m T1_over_tau T1_over_tau_whole error_of_e spread_of_e".split()
+GIVE_CAPTION = "Yielding tip, frictionless, 19 mm: e with quasi-static bending alone"
 OTHERS_CAPTION = "Rods as slender as the longest with one input changed, and the measured sets' own scenes"
 LEVEL_CAPTION = (
     "Slenderness at which error or spread of e over the angles passes a level, and the power of the diameter "
@@ -201,7 +199,7 @@ LEVEL_CAPTION = (
 
 def as_table(rows: DataFrame) -> Table:
     """Return a frame as a table for a report."""
-    return Table.of([*rows], rows.astype(object).where(rows.notna(), None).to_numpy().tolist())
+    return Table.of([*rows], frame_rows(rows))
 
 
 def paper_table(points: DataFrame) -> Table:

@@ -79,27 +79,13 @@ def vibration(kinds: Mapping[str, DataFrame]) -> Picture:
     for kind, rows in kinds.items():
         curve, sets = among(rows, family=runs.CURVE), rows[rows.family == runs.MEASURED]
         changed = rows[(rows.family == runs.OTHERS) & (rows.angle_deg == 45.0)]
-        modes = lines(
-            among(rows, family=runs.MODES),
-            *("gamma", "share", "f"),
-            dict.fromkeys(STATES.values(), "reduced model (modal)"),
-            "thin",
-        )
+        reduced = dict.fromkeys(STATES.values(), "reduced model (modal)")
+        modes = lines(among(rows, family=runs.MODES), "gamma", "share", "f", reduced, "thin")
         by_state = {x: lines(curve, x, "share", "f", STATE_NAMES) for x in ("gamma", "T1_over_tau")}
         other = {runs.OTHERS: "other diameters and speeds"}
         rings = lines(changed, "T1_over_tau", "share", "family", other, "rings", ("grey",))
-        measured = {
-            x: lines(
-                sets,
-                x,
-                "share",
-                "family",
-                {runs.MEASURED: "measured sets, own scenes"},
-                "diamonds",
-                ("night",),
-            )
-            for x in by_state
-        }
+        own = {runs.MEASURED: "measured sets, own scenes"}
+        measured = {x: lines(sets, x, "share", "family", own, "diamonds", ("night",)) for x in by_state}
         over_gamma.append(
             panel(f"{kind}: over gamma", GAMMA, (*by_state["gamma"], *modes, *measured["gamma"]), MARKS)
         )

@@ -115,12 +115,18 @@ UNCERTAIN_INPUTS = (
 )
 
 
+def interval_ends(scene: Scene, measured: MeasuredSet) -> tuple[np.ndarray, np.ndarray]:
+    """Return the lower and the upper ends (d,) of `UNCERTAIN_INPUTS`."""
+    low, high = np.array([i.span(scene, measured) for i in UNCERTAIN_INPUTS]).T
+    return low, high
+
+
 def sample_values(scene: Scene, measured: MeasuredSet, unit: np.ndarray, tests: bool) -> np.ndarray:
     """Return values (n, d) of `UNCERTAIN_INPUTS` for a sample (n, d) of the unit cube.
 
     With ``tests``, inputs that do not vary from test to test keep their nominal value.
     """
-    low, high = np.array([i.span(scene, measured) for i in UNCERTAIN_INPUTS]).T
+    low, high = interval_ends(scene, measured)
     steps = unit.copy()
     at = [i.name for i in UNCERTAIN_INPUTS].index("contact point")
     steps[:, at] = (np.floor(unit[:, at] * LEVELS) + 0.5) / LEVELS

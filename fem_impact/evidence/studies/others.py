@@ -179,9 +179,8 @@ def compared_rods(tests: Sequence[Rod]) -> OthersSeries:
             comparisons.append(replace(one, dof=dof * (one.u_val / scatter) ** 4 if scatter else inf))
             moved.append(moves)
             dofs.append(dof if scatter else inf)
-    C = np.outer(moved, moved) + np.diag(
-        [comparison.u_num**2 + comparison.u_D**2 for comparison in comparisons]
-    )
+    alone = [comparison.u_num**2 + comparison.u_D**2 for comparison in comparisons]
+    C = np.outer(moved, moved) + np.diag(alone)
     return OthersSeries(tests[0].series, tuple(comparisons), C, tuple(dofs))
 
 
@@ -203,16 +202,14 @@ def compared_spheres(request: Request, results: Results) -> OthersSeries | None:
     comparisons = []
     for name, (quantity, at, measured) in _asked(spheres(), request).items():
         levels = results.get(name)
-        limits, bands = (
-            level_limits(levels.meshes) if isinstance(levels, Levels) else (Unknown(""), Unknown(""))
-        )
+        if not isinstance(levels, Levels):
+            continue
+        limits, bands = level_limits(levels.meshes)
         if isinstance(limits, Unknown) or isinstance(bands, Unknown):
             continue
-        key, scale = (
-            ("V_t_m_per_s", -1 / (SPEED * sin(radians(at))))
-            if quantity == "e_t"
-            else ("Omega_rad_per_s", -1.0)
-        )
+        key, scale = "Omega_rad_per_s", -1.0
+        if quantity == "e_t":
+            key, scale = "V_t_m_per_s", -1 / (SPEED * sin(radians(at)))
         S, u_num = scale * limits[key], abs(scale) * bands[key] / COVERAGE
         comparisons.append(Comparison(KHARAZ, name, S, measured, u_num, 0.0, READ[quantity]))
     if not comparisons:
@@ -224,50 +221,33 @@ def compared_spheres(request: Request, results: Results) -> OthersSeries | None:
 def conclude(request: Request, results: Results) -> StudyReport:
     """Return every series beside the solver."""
     every = rods()
-    names = list(dict.fromkeys(rod.series for rod in every))
-    of = {
-        name: [rod for rod in every if rod.series == name] for name in (names[:1] if request.quick else names)
-    }
     sphere = compared_spheres(request, results)
-    return report_of(
-        [
-            *([sphere] if sphere else []),
-            *(compared_rods(tests[:3] if request.quick else tests) for tests in of.values()),
-        ]
-    )
-
-
-def report_of(every_series: Sequence[OthersSeries]) -> StudyReport:
-    """Return the study of series."""
-    every = [comparison for series in every_series for comparison in series.comparisons]
+    compared = [sphere] if sphere else []
+    for name in [*dict.fromkeys(rod.series for rod in every)][: 1 if request.quick else None]:
+        tests = [rod for rod in every if rod.series == name]
+        compared.append(compared_rods(tests[:3] if request.quick else tests))
+    numbers = [comparison for series in compared for comparison in series.comparisons]
     table = [
         (
-            *(
-                series.name,
-                len(series.comparisons),
-                sum(comparison.in_error for comparison in series.comparisons),
-            ),
-            *(
-                float(np.mean([comparison.E / comparison.D for comparison in series.comparisons])),
-                *series.together,
-            ),
+            series.name,
+            len(series.comparisons),
+            sum(comparison.in_error for comparison in series.comparisons),
+            float(np.mean([comparison.E / comparison.D for comparison in series.comparisons])),
+            *series.together,
             "rejected" if series.together[1] < LEVEL else "agrees",
         )
-        for series in every_series
+        for series in compared
     ]
-    sentences = [_sentence(series) for series in every_series]
+    head = ("series", "numbers", "in error", "mean E/D", "D2", "p", "jointly")
+    sentences = [_sentence(series) for series in compared]
     return StudyReport(
         "others",
         "Tests of other people: rods on anvils, spheres on glass (ASME V&V 20)",
         sentences,
-        [_picture(every_series)] if every_series else (),
+        [_picture(compared)],
         [
-            Sheet(
-                "series",
-                "Each series",
-                Table.of(("series", "numbers", "in error", "mean E/D", "D2", "p", "jointly"), table),
-            ),
-            Sheet("others", "Every number: E = S - D", comparison_table(every, "series", "number")),
+            Sheet("series", "Each series", Table.of(head, table)),
+            Sheet("others", "Every number: E = S - D", comparison_table(numbers, "series", "number")),
         ],
         rests_on("others", LEVEL=LEVEL, aluminium=FASTER["aluminium-6061-t6"], steel=FASTER["steel-4340"]),
         conclusions=[("others", sentence) for sentence in sentences],
@@ -291,7 +271,5 @@ def _picture(every_series: Sequence[OthersSeries]) -> Picture:
         series.name: [(at, comparison.E / comparison.u_val) for comparison in series.comparisons]
         for at, series in enumerate(every_series)
     }
-    panel = error_panel("Errors", tuple(errors), errors)
-    return Picture(
-        "others", "Errors over their uncertainty; beyond 2 the model has one.", (panel,), columns=1
-    )
+    caption = "Errors over their uncertainty; beyond 2 the model has one."
+    return Picture("others", caption, (error_panel("Errors", tuple(errors), errors),), columns=1)

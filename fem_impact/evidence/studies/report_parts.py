@@ -1,13 +1,19 @@
 """What the reports of several studies share: the texts that they rest on, sets, errors side by side."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from fem_impact.answers.report import Request
 from fem_impact.answers.v_and_v import COVERAGE, Comparison
 from fem_impact.evidence.data import read_data
 from fem_impact.figures.panels import Mark, Panel, Series
 from fem_impact.scene.types import MEASURED_SETS
-from fem_impact.tables.table import Table
+from fem_impact.tables.table import Cell, Table
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 COMPARED = ("S", "D", "E", "u_num", "u_input", "u_D", "u_val")
 """Columns of a comparison, by the names of ASME V&V 20."""
@@ -35,6 +41,11 @@ def comparison_table(compared: Sequence[Comparison], first: str, second: str, la
         for c in compared
     ]
     return Table.of((first, second, *COMPARED, "low", "high", "verdict", *filter(None, [last])), rows)
+
+
+def frame_rows(frame: DataFrame) -> list[tuple[Cell, ...]]:
+    """Return the rows of a frame for a table, None for what is not known."""
+    return [tuple(row) for row in frame.astype(object).where(frame.notna(), None).to_numpy()]
 
 
 def error_panel(title: str, rows: Sequence[str], errors: Mapping[str, Sequence[tuple[int, float]]]) -> Panel:

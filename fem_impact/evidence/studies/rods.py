@@ -103,18 +103,14 @@ class DroppedRod:
         steel = PAPER.projectile.material
         return bending_period(steel.E, steel.nu, steel.rho, self.length, self.diameter / 2)
 
-    @property
-    def effects(self) -> tuple[str, ...]:
-        """Effects by their numbers but for vibration, yielding and gravity, which the study sets.
+    def scene(self) -> Scene:
+        """Return the scene, on the mesh that it gets by itself.
 
-        The contact's heat does not act on the motion, so it is not watched.
+        It has effects by their numbers but for vibration, yielding and gravity, which the study sets. The
+        contact's heat does not act on the motion, so it is not watched.
         """
         vibration = "vibration" if self.vibrates else "-vibration"
         bodies = () if self.yields else ("-rod-plasticity", "barrier-elastic")
-        return ("auto", vibration, *bodies, "-gravity", "-contact-heating")
-
-    def scene(self) -> Scene:
-        """Return the scene, on the mesh that it gets by itself."""
         angle, paper, f = radians(self.angle), READINGS[self.law], self.friction
         shipped = (surface for surface in surfaces().values() if surface.friction == f)
         return replace(
@@ -126,7 +122,7 @@ class DroppedRod:
             ),
             surface=next(shipped, Surface("custom", f, f, f, "point of a study")),
             impact=Impact(angle, -self.speed * cos(angle), -self.speed * sin(angle)),
-            effects=self.effects,
+            effects=("auto", vibration, *bodies, "-gravity", "-contact-heating"),
             save=Save(frames=0),
             measured=None,
         )

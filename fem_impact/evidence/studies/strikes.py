@@ -191,15 +191,11 @@ def _rattle(ends: dict[str, tuple[float, float]]) -> list[str]:
     ratios = [rigid / modal for modal, rigid in ends.values()]
     if not ratios:
         return []
+    factor = max(max(ratio, 1.0 / ratio) for ratio in ratios)
     return [
         f"The rattle of rigid theory lasts {min(ratios):.2g} to {max(ratios):.2g} times as long as that of "
-        f"modes to the rest: within a factor of {rattle_factor(ratios):.2g} in {len(ratios)} scenes."
+        f"modes to the rest: within a factor of {factor:.2g} in {len(ratios)} scenes."
     ]
-
-
-def rattle_factor(ratios: list[float]) -> float:
-    """Return the factor that holds every ratio or its inverse."""
-    return max(max(ratio, 1.0 / ratio) for ratio in ratios)
 
 
 _SWEEP = DeclaredSweep(_scenes, _variants, _report)

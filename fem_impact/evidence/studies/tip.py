@@ -17,6 +17,7 @@ from fem_impact.answers.compare import MEASURED, compare
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.arrays import Array
 from fem_impact.evidence.studies.declared import DeclaredSweep, Runs
+from fem_impact.evidence.studies.report_parts import frame_rows
 from fem_impact.evidence.studies.sets import set_job
 from fem_impact.run.tests import tests_of
 from fem_impact.tables.table import Cell, Table
@@ -138,8 +139,8 @@ def _model_sheet(rows: DataFrame) -> Sheet:
     caption = (
         "Finite elements with tip B, as the caption says, and with tip A; measured mean and its 95 % interval"
     )
-    cells = table.reset_index().astype(object).where(table.reset_index().notna(), None)
-    return Sheet("tips", caption, Table.of((*head, "measured", "low", "high"), cells.to_numpy().tolist()))
+    rows_of = frame_rows(table.reset_index())
+    return Sheet("tips", caption, Table.of((*head, "measured", "low", "high"), rows_of))
 
 
 def _scenes(request: Request) -> dict[str, Scene]:

@@ -16,7 +16,7 @@ from fem_impact.answers.compare import MEASURED, verdict
 from fem_impact.answers.v_and_v import COVERAGE, Comparison, compared_with
 from fem_impact.arrays import Array
 from fem_impact.errors import RunError
-from fem_impact.evidence.studies.inputs import UNCERTAIN_INPUTS, sample_values
+from fem_impact.evidence.studies.inputs import UNCERTAIN_INPUTS, interval_ends, sample_values
 from fem_impact.jobs.job import Failure
 from fem_impact.outcome.keys import or_none
 from rigid.experiments import MeasuredSet, derived_columns, measured_set
@@ -156,14 +156,14 @@ def compared(
 def scaled(name: str, unit: Array, tests: bool = False) -> Array:
     """Return the sampled inputs (n, d) of a set, each over its own interval from 0 to 1."""
     scene, measured = load(name), measured_set(name)
-    low, high = np.array([i.span(scene, measured) for i in UNCERTAIN_INPUTS]).T
+    low, high = interval_ends(scene, measured)
     return np.asarray((sample_values(scene, measured, unit, tests) - low) / (high - low))
 
 
 def nominal_place(name: str) -> Array:
     """Return the nominal inputs (1, d) of a set, each over its own interval from 0 to 1."""
-    scene, measured = load(name), measured_set(name)
-    low, high = np.array([i.span(scene, measured) for i in UNCERTAIN_INPUTS]).T
+    scene = load(name)
+    low, high = interval_ends(scene, measured_set(name))
     places = np.full(len(UNCERTAIN_INPUTS), 0.5)
     for at, of in enumerate(UNCERTAIN_INPUTS):
         value = scene.surface.friction if of.name == FRICTION else of.nominal

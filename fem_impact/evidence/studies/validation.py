@@ -33,11 +33,6 @@ def plan(request: Request, results: JobResults) -> list[Job]:
     ]
 
 
-def conclude(request: Request, results: JobResults) -> StudyReport:
-    """Return the study: comparison errors, their uncertainties, and what causes them."""
-    return study_report(validated_sets(request, results))
-
-
 def validated_sets(request: Request, results: JobResults) -> list[validated.ValidatedSet]:
     """Return the requested sets, but those whose own run or sample failed."""
     sets = [
@@ -67,8 +62,9 @@ SOBOL_POINTS = 1024
 TERMS = (len(UNCERTAIN_INPUTS) + 1) * (len(UNCERTAIN_INPUTS) + 2) // 2  # of a surface of second order
 
 
-def study_report(sets: Sequence[validated.ValidatedSet]) -> StudyReport:
-    """Return the study of the validated sets."""
+def conclude(request: Request, results: JobResults) -> StudyReport:
+    """Return the study: comparison errors, their uncertainties, and what causes them."""
+    sets = validated_sets(request, results)
     compared = [c for study_set in sets for c in study_set.comparisons]
     sentences = _verdict_sentences(compared)
     takes = [_surface_sentence(sets)] if sets else []

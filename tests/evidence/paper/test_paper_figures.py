@@ -11,10 +11,10 @@ from rigid.experiments import angle_sets, correlations, drawn_losses, loss_again
 @pytest.fixture(scope="module")
 def drawn(tmp_path_factory):
     """Every figure, drawn once."""
-    from fem_impact.evidence.paper.figures import FIGURES, draw_figure
+    from fem_impact.evidence.paper.figures import FIGURES
 
     out = tmp_path_factory.mktemp("figures")
-    return {number: draw_figure(number, out) for number in FIGURES}
+    return {number: draw(out) for number, draw in FIGURES.items()}
 
 
 def data(figure):

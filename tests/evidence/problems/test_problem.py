@@ -94,6 +94,12 @@ def test_every_problem_states_its_parameters(name, capsys):
     assert [p["name"] for p in json.loads(capsys.readouterr().out)] == [p.key for p in found.parameters]
 
 
+@pytest.mark.validation
+@pytest.mark.parametrize("name", ["bar", "free-spin", "taylor", "thornton"])
+def test_a_problem_whose_defaults_are_dear_passes_with_them(name):
+    assert verify(name).passed
+
+
 def test_the_command_refuses_what_it_does_not_know(capsys):
     assert main(["verify", "no-such"]) == 2
     assert main(["verify", "modes", "--set", "lengt=0.1"]) == 3

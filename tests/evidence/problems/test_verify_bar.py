@@ -24,8 +24,3 @@ def test_closing_loss_is_of_first_order_in_the_slice():
         assert found.passed
         losses.append(next(c.computed for c in found.checks if c.name.startswith("closing loss")))
     assert losses == pytest.approx([0.01, 0.005, 0.0025], rel=1e-6)
-
-
-@pytest.mark.validation
-def test_a_thousand_bounces():
-    assert verify("bar").passed

@@ -52,8 +52,3 @@ def test_momentum_of_a_spinning_rod():
 @pytest.mark.parametrize("changes", [{}, {"angle": "30 deg", "omega": -60.0, "v_n": 3.0, "length": "0.12 m"}])
 def test_momentum_at_other_angles_and_spins(changes):
     assert verify("momentum", changes).passed
-
-
-@pytest.mark.validation
-def test_a_long_free_spin():
-    assert verify("free-spin").passed

@@ -23,12 +23,7 @@ def test_modes_of_the_short_rod():
     found = verify("modes", {"length": 0.08})
     assert found.passed
     values = {c.name: c.computed for c in found.checks}
-    printed = {
-        "bending 1": 12340,
-        "bending 2": 28916,
-        "longitudinal 1": 32913,
-        "torsion 1": 20552,
-    }
+    printed = {"bending 1": 12340, "bending 2": 28916, "longitudinal 1": 32913, "torsion 1": 20552}
     for name, frequency in printed.items():
         assert values[name] == pytest.approx(frequency, rel=0.003)
 

@@ -34,8 +34,3 @@ def test_a_wrong_slope_within_the_plastic_range_fails():
     values = problem("thornton").values({})
     assert not judged_slope(values, -0.19).passed
     assert judged_slope(values, -0.22).passed
-
-
-@pytest.mark.validation
-def test_a_fully_plastic_contact():
-    assert verify("thornton").passed

@@ -24,10 +24,7 @@ def test_a_coarse_sphere_on_a_plane_is_a_finite_ball(speed):
     done = verify("hertz", {"cells": 6, "across": 8, "block": 0, "speed": speed})
     found = errors(done)
     assert done.passed
-    assert {c.name: c.tolerance < 0.0048 for c in done.checks[:2]} == {
-        "largest force": True,
-        "contact time": True,
-    }
+    assert [c.name for c in done.checks[:2] if c.tolerance < 0.0048] == ["largest force", "contact time"]
     assert found["largest force, Hertz"] > 0.015  # which the closed form would call a failure of the solver
     assert abs(found["rebound + radiated energy / E_0"]) < 1e-3
 

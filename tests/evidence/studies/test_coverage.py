@@ -269,15 +269,10 @@ def test_each_told_error_is_judged_against_what_it_is_meant_for():
 
 def test_causes_of_missed_bands_are_counted():
     """One that is 0, one off by little, one by much; one that holds."""
-    zero = {
-        "plastic rod": KEYS["plastic rod"],
-        "mu": KEYS["mu"],
-        "e": KEYS["e"],
-        "friction": KEYS["friction"],
-    }
-    halves = dict(zip(zero.values(), (0.0, 0.01, 0.01, 0.01), strict=True))
-    default = banded(dict.fromkeys(zero.values(), 0.3), halves)
-    off = dict(zip(zero.values(), (0.1, 0.015, 0.1, 0.0), strict=True))
+    keys = [KEYS[name] for name in ("plastic rod", "mu", "e", "friction")]
+    halves = dict(zip(keys, (0.0, 0.01, 0.01, 0.01), strict=True))
+    default = banded(dict.fromkeys(keys, 0.3), halves)
+    off = dict(zip(keys, (0.1, 0.015, 0.1, 0.0), strict=True))
     errors = judged(default, finer(**{key: 0.3 + by for key, by in off.items()}))
     (said,) = report._causes(errors, coverage(errors, ["told", "family"]))
     assert "3 of 4 bands do not hold. Of these 1 had a half-width of 0 and 1 are off" in said

@@ -10,13 +10,7 @@ from fem_impact.answers.report import Request
 from fem_impact.case.case import Case
 from fem_impact.case.effects.registry import BARRIERS, EFFECTS
 from fem_impact.case.effects.slots import ModelSpec
-from fem_impact.evidence.studies.effects import (
-    COSTED,
-    DESIGNED,
-    cost_row,
-    plan,
-    row,
-)
+from fem_impact.evidence.studies.effects import COSTED, DESIGNED, cost_row, plan, row
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import replace_all
 from fem_impact.scene.types import MEASURED_SETS

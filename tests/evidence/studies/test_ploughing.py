@@ -15,8 +15,7 @@ F = 0.2
 @pytest.mark.validation
 def test_ploughing_does_not_hang_on_the_mesh():
     scene = replace_all(
-        load("t5b"),
-        {"surface.friction": F, "surface.friction_low": F, "surface.friction_high": F},
+        load("t5b"), {"surface.friction": F, "surface.friction_low": F, "surface.friction_high": F}
     )
     chain = LevelChain(Case(scene))
     chain.refine()

@@ -57,13 +57,11 @@ def plan(request: Request, results: Results) -> list[CoverageRun]:
 
 def conclude(request: Request, results: Results) -> StudyReport:
     """Return the report of the results; a run whose process died counts as a fault."""
-    done = {
-        (run.drawn.name, run.model): _result(results[run.name])
-        for run in plan(request, results)
-        if run.name in results
-    }
+    done = {}
+    for run in plan(request, results):
+        result = results.get(run.name)
+        if isinstance(result, Failure):
+            result = CoverageResult(None, "fault", result.reason)
+        if result is not None:
+            done[run.drawn.name, run.model] = result
     return report_of(scenes(request), done, request.seed or SEED)
-
-
-def _result(result: CoverageResult | Failure) -> CoverageResult:
-    return CoverageResult(None, "fault", result.reason) if isinstance(result, Failure) else result

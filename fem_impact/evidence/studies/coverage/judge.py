@@ -178,22 +178,10 @@ def ends(scenes: Iterable[DrawnScene], results: Results, model: str) -> pandas.D
         result = results.get((scene.name, model))
         if result is None:
             continue
-        rows.append(
-            {
-                "scene": scene.name,
-                "family": scene.family,
-                "barrier": scene.group,
-                "end": result.end,
-                "reason": " ".join(result.why.strip().splitlines()[-1:]),
-                "cpu_s": result.cpu_s,
-                "bare": result.has_numbers and _bare(result.outcome),
-            }
-        )
+        outcome, reason = _known(result), " ".join(result.why.strip().splitlines()[-1:])
+        bare = outcome is not None and outcome.estimate(KEYS["e"])[1] is None
+        rows.append((scene.name, scene.family, scene.group, result.end, reason, result.cpu_s, bare))
     return pandas.DataFrame(rows, columns=["scene", "family", "barrier", "end", "reason", "cpu_s", "bare"])
-
-
-def _bare(outcome: Outcome | None) -> bool:
-    return outcome is not None and outcome.estimate(KEYS["e"])[1] is None
 
 
 def times(scenes: Iterable[DrawnScene], results: Results) -> pandas.DataFrame:

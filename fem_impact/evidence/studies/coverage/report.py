@@ -24,6 +24,7 @@ from fem_impact.evidence.studies.coverage import judge
 from fem_impact.evidence.studies.coverage.level_bands import level_bands
 from fem_impact.evidence.studies.coverage.run import DEFAULT, FINER, FINEST, MODAL, MOST, NEXT, TWINS
 from fem_impact.evidence.studies.coverage.scenes import DrawnScene
+from fem_impact.evidence.studies.report_parts import frame_rows
 from fem_impact.figures.panels import Mark, Panel, Picture, Series
 from fem_impact.outcome.keys import or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
@@ -123,10 +124,8 @@ def report_of(scenes: Sequence[DrawnScene], results: judge.Results, seed: int) -
     """Return the study of scenes, drawn by a seed, and their results."""
     errors, taken = judge.told_errors(scenes, results), judge.times(scenes, results)
     ended = judge.ends(scenes, results, DEFAULT)
-    by_quantity, by_family = (
-        judge.coverage(errors, ["told", "quantity"]),
-        judge.coverage(errors, ["told", "family"]),
-    )
+    by_quantity = judge.coverage(errors, ["told", "quantity"])
+    by_family = judge.coverage(errors, ["told", "family"])
     sentences = [
         *_held(by_quantity),
         *_causes(errors, by_family),
@@ -240,8 +239,7 @@ def _misses(errors: pandas.DataFrame) -> Sheet:
     """Return the numbers of bands that do not hold their truth, the worst first."""
     missed = errors[~errors["inside"] & (errors["told"] != judge.REDUCED)]
     missed = missed.assign(ratio=missed["error"] / missed["half"]).sort_values("ratio", ascending=False)
-    shown = missed[["scene", "told", "quantity", "value", "half", "truth", "ratio"]]
-    rows = _cells(shown)
+    rows = _cells(missed[["scene", "told", "quantity", "value", "half", "truth", "ratio"]])
     head = ("scene", "told", "quantity", "value", "half-width", "truth", "error over half-width")
     table = Table.of(head, rows, left=(0, 1, 2))
     caption = "Bands that do not hold a finer run, the worst first"
@@ -311,8 +309,7 @@ def _all(name: str, caption: str, table: pandas.DataFrame) -> Sheet:
 
 def _cells(table: pandas.DataFrame) -> list[tuple[Cell, ...]]:
     """Return the rows of a table; over a half-width of zero there is no ratio."""
-    finite = table.replace([np.inf, -np.inf], np.nan).astype(object)
-    return [tuple(row) for row in finite.where(finite.notna(), None).to_numpy()]
+    return frame_rows(table.replace([np.inf, -np.inf], np.nan))
 
 
 def _shares(by_quantity: pandas.DataFrame, by_family: pandas.DataFrame) -> Picture:

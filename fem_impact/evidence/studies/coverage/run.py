@@ -18,13 +18,7 @@ from fem_impact.answers.refine.level import LevelRun
 from fem_impact.answers.refine.level_meshes import LevelMeshes
 from fem_impact.answers.verdict.assess import BUDGET, assess
 from fem_impact.answers.verdict.levels import by_levels, next_step
-from fem_impact.answers.verdict.vibration import (
-    CHANGED,
-    Answer,
-    VibrationEffect,
-    solid_effect,
-    twins,
-)
+from fem_impact.answers.verdict.vibration import CHANGED, Answer, VibrationEffect, solid_effect, twins
 from fem_impact.errors import FemImpactError, ResultError, SceneError
 from fem_impact.evidence.studies.coverage.scenes import DrawnScene
 from fem_impact.jobs.job import JobKind
@@ -197,7 +191,7 @@ class CoverageRun:
             left_s=None if told is None else ended - told,
             notices=tuple(listener.notices),
         )
-        kept = {**{name: getattr(result, name) for name in _PLAIN}, "notices": list(result.notices)}
+        kept = asdict(replace(result, outcome=None))
         return json.dumps({**kept, "outcome": result.outcome and result.outcome.to_json()})
 
     def read(self, text: str) -> CoverageResult:
@@ -240,12 +234,6 @@ class CoverageRun:
             return CoverageResult(None, "stopped", str(error).replace(str(folder), "."))
         except Exception:  # a fault is what the study looks for: it is counted, with its traceback
             return CoverageResult(None, "fault", traceback.format_exc())
-
-
-_PLAIN = (
-    *("trouble", "reason", "cpu_s", "wall_s", "planned_s", "forecast_s", "left_s"),
-    *("own_halves", "changes", "verdict"),
-)
 
 
 @dataclass(frozen=True, slots=True)
