@@ -147,3 +147,13 @@ def test_what_two_places_of_the_grid_make_of_a_band_is_that_of_the_table():
         ratios = [two[number] / one[number] for one, two in pairs]
         for stated in (min(ratios), max(ratios), median(ratios)):
             assert f"{stated:.2f}" in told
+
+
+def test_confirmed_verdicts_are_the_sum_of_their_seeds_and_stand_on_their_page():
+    told, page = _text(f"{EXPLAINED}how-sure.md"), _text("docs/evidence/verdicts.md")
+    seeds = re.findall(r"(\d+) of (\d+) of (202\d+)", told)
+    right, checked = (sum(int(seed[at]) for seed in seeds) for at in range(2))
+    assert f"{right} of {checked} are confirmed" in told
+    for right, checked, seed in seeds:
+        stated = f"{right} of {checked}" in page
+        assert seed in page and (stated or f"{checked}: {right} confirm" in page), seed
