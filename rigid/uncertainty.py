@@ -1,4 +1,4 @@
-"""Uncertainty of e, mu and e_m worked out from measured velocities: to first order, and by resampling."""
+"""Uncertainty of e, mu and e_m worked out from measured velocities: to first order, and by random draws."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -181,11 +181,12 @@ def bootstrap(
     samples: int = 4000,
     seed: int = 0,
 ) -> dict[str, Estimate]:
-    """Coefficients of the mean motion with percentile intervals.
+    """Coefficients of the mean motion with percentile intervals: a parametric bootstrap.
 
-    Each sample draws the tests anew with replacement, one contact point and one tracking error of each
-    velocity within `errors`. Parameters as in `first_order`; `parts` holds half the width of the central 68 %
-    with that source alone, which stays finite where e_m has no variance.
+    Each sample draws means of the tests (`drawn_means`), one contact point and one tracking error of each
+    velocity within `errors`. Samples that no impact has are left out: the body does not approach the barrier,
+    or is pulled by it. Parameters as in `first_order`; `parts` holds half the width of the central 68 % with
+    that source alone, which stays finite where e_m has no variance.
 
     Returns
     -------
@@ -194,33 +195,43 @@ def bootstrap(
     """
     errors = errors or Errors()
     rows, rng = stack_tests(motion), np.random.default_rng(seed)
+    mean = dict(zip(MOTION, rows.mean(axis=1), strict=True))
+    values = coefficients(**mean, d_c=d_c, d_d=d_d, k2=k2)._asdict()
 
     def draw(*sources: str) -> dict[str, Floats]:
         """Coefficients of random repetitions of the set, (samples,) each."""
-        means = _resampled(rows, samples, rng) if "scatter" in sources else rows.mean(axis=1)[:, None]
+        alone = np.repeat(rows.mean(axis=1)[:, None], samples, axis=1)
+        means = drawn_means(rows, samples, rng) if "scatter" in sources else alone
         tracking = errors.tracking if "tracking" in sources else 0.0
-        means = means * (1.0 + tracking * rng.uniform(-1, 1, (len(rows), samples)))
+        means = means * (1.0 + tracking * rng.uniform(-1, 1, means.shape))
         shift = (errors.contact if "contact" in sources else 0.0) * rng.uniform(-1, 1, (2, samples))
-        motions = dict(zip(MOTION, means, strict=True))
-        return coefficients(**motions, d_c=d_c + shift[0], d_d=d_d + shift[1], k2=k2)._asdict()
+        possible = (means[0] < 0) & (means[2] > means[0])  # v_n, V_n
+        motions = dict(zip(MOTION, means[:, possible], strict=True))
+        arms = dict(zip(ARMS, np.array([[d_c], [d_d]]) + shift[:, possible], strict=True))
+        return coefficients(**motions, **arms, k2=k2)._asdict()
 
     draws = {name: draw(name) for name in SOURCES}
     together = draw(*SOURCES)
-    mean = dict(zip(MOTION, rows.mean(axis=1), strict=True))
     estimates = {}
-    for name, value in coefficients(**mean, d_c=d_c, d_d=d_d, k2=k2)._asdict().items():
+    for name, value in values.items():
         low, high = np.percentile(together[name], [2.5, 97.5])
         parts = {source: _half_width(drawn[name]) for source, drawn in draws.items()}
         estimates[name] = Estimate(float(value), _half_width(together[name]), float(low), float(high), parts)
     return estimates
 
 
-def _resampled(rows: Floats, samples: int, rng: np.random.Generator) -> Floats:
-    """Means (5, samples) of the tests drawn anew with replacement; one sample's tests are held at a time."""
+def drawn_means(rows: Floats, samples: int, rng: np.random.Generator) -> Floats:
+    """Return means (k, samples) that the measured tests leave possible, of k quantities of n tests (k, n).
+
+    They are drawn from Student's distribution with the covariance of the means and n - 1 degrees of freedom
+    (JCGM 101, 6.4.9), so that few tests leave more possible: tests drawn with replacement scatter too little,
+    and their 95 % interval held 74 % of three tests.
+    """
     n = rows.shape[1]
-    means = np.empty((len(rows), samples))
-    for sample in range(samples):
-        means[:, sample] = rows @ np.bincount(rng.integers(n, size=n), minlength=n) / n
+    spread = np.cov(rows) / n
+    normal = rng.multivariate_normal(np.zeros(len(rows)), spread, samples, check_valid="ignore").T
+    wider = normal * np.sqrt((n - 1) / rng.chisquare(n - 1, samples))
+    means: Floats = rows.mean(axis=1)[:, None] + wider
     return means
 
 

@@ -46,7 +46,10 @@ MEASURED = (
 UNSEEN = tuple(ComparedQuantity(share.title, share.key) for share in shares("comparison"))
 COMPARED = ("e", "mu", "Omega", "E_ln/E_0", "E_lt/E_0", "E_r/E_0")
 """Quantities of the tables that set model and measurement beside each other."""
-STATISTICS = {f"measured_{name}": name for name in ("mean", "sd", "low", "high")} | {"n": "n"}
+STATISTICS = {f"measured_{name}": name for name in ("mean", "low", "high")} | {
+    "measured_sd": "spread",
+    "n": "n",
+}
 """Columns of a measured quantity, and their attributes of `rigid.experiments.Statistic`."""
 
 
@@ -55,7 +58,7 @@ def verdict(model: float, band: float | None, measured: Statistic, called: str =
 
     "inside": in the 95 % interval of the mean; "undecided: mesh band": only the value's band reaches
     that interval; otherwise the distance from the mean, less the band, in standard deviations (SD) of single
-    tests, "outside, within the scatter" up to two.
+    tests with what they share, "outside, within the scatter" up to two.
 
     Parameters
     ----------
@@ -79,9 +82,9 @@ def verdict(model: float, band: float | None, measured: Statistic, called: str =
     if model - half <= measured.high and model + half >= measured.low:
         return f"undecided: {called}"
     away = model - measured.mean
-    if measured.sd == 0:
+    if measured.spread == 0:
         return "miss: tests without scatter"
-    beyond = max(0.0, abs(away) - half) / measured.sd
+    beyond = max(0.0, abs(away) - half) / measured.spread
     if beyond <= 2:
         return "outside, within the scatter"
     return f"miss by {beyond if away > 0 else -beyond:+.1f} SD"

@@ -20,9 +20,10 @@ from fem_impact.jobs.executors import cores
 from fem_impact.options import RunOptions
 from fem_impact.outcome.ground import moves, on_the_ground
 from fem_impact.outcome.groups import WRONG_NUMBERS
-from fem_impact.outcome.keys import Key, Num, Unknown, or_none, why_unknown
+from fem_impact.outcome.keys import Key, Unknown, or_none, why_unknown
 from fem_impact.outcome.record import KEY_TABLE, Outcome
-from fem_impact.outcome.shares import ABOVE, ADDED, HEATS, IF_ON, EnergyShare, above_modes, heat_ends, shares
+from fem_impact.outcome.said import HEATING, errors_said, floor_said, heat_said
+from fem_impact.outcome.shares import ABOVE, ADDED, HEATS, IF_ON, EnergyShare, above_modes, shares
 from fem_impact.outcome.strikes import SHOWN, spread_table, strikes_table, told
 from fem_impact.progress import clock_text
 from fem_impact.scene.impact import FIRST
@@ -157,8 +158,6 @@ _BARRIER = (
     ("V_n of the barrier after", "V_bn_m_per_s", "m/s"),
     ("V_t of the barrier after", "V_bt_m_per_s", "m/s"),
 )
-HEATING = "friction + top 0.1 mm of both"
-"""Label of the work that can heat the contact."""
 PEAK, FLASH = (KEY_TABLE[name] for name in ("peak_force_N", "flash_temperature_K"))
 RESIDUAL = KEY_TABLE["residual_over_E_0"]
 
@@ -215,15 +214,13 @@ def print_outcome(
     lines += [
         _line(label, outcome.told(key), key.unit, _changed(spread, key)) for label, key in contact.items()
     ]
-    if or_none(outcome.energy.below_floor):
-        floor = _value(outcome.energy.vibration_floor)
-        lines += [f"  vibration is below its numerical floor (fraction {floor})"]
+    lines += [f"  {sentence}" for sentence in floor_said(outcome)]
     lines += _accuracy_lines(outcome, target_of)
     told = {**{label: KEY_TABLE[name] for label, name, _ in rows}, **listed, HEATING: HEATS, **contact}
     if not isinstance(outcome.heat.power, Unknown):  # the heat was followed
         told["flash temperature"] = FLASH
     notes = why_unknown({label: key.of(outcome) for label, key in told.items()})
-    notes += [f"{HEATING}: no error of it is known: {ends}"] if (ends := heat_ends(outcome)) else []
+    notes += heat_said(outcome)
     lines += ["", *(line for one in notes for line in wrapped(one, "  "))] if notes else []
     others = [one for one in outcome.validity.limitations if one not in wrong]
     lines += ["", *limitation_lines(others)]
@@ -251,31 +248,9 @@ def _label(share: EnergyShare, energy: Energy) -> str:
 
 
 def _accuracy_lines(outcome: Outcome, target_of: str | None) -> list[str]:
-    """Return what a run says of the error that was asked for, or why its errors are not known."""
-    v = outcome.validity
-    if isinstance(v.accuracy_target, Unknown):
-        if outcome.provenance.fidelity == "rigid" or not isinstance(outcome.half_widths, Unknown):
-            return []
-        return ["", *wrapped(f"error of these numbers not known: {outcome.half_widths.reason}")]
-    rigid = isinstance(outcome.energy.vibration, Unknown)  # then there is no E_vib
-    judged = target_of or ("e" if rigid else "e and E_vib")
-    lines = [
-        "",
-        f"asked for {_percent(v.accuracy_target)}; reached in {judged} {_percent(v.achieved_error)}, "
-        f"in {_value(v.achieved_wall)} s",
-    ]
-    limits = or_none(v.mesh_limit) or {}
-    names = (("e_edge", "e (tip's arms)"), ("E_vib_over_E_0", "E_vib/E_0"))
-    together = ", ".join(f"{label} {_number(limits[name])}" for name, label in names if name in limits)
-    return [*lines, f"  limits of all levels: {together}"] if together else lines
-
-
-def _reason(value: object) -> str:
-    return value.reason if isinstance(value, Unknown) else ""
-
-
-def _percent(value: Num) -> str:
-    return f"not known: {value.reason}" if isinstance(value, Unknown) else f"{100 * value:.2g} %"
+    """Return the sentences on the errors, after an empty line; nothing where there are none."""
+    said = errors_said(outcome, target_of)
+    return ["", *wrapped(said[0]), *(f"  {sentence}" for sentence in said[1:])] if said else []
 
 
 def _motion_line(outcome: Outcome, label: str, name: str, unit: str, spread: FrictionSpread | None) -> str:
@@ -301,10 +276,6 @@ def _line(label: str, told: str, unit: str, spread: str = "") -> str:
     """Return a line of a number, its unit, and what friction changes of it."""
     unit = "" if told == "not known" else unit
     return f"  {label:<31}{told:>19} {unit:<6}{spread}".rstrip()
-
-
-def _value(value: Num) -> str:
-    return f"not known: {value.reason}" if isinstance(value, Unknown) else _number(value)
 
 
 def _number(value: float) -> str:

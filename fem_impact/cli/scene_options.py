@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
     from rigid import Projectile
 
-TITLED = ("projectile", "barrier", "surface", "impact")
-"""Tables of a scene whose changed values its title tells."""
 USUAL_TIP = "B"
 SLOWED = 0.5
 """Share of the old speed of approach below which a fall along the axis is no other way to state it."""
@@ -53,10 +51,7 @@ def changed_scene(id_or_path: str, changes: Sequence[str]) -> Scene:
     if not given:
         return scene
     changed = replace_all(scene, given, "--set")
-    shown = {key: value for key, value in given.items() if key.split(".")[0] in TITLED}
-    if not shown or changed.title != scene.title:
-        return changed
-    return replace(changed, "title", titled(scene.title, shown))
+    return replace(changed, "title", titled(scene.title, given)) if changed.title == scene.title else changed
 
 
 def placed(error: SceneError, options: Options) -> SceneError:

@@ -9,6 +9,7 @@ import math
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from functools import cache
 from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -69,8 +70,27 @@ def new_figure(height: float, width: float = WIDTH) -> Figure:
 def save(drawn: Figure, path: Path) -> None:
     """Write the figure atomically in the format of the suffix; equal data give equal bytes."""
     dated: dict[str, Any] = {"Date": None} if path.suffix in (".svg", ".pdf") else {}
+    replace_undrawn(drawn)
     with atomic_path(path) as draft:
         drawn.savefig(draft, format=path.suffix.lstrip("."), dpi=150, metadata=dated)
+
+
+def replace_undrawn(drawn: Figure) -> None:
+    """Put a question mark for each letter of a figure's texts that its font does not have, such as CJK."""
+    from matplotlib.text import Text
+
+    for text in drawn.findobj(Text):
+        words, known = text.get_text(), _letters()
+        if undrawn := {letter for letter in words if letter not in known and not letter.isspace()}:
+            text.set_text(words.translate(dict.fromkeys(map(ord, undrawn), "?")))
+
+
+@cache
+def _letters() -> frozenset[str]:
+    """Return the letters of the font of figures and films."""
+    from matplotlib.font_manager import findfont, get_font
+
+    return frozenset(map(chr, get_font(findfont("DejaVu Sans")).get_charmap()))
 
 
 def write_data(picture: Path, columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:

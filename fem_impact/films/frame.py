@@ -16,7 +16,7 @@ from matplotlib.font_manager import findfont
 from PIL import Image, ImageDraw, ImageFont
 
 from fem_impact.errors import UsageError
-from fem_impact.figures.still import INK, PALETTE, QUIET
+from fem_impact.figures.still import INK, PALETTE, QUIET, replace_undrawn
 from fem_impact.files.waves import Waves
 from fem_impact.films.motion import FIELDS, FilmData
 from fem_impact.tables.text import plain
@@ -104,7 +104,7 @@ class SideBySideLayout(Frame):
     @property
     def strips(self) -> tuple[Rectangle, ...]:
         """The strips of the force curves."""
-        return tuple(Rectangle(left + 46, self.height - 176, self._across - 66, 132) for left in self._lefts)
+        return tuple(Rectangle(left + 46, self.height - 176, self._across - 66, 118) for left in self._lefts)
 
     @property
     def _across(self) -> int:
@@ -240,6 +240,7 @@ def below(drawn: Figure, frame: Frame, view: Rectangle, text: str, colour: str) 
 def picture(drawn: Figure) -> Image.Image:
     """Return a figure as an image."""
     stream = io.BytesIO()
+    replace_undrawn(drawn)
     drawn.savefig(stream, format="png", dpi=100)
     return Image.open(stream).convert("RGB")
 

@@ -18,6 +18,7 @@ from fem_impact.figures.still import draw, percent
 from fem_impact.files.atomic import make_directory, read_signed, read_text, signed, write_text
 from fem_impact.outcome.keys import Key, Unknown, or_none
 from fem_impact.outcome.record import KEY_TABLE, KEYS, Outcome, utc_now
+from fem_impact.outcome.said import heat_said
 from fem_impact.outcome.strikes import spread_table, strikes_table, told
 from fem_impact.pages import html, sections
 from fem_impact.physics.flash import ASSUMPTIONS
@@ -149,7 +150,12 @@ def run_page(folder: Path) -> str:
         sections.notices([outcome], sections.mismatches(outcome, folder)),
         sections.film_section(folder),
         sections.beside_tests(outcome, scene, folder),
-        html.section(f"Where the energy went{stop}", shares, _folded(outcome, "shares", ENERGY, rigid)),
+        html.section(
+            f"Where the energy went{stop}",
+            shares,
+            html.bullets(heat_said(outcome)),
+            _folded(outcome, "shares", ENERGY, rigid),
+        ),
         html.section("Motion", _folded(outcome, "velocities and impulse ratios", MOTION, rigid)),
         _strikes(outcome, scene, folder),
         sections.waves_section(folder),

@@ -11,6 +11,7 @@ from fem_impact.files.run_directory import FIELDS
 from fem_impact.outcome.groups import HEAVIEST_FIRST, WRONG_NUMBERS, texts
 from fem_impact.outcome.keys import Unknown, or_none, why_unknown
 from fem_impact.outcome.record import KEY_TABLE, Outcome
+from fem_impact.outcome.said import HEATING, errors_said, floor_said, heat_said
 from fem_impact.outcome.shares import IF_ON, shares
 from fem_impact.outcome.strikes import SHOWN, strikes_table, told
 from fem_impact.pages import html
@@ -37,7 +38,7 @@ NUMBERS = (
     ("flash temperature", "flash_temperature_K", "K"),
     ("ignition temperature, stated or 430 degC", "ignition_temperature_K", "K"),
     ("temperature that no spot exceeds", "flash_bound_K", "K"),
-    ("friction + top 0.1 mm of both, of E_0", "W_skin_over_E_0", "%"),
+    (f"{HEATING}, of E_0", "W_skin_over_E_0", "%"),
 )
 """Label, key and unit of the numbers before the shares of energy."""
 
@@ -71,6 +72,8 @@ def write_sheet(folder: Path, document: str = "", revision: str = "") -> Path:
     spread = friction_spread(scene, origin.fidelity)
     numbers, unknown = _numbers(outcome, scene, spread)
     limits = outcome.validity.limitations
+    said = (*errors_said(outcome, scene.accuracy.target_of), *floor_said(outcome), *heat_said(outcome))
+    known = not isinstance(outcome.half_widths, Unknown)
     uncovered = texts(limits, *(kind for kind in HEAVIEST_FIRST if kind not in WRONG_NUMBERS))
     blank = [(role, "", "", "") for role in ROLES]
     signatures = Table.of(("", "name", "date", "signature"), blank, left=range(4))
@@ -84,8 +87,8 @@ def write_sheet(folder: Path, document: str = "", revision: str = "") -> Path:
         _followed(outcome),
         html.section("Verdict", html.paragraph(criterion), box),
         html.section(
-            "Numbers of the first impact, with their errors",
-            html.bullets(texts(limits, *WRONG_NUMBERS)),
+            f"Numbers of the first impact{', with their errors' if known else ''}",
+            html.bullets((*texts(limits, *WRONG_NUMBERS), *said)),
             html.table(numbers, compact=True),
             html.paragraph(f"Last column: {spread.said}" if spread.said else "", "note"),
             _dent(outcome),

@@ -1,7 +1,7 @@
 """The measured tests that a scene repeats: a published set, or the user's own."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 from math import hypot, inf, sqrt
 from pathlib import Path
@@ -17,7 +17,7 @@ from fem_impact.scene.own_tests import Camera, Mean, holds_means, read_camera, r
 from fem_impact.scene.types import OWN, Scene
 from rigid import Arms, experiments, kinetic_energy
 
-COVERAGE = 2.0  # standard uncertainties from the mean of one test to the ends of its interval
+COVERAGE = 2.0  # standard uncertainties that all tests share, from their mean to the ends of its interval
 
 
 class MeasuredTests(Protocol):
@@ -104,10 +104,10 @@ class MeanTests:
 
 
 def _statistic(mean: Mean) -> experiments.Statistic:
-    if mean.n == 1:
-        half = COVERAGE * mean.systematic
-        return experiments.Statistic(mean.mean, 0.0, mean.mean - half, mean.mean + half, 1, mean.systematic)
-    return replace(experiments.of_mean(mean.mean, mean.sd, mean.n), systematic=mean.systematic)
+    scatter = 0.0 if mean.n == 1 else experiments.of_mean(mean.mean, mean.sd, mean.n).high - mean.mean
+    half = hypot(scatter, COVERAGE * mean.systematic)
+    ends = mean.mean - half, mean.mean + half
+    return experiments.Statistic(mean.mean, mean.sd, *ends, mean.n, mean.systematic)
 
 
 @dataclass(frozen=True, slots=True)

@@ -122,11 +122,17 @@ def material(name: str) -> Material:
     for group in _table("not_modelled.toml").values():
         if plain in map(_plain, group["names"]):
             raise SceneError(group["reason"], value=name, remedy=group["remedy"])
-    own = next((one for one in known if plain in map(_plain, (one, *aliases_of(one)))), "")
+    own = own_name(name)
     if not own:
         remedy = _nearest_material(name, known)
         raise SceneError("is not a shipped material.", value=name, remedy=remedy)
     return known[own]
+
+
+def own_name(name: str) -> str:
+    """Return the name of the shipped material that a name or an alias stands for, empty if there is none."""
+    plain = _plain(name)
+    return next((one for one in materials() if plain in map(_plain, (one, *aliases_of(one)))), "")
 
 
 def aliases_of(name: str) -> tuple[str, ...]:

@@ -11,7 +11,7 @@ from typing import Any
 from fem_impact.errors import SceneError, UsageError, did_you_mean
 from fem_impact.scene import fields
 from fem_impact.scene.impact import FIRST, one_way, restated
-from fem_impact.scene.library import CHANGED, nearest_scene, shipped, stated
+from fem_impact.scene.library import CHANGED, nearest_scene, own_name, shipped, stated
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.read import read_dict, read_scene, read_tables, read_toml
 from fem_impact.scene.shapes import BY_LENGTH, REPLACED, TIP
@@ -81,6 +81,8 @@ LENGTH = {"projectile.length", "projectile.length_m"}
 SETS = ["mesh_materials"], ["mesh_surfaces"]
 """Ends of the paths of tables whose keys are names in a mesh file, whatever they end with."""
 BODIES = ("projectile", "impact", "barrier")
+TITLED = (*BODIES, "surface")
+"""Tables of which a title tells the changes."""
 PAIR = ("friction", "friction_low", "friction_high", "source")
 _CHANGED = ", changed: "
 _LONGEST = 300  # characters of a title
@@ -103,9 +105,10 @@ def replace_all(scene: Scene, changes: Mapping[str, Any], source: str = "") -> S
     """Return a checked copy of the scene with dotted keys changed, checked together at the end.
 
     A new angle leaves a fall a fall, see `restated`. A changed friction makes the surface custom, a changed
-    property renames its material, and with a changed rod, impact or surface state the scene is not a
-    measured set, which the title says: a name never stands for other values. Friction, materials, effects
-    and accuracy are the model's side and leave ``measured`` as it is. The surface of a pair of materials
+    property renames its material, and with a changed rod, impact or surface state, or a material of another
+    name, the scene is not a measured set, which the title says: a name never stands for other values.
+    Friction, values of materials, effects and accuracy are the model's side and leave ``measured`` as it is.
+    The surface of a pair of materials
     follows changed bodies. A value may be a path or a number or array of numpy. ``source`` is named in every
     message.
 
@@ -128,10 +131,10 @@ def _changed(scene: Scene, changes: Mapping[str, Any]) -> dict[str, Any]:
     if undone := next((key for key in changes if not _stands(data, key)), ""):
         remedy = "Keep one of the two."
         raise SceneError("is taken out again by another change of the same call.", key=undone, remedy=remedy)
-    if other := {key: value for key, value in changes.items() if _is_another_impact(key, value)}:
+    if any(_is_another_impact(scene, key, value) for key, value in changes.items()):
         measured = data.pop("measured", "")
         if "title" not in changes:
-            data["title"] = _title(data["title"], measured, other)
+            data["title"] = _title(data["title"], measured, changes)
     bodies_changed = {key.partition(".")[0] for key in changes} & {"projectile", "barrier"}
     if bodies_changed and not changes.keys() & {"surface", *(f"surface.{key}" for key in PAIR)}:
         _follow_pair(data["surface"])
@@ -156,7 +159,12 @@ def _follow_pair(surface: dict[str, Any]) -> None:
 
 
 def named(value: Any) -> str:
-    """Return a stated value as a text; a table that has a name, such as a material, is told by it."""
+    """Return a stated value as a text; a table that has a name, such as a material, is told by it.
+
+    A number is the same text however it is written: 0, 0.0.
+    """
+    if isinstance(value, float):
+        return f"{value:.12g}"
     return str(value.get("name", value)) if isinstance(value, Mapping) else str(value)
 
 
@@ -237,11 +245,21 @@ def bare(key: str) -> str:
     return next((key.removesuffix(suffix) for suffix in _SUFFIXES if key.endswith(suffix)), key)
 
 
-def _is_another_impact(key: str, value: Any) -> bool:
-    *path, last = key.split(".")
-    names = value if isinstance(value, Mapping) and not path else [last]  # a whole table states several
-    body = path[0] if len(path) == 1 else key
-    return (body in BODIES and not {*names} <= {"material", "boundary"}) or key == "surface.state"
+def _is_another_impact(scene: Scene, key: str, value: Any) -> bool:
+    body, *names = key.split(".")
+    if body not in BODIES or len(names) > 1:
+        return key == "surface.state"
+    stated = {names[0]: value} if names else value  # a whole table states several
+    if not isinstance(stated, Mapping) or not {*stated} <= {"material", "boundary"}:
+        return True
+    return "material" in stated and body != "impact" and _is_another_metal(scene, body, stated["material"])
+
+
+def _is_another_metal(scene: Scene, body: str, material: Any) -> bool:
+    """Return whether a material has another name than a body's."""
+    metal = scene.projectile.material if body == "projectile" else scene.barrier.material
+    name = named(material)
+    return (own_name(name) or name) != metal.name.removesuffix(CHANGED)
 
 
 def _title(title: str, measured: str, changes: Mapping[str, Any]) -> str:
@@ -252,11 +270,14 @@ def _title(title: str, measured: str, changes: Mapping[str, Any]) -> str:
 
 
 def titled(title: str, changes: Mapping[str, Any]) -> str:
-    """Return a title that tells changed values, after those that it tells already."""
+    """Return a title that tells changed values of bodies, surface and impact, after those that it tells."""
     told = ", ".join(
         f"another {key}" if isinstance(value, Mapping) and "name" not in value else f"{key} = {named(value)}"
         for key, value in changes.items()
+        if key.split(".")[0] in TITLED
     )
+    if not told:
+        return title
     return f"{title}{', ' if _CHANGED in title else _CHANGED}{told}"[:_LONGEST]
 
 

@@ -11,6 +11,7 @@ from ..coefficients import Coefficients
 from ..inputs import ArrayLike, DataError, Floats, refuse
 from ..losses import PredictedLosses, predicted_losses
 from ..massive import critical_ratio
+from ..uncertainty import drawn_means
 from .sets import MeasuredSet, measured_set
 
 IDS = ("t6-17", "t6-25", "t6-37", "t5b", "t6-60")
@@ -94,7 +95,7 @@ def drawn_losses(alpha: ArrayLike, samples: int = 1000, seed: int = 0) -> Predic
     alpha : (n,) array_like
         Inclinations, rad, from 17 to 60 degrees.
     samples : int
-        Repetitions; in each, the tests of every set are drawn with replacement.
+        Repetitions; in each, the means of every set are drawn with `rigid.uncertainty.drawn_means`.
     seed : int
         Of the random numbers.
 
@@ -108,15 +109,14 @@ def drawn_losses(alpha: ArrayLike, samples: int = 1000, seed: int = 0) -> Predic
     >>> lost = drawn_losses(np.radians([45.0]))
     >>> total = lost.E_ln + lost.E_lt
     >>> [f"{p:.2f}" for p in np.percentile(total, [2.5, 97.5])]
-    ['0.91', '0.94']
+    ['0.90', '0.94']
     """
     x, rng = np.asarray(alpha, dtype=np.float64), np.random.default_rng(seed)
     columns = []
     for measured in angle_sets():
         recomputed = measured.recomputed()
         rows = np.stack([recomputed[name] for name in Coefficients._fields])
-        chosen = rng.integers(rows.shape[1], size=(samples, rows.shape[1]))
-        columns.append(rows[:, chosen].mean(axis=2))
+        columns.append(drawn_means(rows, samples, rng))
     means = np.stack(columns, axis=-1)  # of e, mu and e_m, (3, samples, 5)
     angles = np.array([s.alpha for s in angle_sets()])
     weights = np.stack([np.interp(x, angles, unit) for unit in np.eye(len(angles))])  # of each set, (5, n)

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
+from math import hypot
 
 import numpy as np
 
@@ -18,7 +19,7 @@ class Statistic:
     mean, sd : float
         Mean and sample standard deviation, in the column's unit.
     low, high : float
-        Student's 95 % interval of the mean.
+        Student's 95 % interval of the mean, with twice what all tests share.
     n : int
         Number of tests.
     systematic : float
@@ -31,6 +32,11 @@ class Statistic:
     high: float
     n: int
     systematic: float = 0.0
+
+    @property
+    def spread(self) -> float:
+        """Standard deviation of single tests, with what they share."""
+        return hypot(self.sd, self.systematic)
 
 
 def statistic(values: ArrayLike, level: float = 0.95) -> Statistic:

@@ -1,6 +1,7 @@
 """Numbers that README and the explanations take from the evidence are those that its pages state today."""
 
 import re
+from statistics import median
 
 import pytest
 from page_blocks import ROOT
@@ -15,6 +16,8 @@ FOUND = {
     "free": ("validation", r"(\d+) of (\d+) measured numbers show no error .* (\d+) do:"),
     "largest": ("validation", r"the mesh in (\d+), the inputs in (\d+), the measurement in"),
     "calibrated": ("validation", r"meets (\d+ of \d+) values of e, mu and Omega"),
+    "t2": ("sets", r"\| t2 \| 0\.\d+ ± 0\.\d+ \| ([\d.]+) \|"),
+    "t5b": ("sets", r"\| t5b \| 0\.\d+ ± 0\.\d+ \| ([\d.]+) \|"),
     "cost": ("cost", r"median of ([\d.]+) % of e \(([\d.]+ to [\d.]+) %\)"),
     "effects": ("effects", r"(\d+) of (\d+) scenes give .* within (\d+)% of e and (\d+)% of E_vib"),
     "reduced": ("reduced", r"hypercube: .* in (\d+ of \d+) scenes, vibration .* in (\d+), both in (\d+);"),
@@ -44,6 +47,8 @@ TOLD = (
     (README, "others", "{0} are undecided, {1} lie within the scatter of single tests, {2} do not agree"),
     (README, "free", "{0} of {1} show no error of the model"),
     (f"{EXPLAINED}accuracy.md", "cost", "of a default run is {1} % of e, median {0} %"),
+    (f"{EXPLAINED}accuracy.md", "t2", "24 s on two free cores; {0} %)"),
+    (f"{EXPLAINED}accuracy.md", "t5b", "the third level at two places tells {0} %"),
     (README, "limit", "takes {0} % of the energy with a yielding tip"),
     (README, "elastic", "and {0} % on an elastic contact"),
     (README, "limit", "and e is {2} and"),
@@ -128,3 +133,27 @@ def test_distances_and_shares_of_the_sets_are_those_of_their_tables():
     assert f"at most {max(vibration.values()):.1f} % in any set" in _text(README)
     plate = sorted(float(row[5].split()[0]) for row in shares)[-10:]
     assert f"{plate[0]:.0f} to {plate[-1]:.0f} %" in _text(README)
+
+
+def test_what_two_places_of_the_grid_make_of_a_band_is_that_of_the_table():
+    told = _text(f"{EXPLAINED}accuracy.md").split("over the thirteen sets ")[1].split("[cost]")[0]
+    pairs = []
+    for row in _table("cost", "| set | e, limit | E_vib, limit |"):
+        one = next(at for at, cell in enumerate(row) if "(default)" in cell)
+        pairs.append(
+            [[float(number) for number in row[at].split(",")[0].split(" / ")] for at in (one, one + 1)]
+        )
+    for number in range(2):
+        ratios = [two[number] / one[number] for one, two in pairs]
+        for stated in (min(ratios), max(ratios), median(ratios)):
+            assert f"{stated:.2f}" in told
+
+
+def test_confirmed_verdicts_are_the_sum_of_their_seeds_and_stand_on_their_page():
+    told, page = _text(f"{EXPLAINED}how-sure.md"), _text("docs/evidence/verdicts.md")
+    seeds = re.findall(r"(\d+) of (\d+) of (202\d+)", told)
+    right, checked = (sum(int(seed[at]) for seed in seeds) for at in range(2))
+    assert f"{right} of {checked} are confirmed" in told
+    for right, checked, seed in seeds:
+        stated = f"{right} of {checked}" in page
+        assert seed in page and (stated or f"{checked}: {right} confirm" in page), seed

@@ -39,6 +39,13 @@ def test_ledger_data_are_the_history_over_e_0(history, tmp_path):
     assert data.numbers("time_s").tolist() == history.numbers("time_s").tolist()
 
 
+def test_letters_that_the_font_lacks_are_question_marks(tmp_path):
+    drawn = still.new_figure(1.0)
+    drawn.text(0.1, 0.5, "Zürich 零, µ 🦊 $x_1$")
+    still.save(drawn, tmp_path / "title.png")
+    assert drawn.texts[0].get_text() == "Zürich ?, µ ? $x_1$"
+
+
 def test_ledger_areas_add_up_to_what_the_history_holds(history):
     data = ledger_picture(history, result_maker.E_0).table()
     total = sum(data.numbers(account.column.removesuffix("_J") + "_over_E_0") for account in ACCOUNTS)

@@ -15,8 +15,10 @@ from fem_impact.films.frame import (
     blank,
     clock,
     colour_bar,
+    curve_axes,
     heading,
     limits_of,
+    origin,
     picture,
 )
 from fem_impact.films.motion import FIELDS
@@ -89,3 +91,14 @@ def test_a_title_with_dollar_signs_is_no_formula():
     drawn = blank(frame)
     heading(drawn, frame, "costs $5 and $x_{$")
     assert picture(drawn).size == (1280, 720)
+
+
+@pytest.mark.parametrize("count", [2, 3, 4])
+def test_the_origin_of_the_runs_lies_under_the_axes_of_time(count):
+    frame = SideBySideLayout(1280, 720, count)
+    drawn = blank(frame)
+    origin(drawn, frame, [f"fem-impact 0.1.0 · scene {at}2f6a7b8c9d0e" for at in range(count)])
+    axes = [curve_axes(drawn, frame, place, "time, µs", "normal force, kN") for place in frame.strips]
+    ((_, top, _, _),) = boxes(drawn)
+    for one in axes:
+        assert drawn.bbox.y1 - one.xaxis.label.get_window_extent().y0 <= top

@@ -13,6 +13,7 @@ from fem_impact.answers.verdict.sentences import document
 from fem_impact.errors import ResultError
 from fem_impact.files.atomic import signed
 from fem_impact.pages.sheet import write_sheet
+from fem_impact.pages.write import write_report
 from fem_impact.scene.read import read_toml
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.types import digest, to_toml
@@ -39,6 +40,24 @@ def test_it_states_numbers_with_errors_sources_what_is_left_out_and_where_to_sig
     assert places == sorted(places)
     assert "No verdict computed" in text
     assert "____" in write_sheet(run).read_text(encoding="utf-8")
+
+
+def test_it_says_why_no_error_is_known_and_what_lies_below_the_floor(run):
+    assert "impact, with their errors<" in write_sheet(run).read_text(encoding="utf-8")
+    scene = read_toml(run / "scene.toml")
+    alone = {"accuracy_target": None, "E_vib_below_floor": True}
+    result_maker.write_result(run, scene_digest=digest(scene), **alone)
+    text = write_sheet(run).read_text(encoding="utf-8")
+    assert "error of these numbers not known: one mesh only" in text and "with their errors<" not in text
+    assert "vibration is below its numerical floor (fraction 2e-05)" in text
+
+
+def test_sheet_and_report_say_between_what_a_heat_without_an_error_lies(run):
+    bands = {"mesh_limit": {"W_friction_over_E_0": 0.29}, "mesh_band": {"W_friction_over_E_0": 0.02}}
+    result_maker.write_result(run, scene_digest=digest(read_toml(run / "scene.toml")), **bands)
+    said = "top 0.1 mm of both: no error of it is known: it lies between 27 % (friction)"
+    assert said in write_sheet(run).read_text(encoding="utf-8")
+    assert said in write_report(run).read_text(encoding="utf-8")
 
 
 @pytest.mark.long

@@ -123,7 +123,22 @@ def test_closure_identity_on_the_tables(id):
     np.testing.assert_allclose(share, gap, rtol=1e-8, atol=1e-13)
 
 
-def test_resampling_holds_one_sample_at_a_time():
+@pytest.mark.parametrize("n", [2, 3, 4, 8])
+def test_the_interval_of_few_tests_holds_95_per_cent_of_the_true_values(n):
+    """Tests drawn anew with replacement held 74 % of three and 89 % of eight."""
+    rng, repeats = np.random.default_rng(5), 400
+    true = {"v_n": -1.5, "v_t": -1.5, "V_n": 0.33, "V_t": -0.39, "Omega": 4.0}
+    scatter, arms = (0.01, 0.01, 0.07, 0.08, 2.0), {"d_c": 0.0217, "d_d": 0.0339, "k2": 5.5e-4}
+    known = coefficients(**true, **arms)
+    held = np.zeros(2)
+    for _ in range(repeats):
+        motion = {k: rng.normal(v, sd, n) for (k, v), sd in zip(true.items(), scatter, strict=True)}
+        found = bootstrap(motion, **arms, errors=Errors(0.0, 0.0), samples=500)
+        held += [found[name].low <= getattr(known, name) <= found[name].high for name in ("e", "mu")]
+    assert held / repeats == pytest.approx(0.95, abs=0.04)
+
+
+def test_the_tests_are_never_drawn_one_by_one():
     """Twenty thousand tests took 3.8 GB when all samples were drawn at once."""
     rng = np.random.default_rng(3)
     motion = {"v_n": rng.normal(-2.0, 0.1, 20_000), "v_t": -2.0, "V_n": 0.3, "V_t": -0.5, "Omega": 10.0}

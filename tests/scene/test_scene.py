@@ -174,8 +174,25 @@ def test_a_whole_table_repeats_no_set_and_the_title_says_so(key, table):
     assert changed.title == f"t5b, changed: another {key}"
 
 
-def test_a_table_of_materials_alone_is_the_models_side():
-    assert replace(load("t5b"), "barrier", {"material": "steel-4340"}).measured == "t5b"
+@pytest.mark.parametrize(
+    ("key", "value", "told"),
+    [
+        ("barrier.material", "copper", "barrier.material = copper"),
+        ("barrier", {"material": "steel-4340"}, "another barrier"),
+        ("projectile.material", {"name": "mine", "E": "200 GPa", "nu": 0.3, "rho": "7850 kg/m3"}, "= mine"),
+    ],
+)
+def test_a_body_of_another_material_repeats_no_set(key, value, told):
+    changed = replace_all(load("t5b"), {key: value, "effects": "auto"})
+    assert changed.measured is None
+    assert changed.title.startswith("t5b, changed: ") and changed.title.endswith(told)
+
+
+def test_other_values_of_the_same_material_are_the_models_side():
+    changed = replace(load("t5b"), "barrier.material.E", "200 GPa")
+    assert changed.measured == "t5b"
+    for key, value in {"barrier.material": "Plate-Steel", "barrier": {"material": "plate-steel"}}.items():
+        assert replace(changed, key, value).measured == "t5b"
 
 
 def test_a_title_says_that_its_set_was_changed():
@@ -183,6 +200,10 @@ def test_a_title_says_that_its_set_was_changed():
     assert replace(stated, "surface.friction", 0.3).title == stated.title
     changed = replace(replace(stated, "impact.angle", "20 deg"), "projectile.length", "100 mm")
     assert changed.title == "t5b, changed: impact.angle = 20 deg, projectile.length = 100 mm"
+    both = replace_all(stated, {"surface.friction": 0.2, "impact.angle": "15 deg"})
+    assert both.title == "t5b, changed: surface.friction = 0.2, impact.angle = 15 deg"
+    whole = [{"surface.friction": f, "impact.angle": "15 deg"} for f in (0, 0.0)]
+    assert len({replace_all(stated, changes).title for changes in whole}) == 1
     assert replace_all(stated, {"title": "mine", "impact.angle": "20 deg"}).title == "mine"
 
 

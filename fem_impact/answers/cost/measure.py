@@ -11,7 +11,7 @@ from typing import Any
 
 from fem_impact.answers.cost.judge import Judged, SettingKind, elements_of, front, judged_levels, judged_model
 from fem_impact.answers.refine.extrapolate import QuantityLimit, quantity_limits
-from fem_impact.answers.refine.quantities import QUANTITIES
+from fem_impact.answers.refine.quantities import FLOORS, QUANTITIES
 from fem_impact.answers.refine.work import Levels, LevelsJob
 from fem_impact.case.case import Case
 from fem_impact.errors import RunError, SceneError
@@ -254,8 +254,8 @@ def cost_tables(cost: CostStudy, names: Sequence[str] = NAMES) -> list[tuple[str
     tables = (
         (
             "errors",
-            "Errors in %; of levels the band that they tell, or their distance from the limit if that is "
-            "more; *: no other setting is both quicker and more accurate",
+            f"Errors in % of the quantity ({FLOORS}); of levels the band that they tell, or their distance "
+            "from the limit if that is more; *: no other setting is both quicker and more accurate",
             columns,
             [*_limit_rows(cost, listed), *(_line(setting, listed) for setting in settings)],
         ),

@@ -59,6 +59,11 @@ QUANTITIES = (
     _quantity("friction", "E_0", SHARE, "W_friction_over_E_0"),
     _quantity("peak force", "N", 0.0, "peak_force_N"),
 )
+FLOORS = (
+    f"of e and mu at least of 0.05, of an energy at least of {100 * SHARE:g} % of E_0, of Omega at least of "
+    "a tenth of speed over radius of gyration"
+)
+"""Floors of the scales in words."""
 TARGETED = ("e", "E_vib")
 """Quantities that a target error applies to unless others are named."""
 

@@ -280,15 +280,15 @@ def _loss_of(s: experiments.MeasuredSet, mu: float) -> float:
 
 
 def figure_7(out: Path) -> Drawn:
-    """Draw measured mean losses with 95 % intervals, and Eq 23-25 with the band of resampled tests."""
+    """Draw measured mean losses with 95 % intervals, and Eq 23-25 with the band of drawn means."""
     picture = out / "figure-7.png"
     x = np.radians(DEGREES)
-    # of the measured means (173,), and of resampled tests (draws, 173)
-    curves, resampled = (
+    # of the measured means (173,), and of drawn ones (draws, 173)
+    curves, repeated = (
         {"total": p.E_ln + p.E_lt, "E_lt": p.E_lt, "E_ln": p.E_ln}
         for p in (experiments.loss_against_angle(x), experiments.drawn_losses(x))
     )
-    bands = {name: np.percentile(many, [2.5, 97.5], axis=0) for name, many in resampled.items()}
+    bands = {name: np.percentile(many, [2.5, 97.5], axis=0) for name, many in repeated.items()}
     measured: list[dict[str, experiments.Statistic]] = []
     for rows_of in (s.recomputed() for s in experiments.angle_sets()):
         # the total is 1 - E_r/E_0, independent of e_m
@@ -306,11 +306,11 @@ def figure_7(out: Path) -> Drawn:
     write_data(picture, COLUMNS_7, rows)
     peaks = {}
     for name in ("total", "E_lt"):
-        low, high = np.percentile(DEGREES[resampled[name].argmax(axis=1)], [2.5, 97.5])
+        low, high = np.percentile(DEGREES[repeated[name].argmax(axis=1)], [2.5, 97.5])
         peaks[name] = (float(DEGREES[curves[name].argmax()]), float(low), float(high))
     sentence = (
         f"With interpolated coefficients the total loss is largest at {_words(peaks['total'])} degrees and "
-        f"the tangential loss at {_words(peaks['E_lt'])} degrees (95 % by resampling the tests; linear "
+        f"the tangential loss at {_words(peaks['E_lt'])} degrees (95 % of drawn means; linear "
         "interpolation between measured angles is a choice)."
     )
     with canvas(picture, 4.4, sentence) as drawn:

@@ -27,6 +27,7 @@ def test_cost_prints_table_and_advice(cli, fake):
     assert (code, err) == (0, "")
     assert "Cheapest within 25 % of e: rigid" in out
     assert "Best within 400 s on one core: 3 levels to 0.297 mm, two places" in out
+    assert "an energy at least of 0.5 % of E_0" in out
     assert "results: results/cost/t5b" in out
     assert "page: results/cost/t5b/report.html" in out
     page = Path("results/cost/t5b/report.html").read_text()

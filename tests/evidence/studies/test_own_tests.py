@@ -194,6 +194,23 @@ def test_tests_without_scatter_have_a_verdict(tmp_path):
     assert rows["e"]["verdict"] == "miss: tests without scatter"
 
 
+def test_what_all_tests_share_widens_the_interval_and_the_scatter(tmp_path):
+    scene = read_toml(write(tmp_path))
+    known = simulate(scene, "rigid")
+    (tmp_path / "my_tests.csv").write_text("quantity,mean,sd,n\nmu,0.4,0.005,8\n")
+    alone = measured_by(scene).statistics()["mu"]
+    assert alone.spread == alone.sd
+    (tmp_path / "my_tests.csv").write_text("quantity,mean,sd,n,systematic\nmu,0.4,0.005,8,0.15\n")
+    tests = measured_by(scene)
+    shared = tests.statistics()["mu"]
+    assert shared.high - 0.4 == pytest.approx(np.hypot(alone.high - 0.4, 0.3))
+    row = next(row for row in compare(known, tests) if row["quantity"] == "mu")
+    assert row["measured_sd"] == pytest.approx(np.hypot(0.005, 0.15)) and row["verdict"] == "inside"
+    (tmp_path / "my_tests.csv").write_text("quantity,mean,sd,n,systematic\nmu,0.1,,1,0.05\n")
+    row = next(row for row in compare(known, measured_by(scene)) if row["quantity"] == "mu")
+    assert row["verdict"] == f"miss by {(known.estimate('mu')[0] - 0.1) / 0.05:+.1f} SD"
+
+
 def test_the_page_of_a_run_sets_it_beside_the_tests(cli, tmp_path):
     write(tmp_path)
     (tmp_path / "my_tests.csv").write_text(means_of())
