@@ -462,6 +462,16 @@ def test_finite_elements_elsewhere_are_missing_where_the_reduced_model_is_too_lo
     assert judge(scene, Sloped(), 65.0, ANGLE).missing.startswith("a smaller error of finite elements")
 
 
+def test_a_dent_needs_as_many_levels_as_a_default_run(scene, monkeypatch):
+    """Two levels agreed at 5.1 +- 0.5 um of a tube whose third has 7.4."""
+    monkeypatch.setattr(criteria, "level_limits", lambda used: ({}, {}))
+    runs = [SimpleNamespace(size=2.0**-at, wide=True) for at in range(3)]
+    outcome = SimpleNamespace(contact=SimpleNamespace(sites=[SimpleNamespace(depth=5e-6)]))
+    levels = [SimpleNamespace(outcome=outcome, runs=one, cases=[Case(scene)]) for one in runs]
+    assert LIMITED["dent"].solid(levels[:2]) is None
+    assert LIMITED["dent"].solid(levels).value == pytest.approx(5e-6)
+
+
 def test_heat_needs_as_many_levels_as_a_default_run():
     assert LIMITED["heat"].solid([None, None]) is None
 
