@@ -188,11 +188,24 @@ def _ordered(changes: Mapping[str, Any]) -> list[tuple[str, Any]]:
 
 def _stands(data: dict[str, Any], key: str, value: Any) -> bool:
     """Return whether a dotted key has a value, of a state that which was stated."""
-    *path, last = key.split(".")
-    table: Any = data
-    for name in path:
-        table = table.get(name) if isinstance(table, dict) else None
-    return isinstance(table, dict) and last in table and (key != "surface.state" or table[last] == value)
+    there = value_at(data, key)
+    return there == value if key == "surface.state" else value is None or there is not None
+
+
+def value_at(data: Mapping[str, Any], key: str) -> Any:
+    """Return the value of a dotted key in the tables of a scene, None where it has none."""
+    value: Any = data
+    for name in key.split("."):
+        value = value.get(name) if isinstance(value, Mapping) else None
+    return value
+
+
+def alters(scene: Scene, key: str, value: Any, other: str) -> bool:
+    """Return whether a changed key alters the value of another one, as a friction does its interval."""
+    data = to_dict(scene)
+    before = value_at(data, bare(other))
+    _change(data, key, plain_value(value))
+    return bool(value_at(data, bare(other)) != before)
 
 
 def moved(changes: Iterable[str]) -> set[str]:
