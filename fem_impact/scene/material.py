@@ -149,6 +149,15 @@ class JohnsonCookRate:
         fields.check_numbers(self, fields.RATES[self.law])
 
 
+def tested_at(flow: Flow | None, reference: float) -> float:
+    """Return the rate, 1/s, of the tests that gave the strengths of a metal where that is not stated.
+
+    The numbers of a curve of Johnson and Cook hold at the ``reference`` rate of their law, 1/s.
+    """
+    default = next(f.default for f in fields.RATES[JohnsonCookRate.law] if f.key == "tested")
+    return reference if isinstance(flow, JohnsonCookFlow) or default is None else default
+
+
 @dataclass(frozen=True, slots=True)
 class CowperSymondsRate:
     """Flow stress in proportion to 1 + (rate / D)^(1/q), over that of a static test; D in 1/s."""

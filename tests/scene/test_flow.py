@@ -9,8 +9,9 @@ from scipy.integrate import solve_ivp
 
 from fem_impact.case.case import Case
 from fem_impact.case.effects.plasticity import hardening_of, strength_of
+from fem_impact.cli.statement import statement_of
 from fem_impact.errors import SceneError
-from fem_impact.physics.hardening import Hardening, TabulatedHardening
+from fem_impact.physics.hardening import Hardening, TabulatedHardening, rate_law
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.inputs import inputs
 from fem_impact.scene.material import JohnsonCookFlow, Material, RambergOsgoodFlow, TableFlow
@@ -114,6 +115,30 @@ def test_kept_heat_softens_as_the_equation_of_the_temperature_says():
     stresses = [stress for _, stress in law.points]
     assert stresses == sorted(stresses)
     assert stresses[-1] == stresses[-2]
+
+
+def test_johnson_and_cooks_curve_is_that_of_the_reference_rate():
+    """(A + B p^n)(1 + C ln(rate / reference)); a slow test gives the strengths of other curves alone."""
+    rate = {"law": "johnson-cook", "C": 0.025}
+    law = rate_law(metal(**LAWS["johnson-cook"], rate=rate))
+    assert law.factor(1000.0) == pytest.approx(1 + 0.025 * np.log(1000), rel=1e-12)
+    assert law.factor(0.01) == 1.0
+    fast = metal(**LAWS["johnson-cook"], rate=rate | {"reference": "10 /s"})
+    assert fast.rate.tested == 10.0
+    stated = metal(**LAWS["johnson-cook"], rate=rate | {"tested_per_s": 0.01})
+    assert (stated.rate.tested, metal(**LAWS["perfect"], rate=rate).rate.tested) == (0.01, 0.002)
+
+
+def test_the_rate_of_the_tests_is_told_where_a_scene_states_none():
+    def told(material):
+        every = statement_of(Case.of(scene(COPPER | material), "rigid"))["defaults"]
+        return {one["key"]: one["value"] for one in every if ".rate." in one["key"]}
+
+    rate = {"law": "johnson-cook", "C": 0.025}
+    keys = [f"projectile.material.rate.{key}" for key in ("reference", "tested")]
+    assert told(LAWS["johnson-cook"] | {"rate": rate}) == dict.fromkeys(keys, "1 /s")
+    assert told(LAWS["perfect"] | {"rate": rate}) == dict(zip(keys, ("1 /s", "0.002 /s"), strict=True))
+    assert told(LAWS["perfect"] | {"rate": rate | {"tested": "5 /s", "reference": "2 /s"}}) == {}
 
 
 def test_a_table_is_its_points():
