@@ -20,6 +20,7 @@ from fem_impact.scene.material import (
     SkinSpec,
     Surface,
     TableFlow,
+    families_by_words,
     family_by_words,
     tested_at,
 )
@@ -171,6 +172,11 @@ def read_material(table: Table | str) -> Material:
             value=made.name,
             remedy="Give a changed material a name of its own.",
         )
+    if not family_of(made) and (of := families_by_words(made.name)):
+        choices = " or ".join(f'"{family}"' for family in of)
+        remedy = f"State which it is, family = {choices}."
+        problem = f"is missing: the words of the name {made.name!r} are those of {' and of '.join(of)}."
+        raise SceneError(problem, key="family", remedy=remedy)
     return made
 
 
