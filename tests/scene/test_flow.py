@@ -13,6 +13,7 @@ from fem_impact.cli.statement import statement_of
 from fem_impact.errors import SceneError
 from fem_impact.physics.hardening import Hardening, TabulatedHardening, rate_law
 from fem_impact.run.simulate import simulate
+from fem_impact.scene import curve
 from fem_impact.scene.inputs import inputs
 from fem_impact.scene.material import JohnsonCookFlow, Material, RambergOsgoodFlow, TableFlow
 from fem_impact.scene.read import read_dict
@@ -185,6 +186,24 @@ def test_the_limit_pressure_of_a_body_without_ultimate_stress_is_finite():
     assert strength_of(metal(**LAWS["plastic modulus"])) == pytest.approx(500e6)
     assert strength_of(metal(yield_stress="90 MPa", ultimate_stress="200 MPa")) == 200e6
     assert strength_of(metal()) == np.inf
+
+
+def test_strains_in_per_cent_are_taken_as_such_or_refused(tmp_path):
+    def points(header, kind="plastic"):
+        (tmp_path / "curve.csv").write_text(f"{header},stress_MPa\n0,350\n2,500\n15,700\n")
+        return curve.curve(str(tmp_path / "curve.csv"), kind, 2e11)
+
+    for header in ("strain_%", "strain [%]", "strain (%)"):
+        assert np.array(points(header)) == pytest.approx(np.array([[0, 350e6], [0.02, 500e6], [0.15, 700e6]]))
+    for kind in ("plastic", "true", "engineering"):
+        with pytest.raises(
+            SceneError, match=r"points: has a strain of 15, above 3. .*0.15, not 15, for 15 %"
+        ):
+            points("strain", kind)
+    with pytest.raises(SceneError, match="no two columns strain and stress"):
+        points("strain,strain_%")
+    with pytest.raises(SceneError, match="at most 3"):
+        TableFlow(((0.0, 350e6), (15.0, 700e6)))
 
 
 def test_the_numbers_of_a_flow_curve_are_changed_on_the_command_line():
