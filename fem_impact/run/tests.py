@@ -15,6 +15,8 @@ from fem_impact.errors import ResultError
 from fem_impact.outcome.keys import Num, Unknown
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.run.seen_tests import TURNING, SeenTests
+from fem_impact.scene import library
+from fem_impact.scene.measured import FAR
 from fem_impact.scene.own_tests import Camera, Mean, holds_means, read_camera, read_means
 from fem_impact.scene.types import OWN, Scene
 from rigid import Arms, RigidError, experiments
@@ -151,18 +153,17 @@ def count(tests: MeasuredTests) -> int:
     return max(one.n for one in tests.statistics().values())
 
 
-FAR = 0.2
-"""Difference from the scene's velocity, over its speed as seen from the barrier, above which a test is told
-to be another impact."""
-
-
 def doubtful_tests(scene: Scene) -> list[str]:
     """Return a sentence on single tests of another impact than the scene's, and on those that gained energy.
+
+    Of a published set it is on metals of other names than the tested ones.
 
     The first such test is named, with both its values. Energy is that seen from the barrier.
     """
     file = scene.measured or ""
-    if not file.endswith(OWN) or holds_means(file):
+    if not file.endswith(OWN):
+        return _other_metals(scene) if file else []
+    if holds_means(file):
         return []
     camera = read_camera(file)
     seen, warnings = seen_tests(scene, camera), other_impacts(scene, camera)
@@ -175,6 +176,17 @@ def doubtful_tests(scene: Scene) -> list[str]:
             f"{_named(camera, gained)} has more kinetic energy after than before the impact: {both}."
         )
     return warnings
+
+
+def _other_metals(scene: Scene) -> list[str]:
+    """Return a sentence on each body whose metal has another name than that of the published set."""
+    name = scene.measured or ""
+    tested = {body: library.stated(name)[body]["material"] for body in scene.materials}
+    return [
+        f"{body}.material is {metal.name}, but {name} was measured with {tested[body]}."
+        for body, metal in scene.materials.items()
+        if metal.name.removesuffix(library.CHANGED) != tested[body]
+    ]
 
 
 def other_impacts(scene: Scene, camera: Camera) -> list[str]:
