@@ -12,6 +12,11 @@ from .inputs import ArrayLike, DataError, Floats
 MOTION = ("v_n", "v_t", "V_n", "V_t", "Omega")
 
 
+def _names(motion: Mapping[str, ArrayLike]) -> tuple[str, ...]:
+    """Return the velocities of tests by name, with the spin omega before where it is given."""
+    return (*MOTION, "omega") if "omega" in motion else MOTION
+
+
 @dataclass(frozen=True, slots=True)
 class Errors:
     """Errors common to all tests of a set, as bounds (+-) of a rectangular distribution.
@@ -68,11 +73,11 @@ class Estimate:
 
 
 def stack_tests(motion: Mapping[str, ArrayLike]) -> Floats:
-    """Stack v_n, v_t, V_n, V_t, Omega as (5, n); refuse less than two tests."""
+    """Stack v_n, v_t, V_n, V_t, Omega, and omega if given, as (5 or 6, n); refuse less than two tests."""
     missing = [name for name in MOTION if name not in motion]
     if missing:
         raise DataError(f"the motion lacks {', '.join(missing)}; it needs {', '.join(MOTION)}")
-    rows = np.stack(np.broadcast_arrays(*(np.asarray(motion[k], dtype=np.float64) for k in MOTION)))
+    rows = np.stack(np.broadcast_arrays(*(np.asarray(motion[k], dtype=np.float64) for k in _names(motion))))
     if rows.ndim != 2 or rows.shape[1] < 2:
         raise DataError(f"an uncertainty needs at least two tests, got shape {rows.shape[1:]}")
     return rows
@@ -129,7 +134,7 @@ def first_order(
     Parameters
     ----------
     motion : mapping of str to (n,) array_like
-        v_n, v_t, V_n, V_t (m/s), Omega (rad/s); n >= 2.
+        v_n, v_t, V_n, V_t (m/s), Omega (rad/s); n >= 2. Spin omega before (rad/s), 0 where it is not given.
     d_c, d_d : float
         Arms, m.
     k2 : float
@@ -143,20 +148,26 @@ def first_order(
         For e, mu and e_m.
     """
     errors = errors or Errors()
-    rows = stack_tests(motion)
-    mean = dict(zip(MOTION, rows.mean(axis=1), strict=True))
+    rows, names = stack_tests(motion), _names(motion)
+    mean = dict(zip(names, rows.mean(axis=1), strict=True))
     at = {k: np.asarray(v, dtype=np.float64) for k, v in {**mean, "d_c": d_c, "d_d": d_d}.items()}
     values = coefficients(**at, k2=k2)._asdict()
     slopes = sensitivities(lambda **x: coefficients(**x, k2=k2)._asdict(), at)
-    return {name: _estimate(float(value), slopes[name], rows, errors) for name, value in values.items()}
+    return {
+        name: _estimate(float(value), slopes[name], dict(zip(names, rows, strict=True)), errors)
+        for name, value in values.items()
+    }
 
 
-def _estimate(value: float, slope: Mapping[str, Floats], rows: Floats, errors: Errors) -> Estimate:
+def _estimate(
+    value: float, slope: Mapping[str, Floats], tests: Mapping[str, Floats], errors: Errors
+) -> Estimate:
     """Estimate with the root sum of squares of the three sources."""
     from scipy.special import stdtrit  # here, as a run of the solver needs the rest of this package only
 
+    rows = np.stack([*tests.values()])
     n = rows.shape[1]
-    g = np.array([slope[name] for name in MOTION])
+    g = np.array([slope[name] for name in tests])
     arms = np.array([slope[name] for name in ARMS])
     parts = {
         "scatter": float(np.sqrt(max(g @ np.cov(rows) @ g, 0.0) / n)),
@@ -194,8 +205,8 @@ def bootstrap(
         For e, mu and e_m; `sd` is that half width with all sources together.
     """
     errors = errors or Errors()
-    rows, rng = stack_tests(motion), np.random.default_rng(seed)
-    mean = dict(zip(MOTION, rows.mean(axis=1), strict=True))
+    rows, names, rng = stack_tests(motion), _names(motion), np.random.default_rng(seed)
+    mean = dict(zip(names, rows.mean(axis=1), strict=True))
     values = coefficients(**mean, d_c=d_c, d_d=d_d, k2=k2)._asdict()
 
     def draw(*sources: str) -> dict[str, Floats]:
@@ -206,7 +217,7 @@ def bootstrap(
         means = means * (1.0 + tracking * rng.uniform(-1, 1, means.shape))
         shift = (errors.contact if "contact" in sources else 0.0) * rng.uniform(-1, 1, (2, samples))
         possible = (means[0] < 0) & (means[2] > means[0])  # v_n, V_n
-        motions = dict(zip(MOTION, means[:, possible], strict=True))
+        motions = dict(zip(names, means[:, possible], strict=True))
         arms = dict(zip(ARMS, np.array([[d_c], [d_d]]) + shift[:, possible], strict=True))
         return coefficients(**motions, **arms, k2=k2)._asdict()
 

@@ -36,7 +36,7 @@ from fem_impact.outcome.keys import Num, Unknown, known
 from fem_impact.progress import CaseProgress, silent, watched
 from fem_impact.run.modal_error import HELD
 from fem_impact.run.tests import NUMBERS, tests_freedom, tests_of
-from fem_impact.scene.shipped import bare, named, replace_all
+from fem_impact.scene.shipped import bare, named, replace_all, value_at
 from fem_impact.scene.types import Scene, to_dict
 from fem_impact.tables.table import Table
 
@@ -336,10 +336,8 @@ def _about(scene: Scene, key: str, text: str) -> Interval:
 
 def _own(scene: Scene, key: str) -> Any:
     """Return the value that a scene states of a key, as it writes it; empty where it states none."""
-    value: Any = to_dict(scene)
-    for name in key.split("."):
-        value = value.get(name, "") if isinstance(value, dict) else ""
-    return value
+    value = value_at(to_dict(scene), key)
+    return "" if value is None else value
 
 
 def left_out(scene: Scene, intervals: Sequence[Interval]) -> dict[str, str]:

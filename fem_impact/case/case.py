@@ -16,7 +16,7 @@ from fem_impact.case.effects.slots import ModelSpec
 from fem_impact.case.elastic_only import require_crushing_named
 from fem_impact.case.layers import as_one, block_of, require_heavier, require_layers, thin_layer
 from fem_impact.case.mesh import require_gauge, require_mesh
-from fem_impact.case.metals import unknowns
+from fem_impact.case.metals import require_solid, unknowns
 from fem_impact.case.plates import is_thin, require_plate, require_plate_mesh, too_thin
 from fem_impact.case.record import ContactRecord
 from fem_impact.case.recorded import AnyZones, recorded_zones, unresolved_skins
@@ -91,6 +91,7 @@ class Case:
         """Refuse a scene that the fidelity cannot hold (SceneError)."""
         scene, fidelity = self.scene, self.fidelity
         require_crushing_named(scene)
+        require_solid(scene)
         followed.require_still(scene.barrier, fidelity)
         followed.require_followed(scene)
         limits.require_own_mesh(self.bodies, fidelity)

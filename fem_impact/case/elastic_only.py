@@ -21,8 +21,8 @@ SOFT = (1e8, 2e10)  # Pa: E up to which a body is as soft as a rubber, or as a p
 UNSORTED = (
     "A body so soft is viscous, as rubbers and foams are, and does not crack.",
     "So soft are plastics, woods and weak concretes: they are viscous, or are crushed.",
-    "A metal flows, a ceramic, a glass or a rock cracks: neither is followed, nor the energy that it "
-    f"takes, {UPPER}.",
+    "Its family is unknown: a metal flows, a ceramic, a glass, a rock or a concrete cracks. Neither is "
+    f"followed, nor the energy that it takes, {UPPER}. State its family.",
 )
 VISCOUS = ("plastic", "rubber", "wood")
 NOT_TAKEN = f" What it loses inside is left out, {UPPER}."

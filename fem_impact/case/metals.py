@@ -7,17 +7,19 @@ from fem_impact.case.effects.heating import number as flash_number
 from fem_impact.case.effects.heating import thermal
 from fem_impact.case.effects.plasticity import hardening_of
 from fem_impact.case.elastic_only import left_out
+from fem_impact.errors import SceneError
 from fem_impact.physics.hardening import TABOR_STRAIN, rate_gain, rate_law
 from fem_impact.scene import material as materials
-from fem_impact.scene.inputs import materials_of, melting
+from fem_impact.scene.inputs import first_melting, materials_of, melting
 from fem_impact.scene.library import family_of
 from fem_impact.scene.material import kind_of
 from fem_impact.scene.surface_table import known_pair
-from fem_impact.scene.types import Heating
+from fem_impact.scene.types import Heating, Scene
 from fem_impact.scene.units import format_quantity
 
 RATES = (1e2, 1e3, 1e4)  # 1/s, at which flow stresses are told
 HOT = 0.3  # expected flash rise over that to ignition; finite elements gave up to 3.3 times the expected rise
+NEAR_ROOM = 50.0  # K from 20 degC within which strengths and moduli are those of 20 degC
 HEAVY, SOFT = 2500.0, 1e9  # kg/m3, Pa: no usual solid is heavier and softer
 YIELDS = {"rod": "rod-plasticity", "barrier": "barrier-elastoplastic"}
 
@@ -37,8 +39,28 @@ def unknowns(bodies: Bodies) -> tuple[str, ...]:
     under = [("barrier", metal) for _, metal in bodies.barrier.strata[1:]]
     of_metals = [_body(body, metal, bodies) for body, metal in (*_metals(bodies).items(), *under)]
     soft = [_unlike_solids(key, metal) for key, metal in materials_of(bodies.scene).items()]
-    sentences = (*soft, *dict.fromkeys(of_metals), _friction(bodies), _heat(bodies))
+    ambient = _ambient(bodies.scene.heating)
+    sentences = (*soft, ambient, *dict.fromkeys(of_metals), _friction(bodies), _heat(bodies))
     return tuple(sentence for sentence in sentences if sentence)
+
+
+def require_solid(scene: Scene) -> None:
+    """Refuse a temperature before the impact at which a body of known melting point melts (SceneError)."""
+    ambient, (limit, name) = scene.heating.ambient, first_melting(scene)
+    if ambient >= limit:
+        problem = f"is not below the temperature at which {name} begins to melt, {limit:g} K."
+        raise SceneError(problem, key="heating.ambient", value=f"{ambient:g} K", remedy="Give a lower one.")
+
+
+def _ambient(heating: Heating) -> str:
+    """Return that strengths are those of room temperature where the bodies are much warmer or colder."""
+    if abs(heating.ambient - Heating().ambient) <= NEAR_ROOM:
+        return ""
+    return (
+        f"heating.ambient = {heating.ambient:g} K adds to the heat alone: strengths and moduli are used as "
+        "stated, those of shipped materials at 20 degC, so that forces, dents and e at that temperature are "
+        "not known. State strengths and E of that temperature."
+    )
 
 
 def _metals(bodies: Bodies) -> dict[str, materials.Material]:

@@ -8,7 +8,8 @@ from fem_impact.cli.scene_options import angle_of, named_scene, rod_of
 from fem_impact.cli.terminal import print_answer
 from fem_impact.errors import SceneError, UsageError
 from fem_impact.evidence.paper.own_data import own_coefficients
-from fem_impact.run.tests import other_impacts
+from fem_impact.run.seen_tests import TURNING, SeenTests
+from fem_impact.run.tests import other_impacts, seen_tests
 from fem_impact.scene.own_tests import Camera, read_camera
 from fem_impact.scene.units import option_quantity
 from rigid import Arms, Body, RigidError, touch_arms
@@ -27,10 +28,13 @@ def coefficients(options: Options) -> int:
         tip = rod.tip, rod.tip_radius
     stated = _stated_arms(options)
     camera = read_camera(options.file)
+    seen = seen_tests(scene, camera) if scene else SeenTests.of(camera.motion, rod.mass, rod.k2, 0.0, None)
+    if seen.turns:
+        raise SceneError(TURNING, key="barrier.inertia", remedy="Give tests on a barrier that does not turn.")
     arms, source = _arms(stated, rod, alpha, camera)
     try:
         with np.errstate(divide="ignore", invalid="ignore"):  # no moment coefficient without an arm
-            document = own_coefficients(camera, rod, tip, alpha, arms, source)
+            document = own_coefficients(camera, seen, rod, tip, alpha, arms, source)
     except RigidError as error:
         raise SceneError(f"{error}.", source=str(options.file), remedy="Check signs and arms.") from None
     document = {"file": str(options.file), **document}

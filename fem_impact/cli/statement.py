@@ -1,5 +1,6 @@
 """What a scene states and calls for, as the document of which the command ``check`` makes its texts."""
 
+from collections.abc import Iterator
 from dataclasses import asdict
 from typing import Any
 
@@ -11,9 +12,10 @@ from fem_impact.case.size import RunSize
 from fem_impact.cli.paths import shown_path
 from fem_impact.outcome.groups import EffectChoice
 from fem_impact.outcome.keys import keys_of
-from fem_impact.scene.fields import DEFAULTS
+from fem_impact.scene import fields
 from fem_impact.scene.inputs import STATED, inputs, materials_of
-from fem_impact.scene.library import intervals_of
+from fem_impact.scene.library import CHANGED, intervals_of, materials
+from fem_impact.scene.material import JohnsonCookRate, Material, tested_at
 from fem_impact.scene.types import Scene, digest, to_dict
 
 __all__ = ["statement_of"]
@@ -49,12 +51,27 @@ def statement_of(case: Case) -> dict[str, Any]:
 def _defaults(scene: Scene) -> list[dict[str, str]]:
     """Return the values that are used where a scene states none, without those of which it states another."""
     tables, unstated = to_dict(scene), []
-    for default in DEFAULTS:
+    for default in fields.DEFAULTS:
         section, _, name = default.key.partition(".")
         stated = tables.get(section, {}).get(name, default.value)
         if str(stated) == str(default.value):
             unstated.append({"key": default.key, "value": default.value, "source": default.source})
-    return unstated
+    return unstated + [
+        line for place, metal in materials_of(scene).items() for line in _of_rate(place, metal)
+    ]
+
+
+def _of_rate(place: str, metal: Material) -> Iterator[dict[str, str]]:
+    """Yield the numbers of a scene's own law of the rate that are those of one which states none."""
+    rate = metal.rate
+    if not isinstance(rate, JohnsonCookRate) or metal.name.removesuffix(CHANGED) in materials():
+        return
+    unstated = {"tested": tested_at(metal.flow, rate.reference)}
+    for number in fields.RATES[rate.law]:
+        value = getattr(rate, number.key)
+        if value == unstated.get(number.key, number.default):
+            key = f"{place}.rate.{number.key}"
+            yield {"key": key, "value": str(number.write(value)), "source": number.source}
 
 
 def _mesh_entry(scene: Scene) -> list[str]:

@@ -2,7 +2,7 @@
 
 import sys
 from collections.abc import Mapping
-from contextlib import closing, nullcontext
+from contextlib import closing, nullcontext, suppress
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -20,7 +20,8 @@ from fem_impact.errors import RunError, SceneError, UsageError
 from fem_impact.files.atomic import read_text
 from fem_impact.jobs.executors import cores, on_scheduler
 from fem_impact.scene.impact import WAYS, the_way
-from fem_impact.scene.shipped import bare, moved
+from fem_impact.scene.shipped import alters, bare, moved
+from fem_impact.scene.types import Scene
 
 
 def sweep(options: Options) -> int:
@@ -30,6 +31,7 @@ def sweep(options: Options) -> int:
     vary = read_all(options.vary, "--vary")
     _refuse_both(read_changes(options.changes), vary)
     scene = asked_scene(options)
+    _refuse_altered(scene, read_changes(options.changes), vary)
     every = cases(scene, vary)  # refuses what cannot run before a directory is made
     fidelity, workers = options.fidelity or FIDELITY, options.workers or cores()
     about = cases_digest(every, fidelity)
@@ -57,8 +59,7 @@ def _refuse_both(changes: Mapping[str, Any], vary: Mapping[str, Any]) -> None:
     """Refuse a value of ``--set`` that a varied one takes the place of, and an impact stated in two ways."""
     for key, other in product(changes, vary):
         if bare(key) == bare(other) or key.startswith(f"{other}."):
-            remedy = "Leave out one of the two."
-            raise UsageError(f"is given beside --vary {other}.", key="--set", value=key, remedy=remedy)
+            raise _beside(key, other)
     stated = moved([*changes, *vary])
     if not any(set(way) & stated for way in WAYS):
         return
@@ -66,3 +67,19 @@ def _refuse_both(changes: Mapping[str, Any], vary: Mapping[str, Any]) -> None:
         the_way(stated)
     except SceneError as error:
         raise error.under("impact", "--set, --vary") from None
+
+
+def _refuse_altered(scene: Scene, changes: Mapping[str, Any], vary: Mapping[str, Any]) -> None:
+    """Refuse a value of ``--set`` that a varied one alters, as a surface state does a friction."""
+    for key, (other, values) in product(changes, vary.items()):
+        if other.startswith(f"{key}."):
+            continue  # a part of a whole table that is set may be varied
+        for value in values:
+            with suppress(SceneError):  # a key that no scene has is told with the cases
+                if alters(scene, other, value, key):
+                    raise _beside(key, other)
+
+
+def _beside(key: str, varied: str) -> UsageError:
+    remedy = "Leave out one of the two."
+    return UsageError(f"is given beside --vary {varied}.", key="--set", value=key, remedy=remedy)

@@ -11,11 +11,15 @@ import numpy as np
 
 from fem_impact.arrays import Array, Ints
 from fem_impact.case.bodies import Bodies
+from fem_impact.errors import ResultError
 from fem_impact.outcome.keys import Num, Unknown
 from fem_impact.outcome.record import KEY_TABLE, Outcome
+from fem_impact.run.seen_tests import TURNING, SeenTests
+from fem_impact.scene import library
+from fem_impact.scene.measured import FAR
 from fem_impact.scene.own_tests import Camera, Mean, holds_means, read_camera, read_means
 from fem_impact.scene.types import OWN, Scene
-from rigid import Arms, experiments, kinetic_energy
+from rigid import Arms, RigidError, experiments
 
 COVERAGE = 2.0  # standard uncertainties that all tests share, from their mean to the ends of its interval
 
@@ -112,12 +116,11 @@ def _statistic(mean: Mean) -> experiments.Statistic:
 
 @dataclass(frozen=True, slots=True)
 class SingleTests:
-    """Tests known one by one: velocities by name, ``(n,)``, and k2, m2, and mass, kg, of their rod."""
+    """Tests known one by one: velocities over the ground by name, ``(n,)``, and as seen from the barrier."""
 
     arms: Arms
     motion: Mapping[str, Array]
-    k2: float
-    mass: float
+    seen: SeenTests
 
     def statistics(self) -> dict[str, experiments.Statistic]:
         """Return mean, standard deviation and 95 % interval of the mean, of what follows from them too."""
@@ -133,20 +136,20 @@ class SingleTests:
 
     def _columns(self) -> dict[str, Array]:
         """Return each quantity of all tests, those that follow from the velocities too."""
-        derived = experiments.derived_columns(self.motion, **self.arms._asdict(), k2=self.k2, mass=self.mass)
-        return {**self.motion, **derived}
+        return {**self.motion, **self.seen.columns(self.arms)}
 
 
 def tests_of(scene: Scene) -> MeasuredTests | None:
     """Return the tests that a scene repeats, None where it repeats none.
 
     A file holds single tests, or means with their scatter. Its arms are taken, or else those of the tip;
-    single tests are worked out with the rod of the scene.
+    single tests are worked out with the rod of the scene, its spin before the impact where the file has no
+    column omega, and the motion of its barrier.
 
     Raises
     ------
     ResultError
-        The file cannot be read as tests.
+        The file cannot be read as tests, or one of them is no impact on the barrier of the scene.
     """
     if scene.measured is None:
         return None
@@ -166,41 +169,57 @@ def tests_freedom(tests: MeasuredTests, names: Sequence[str]) -> float:
     return min((statistics[name].n for name in names if statistics[name].sd > 0), default=inf) - 1
 
 
-FAR = 0.2
-"""Difference from the scene's velocity, over its speed, above which a test is told to be another impact."""
-
-
 def doubtful_tests(scene: Scene) -> list[str]:
     """Return a sentence on single tests of another impact than the scene's, and on those that gained energy.
 
-    The first such test is named, with both its values. A barrier that moves may give energy.
+    Of a published set it is on metals of other names than the tested ones.
+
+    The first such test is named, with both its values. Energy is that seen from the barrier.
     """
     file = scene.measured or ""
-    if not file.endswith(OWN) or holds_means(file):
+    if not file.endswith(OWN):
+        return _other_metals(scene) if file else []
+    if holds_means(file):
         return []
-    camera, body = read_camera(file), scene.projectile.rigid_body
-    motion, warnings = camera.motion, other_impacts(scene, camera)
-    means = {"mass": body.mass, "k2": body.k2}
-    before = kinetic_energy(motion["v_n"], motion["v_t"], scene.impact.omega, **means)
-    after = kinetic_energy(motion["V_n"], motion["V_t"], motion["Omega"], **means)
-    gained = np.flatnonzero(after > before)
-    if gained.size and not (scene.barrier.v_n or scene.barrier.v_t):
-        both = " after ".join(f"{name} = {motion[name][gained[0]]:.4g} m/s" for name in ("V_n", "v_n"))
+    camera = read_camera(file)
+    seen, warnings = seen_tests(scene, camera), other_impacts(scene, camera)
+    if seen.turns:
+        warnings.append(TURNING)
+    gained = np.flatnonzero(seen.E_r > seen.E_0)
+    if gained.size:
+        both = " after ".join(f"{name} = {seen.motion[name][gained[0]]:.4g} m/s" for name in ("V_n", "v_n"))
         warnings.append(
             f"{_named(camera, gained)} has more kinetic energy after than before the impact: {both}."
         )
     return warnings
 
 
+def _other_metals(scene: Scene) -> list[str]:
+    """Return a sentence on each body whose metal has another name than that of the published set."""
+    name = scene.measured or ""
+    tested = {body: library.stated(name)[body]["material"] for body in scene.materials}
+    return [
+        f"{body}.material is {metal.name}, but {name} was measured with {tested[body]}."
+        for body, metal in scene.materials.items()
+        if metal.name.removesuffix(library.CHANGED) != tested[body]
+    ]
+
+
 def other_impacts(scene: Scene, camera: Camera) -> list[str]:
     """Return a sentence on single tests that are not of the scene's impact, by v_n and by v_t."""
-    fall, told = scene.relative, []
-    for name, component in (("v_n", fall.v_n), ("v_t", fall.v_t)):
+    stated, fall, told = scene.impact, scene.relative, []
+    for name, component in (("v_n", stated.v_n), ("v_t", stated.v_t)):
         far = np.flatnonzero(abs(camera.motion[name] - component) > FAR * hypot(fall.v_n, fall.v_t))
         if far.size:
             values = f"has {name} = {camera.motion[name][far[0]]:.4g} m/s, the scene {component:.4g} m/s"
             told.append(f"{_named(camera, far)} {values}: it is not the scene's impact.")
     return told
+
+
+def seen_tests(scene: Scene, camera: Camera) -> SeenTests:
+    """Return single tests of a scene's projectile and barrier as seen from that barrier."""
+    body = scene.projectile.rigid_body
+    return SeenTests.of(camera.motion, body.mass, body.k2, scene.impact.omega, scene.barrier)
 
 
 def _named(camera: Camera, rows: Ints) -> str:
@@ -216,8 +235,13 @@ def _own(scene: Scene, changed: int) -> MeasuredTests:
     if holds_means(file):
         means = read_means(file, NUMBERS)
         return MeanTests(_arms(scene, means.arms), means.means)
-    camera, body = read_camera(file), scene.projectile.rigid_body
-    return SingleTests(_arms(scene, camera.arms), camera.motion, body.k2, body.mass)
+    camera = read_camera(file)
+    tests = SingleTests(_arms(scene, camera.arms), camera.motion, seen_tests(scene, camera))
+    try:
+        tests.statistics()
+    except RigidError as error:
+        raise ResultError(f"{file}: {error}. The scene's spin and the motion of its barrier count.") from None
+    return tests
 
 
 def _arms(scene: Scene, of_file: tuple[float, float] | None) -> Arms:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from fem_impact.errors import ResultError, SceneError
-from fem_impact.scene.fields import check_choice
+from fem_impact.scene.fields import PLASTIC_STRAIN, check_choice
 from fem_impact.scene.units import parse_number, parse_quantity
 from fem_impact.scene.user_table import finite, in_si, read_user_table
 
@@ -16,6 +16,8 @@ STRAINS = ("plastic", "true", "engineering")
 ELASTIC = 5e-4  # plastic strain up to which a point of a measured curve counts as one of the elastic line
 EXAMPLE = '[[0, "350 MPa"], [0.02, "360 MPa"], [0.15, "480 MPa"]], plastic strain and true stress'
 HEADER = "strain,stress_MPa"
+PER_CENT = ("strain_%", "strain[%]", "strain(%)")
+"""Headers of strains in per cent, without blanks."""
 
 
 def beside(data: Any, folder: Path) -> Any:
@@ -47,6 +49,9 @@ def curve(stated: Any, strain: Any, E: float) -> Points:
     """
     kind = check_choice(strain, STRAINS, "strain")
     points = _of_file(stated) if isinstance(stated, str) else _of_rows(stated)
+    if (largest := max((e for e, _ in points), default=0.0)) > PLASTIC_STRAIN.high:
+        problem = f"has a strain of {largest:g}, above {PLASTIC_STRAIN.high:g}."
+        raise SceneError(problem, key="points", remedy=PLASTIC_STRAIN.remedy)
     if kind == "plastic":
         return points
     if kind == "engineering":
@@ -93,10 +98,13 @@ def _of_file(path: str) -> Points:
     try:
         table = read_user_table(path, HEADER)
         column = table.quantity("stress", "stress")
-        if column is None or "strain" not in table.names:
-            raise ResultError(f"{path}: has no columns strain and stress. Its header is such as {HEADER}.")
-        name, unit = column
-        strains = [finite(place, text) for place, text in table.column("strain")]
+        shares = {one: 0.01 for one in table.names if one.replace(" ", "") in PER_CENT}
+        shares |= {one: 1.0 for one in table.names if one == "strain"}
+        if column is None or len(shares) != 1:
+            told = f"Its header is such as {HEADER}, or strain_% in place of strain."
+            raise ResultError(f"{path}: has no two columns strain and stress. {told}")
+        (name, unit), ((strain, share),) = column, shares.items()
+        strains = [share * finite(place, text) for place, text in table.column(strain)]
         return tuple(
             zip(strains, (in_si(place, text, unit) for place, text in table.column(name)), strict=True)
         )

@@ -14,12 +14,15 @@ from fem_impact.scene.material import (
     FLOWS,
     RATES,
     Flow,
+    JohnsonCookRate,
     Material,
     Rate,
     SkinSpec,
     Surface,
     TableFlow,
+    families_by_words,
     family_by_words,
+    tested_at,
 )
 from fem_impact.scene.sliding import SlidingLaw, law_of
 from fem_impact.scene.tables import Table, check_keys, needed, numbers_of, values_of, within
@@ -43,7 +46,11 @@ def material_of(name: Any, table: Table, others: Iterable[str] = ()) -> Material
         f.key: f.checked(numbers[f.key]) for f in fields.MATERIAL if numbers[f.key] is not None
     }
     stated |= {key: table[key] for key in ("law", "family") if key in table}
-    readers = {"rate": _rate, "flow": lambda flow: _flow(flow, stated["E"]), "skin": _skin}
+    readers = {
+        "flow": lambda flow: _flow(flow, stated["E"]),
+        "rate": lambda rate: _rate(rate, stated.get("flow")),
+        "skin": _skin,
+    }
     for key, read in readers.items():
         if key in table:
             stated[key] = within(table, key, read)
@@ -67,9 +74,12 @@ def _sources(table: Table, stated: list[str]) -> tuple[tuple[str, str], ...]:
     return tuple(sorted(found.items()))
 
 
-def _rate(table: Table) -> Rate:
+def _rate(table: Table, flow: Flow | None) -> Rate:
     law = fields.check_choice(needed(table, "law"), tuple(RATES), "law")
-    return RATES[law](**numbers_of(table, fields.RATES[law], ("law",)))
+    numbers = numbers_of(table, fields.RATES[law], ("law",))
+    if law == JohnsonCookRate.law and not any(key.startswith("tested") for key in table):
+        numbers["tested"] = tested_at(flow, numbers["reference"])
+    return RATES[law](**numbers)
 
 
 def _skin(table: Table) -> SkinSpec:
@@ -168,6 +178,11 @@ def read_material(table: Table | str) -> Material:
             value=made.name,
             remedy="Give a changed material a name of its own.",
         )
+    if not family_of(made) and (of := families_by_words(made.name)):
+        choices = " or ".join(f'"{family}"' for family in of)
+        remedy = f"State which it is, family = {choices}."
+        problem = f"is missing: the words of the name {made.name!r} are those of {' and of '.join(of)}."
+        raise SceneError(problem, key="family", remedy=remedy)
     return made
 
 

@@ -30,10 +30,27 @@ FAMILIES: dict[str, Family] = {
 }
 
 
-def family_by_words(name: str) -> str:
-    """Return the family whose word stands in the name of a material, empty where none does."""
+def families_by_words(name: str) -> tuple[str, ...]:
+    """Return the families whose words stand in the name of a material, in the order of their last words."""
     parts = re.findall(r"[a-z]+\d*[a-z]*|\d+[a-z]*", name.lower())
-    return next((family for family, of in FAMILIES.items() if set(parts) & set(of.words)), "")
+    places = {
+        family: max(at for at, part in enumerate(parts) if part in of.words)
+        for family, of in FAMILIES.items()
+        if set(parts) & set(of.words)
+    }
+    return tuple(sorted(places, key=places.__getitem__))
+
+
+def family_by_words(name: str) -> str:
+    """Return the family that the words of a name tell, empty where none does or several of different kinds.
+
+    The narrower of two comes first, as in stainless steel, else the last, as in aluminium bronze.
+    """
+    found = families_by_words(name)
+    if len({kind_of(family) for family in found}) > 1:
+        return ""
+    wider = {one for family in found for one in FAMILIES[family].wider}
+    return next((family for family in reversed(found) if family not in wider), "")
 
 
 def kind_of(family: str) -> Kind | None:
@@ -147,6 +164,15 @@ class JohnsonCookRate:
 
     def __post_init__(self) -> None:
         fields.check_numbers(self, fields.RATES[self.law])
+
+
+def tested_at(flow: Flow | None, reference: float) -> float:
+    """Return the rate, 1/s, of the tests that gave the strengths of a metal where that is not stated.
+
+    The numbers of a curve of Johnson and Cook hold at the ``reference`` rate of their law, 1/s.
+    """
+    default = next(f.default for f in fields.RATES[JohnsonCookRate.law] if f.key == "tested")
+    return reference if isinstance(flow, JohnsonCookFlow) or default is None else default
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,6 +13,8 @@ from fem_impact.scene.user_table import UserTable, finite, in_si, read_user_tabl
 from rigid.inputs import Floats
 
 OF_TESTS = {"v_n": "speed", "v_t": "speed", "V_n": "speed", "V_t": "speed", "Omega": "angular speed"}
+SPIN_BEFORE = {"omega": "angular speed"}
+"""Column that may state the spin before the impact, where it is not that of the scene."""
 ARMS = {"d_c": "length", "d_d": "length"}
 """Columns that may state the arms of the contact with which the tests are to be worked out."""
 HEADER = "v_n_m_per_s,v_t_m_per_s,V_n_m_per_s,V_t_m_per_s,Omega_rad_per_s"
@@ -33,7 +35,7 @@ class Camera:
     Attributes
     ----------
     motion : mapping of str to (n,) float64
-        v_n, v_t, V_n, V_t (m/s) and Omega (rad/s).
+        v_n, v_t, V_n, V_t (m/s) and Omega (rad/s), and omega (rad/s) where the file states it.
     tests : tuple of str
         Label of each test: its cell in a column ``test``, else its number.
     ignored : tuple of str
@@ -56,8 +58,9 @@ def read_camera(path: str | Path) -> Camera:
     path : path
         CSV with a header. Columns are named ``v_n_m_per_s`` or ``v_n [m/s]``, and so on, in
         any unit of speed (m/s, mm/s, km/s) and of angular speed (rad/s, deg/s, rpm); capitals are the
-        motion after impact. A column ``test`` may label the rows, columns
-        ``d_c_m`` and ``d_d_m`` may state the arms of the contact point.
+        motion after impact. A column ``test`` may label the rows, a column
+        ``omega_rad_per_s`` may state the spin before, columns ``d_c_m`` and ``d_d_m`` the arms of the contact
+        point.
 
     Raises
     ------
@@ -73,7 +76,7 @@ def read_camera(path: str | Path) -> Camera:
         name: np.array([_number(place, text, unit) for place, text in table.column(stated)])
         for name, (stated, unit) in columns.items()
     }
-    motion = {name: values[name] for name in OF_TESTS}
+    motion = {name: values[name] for name in (*OF_TESTS, *SPIN_BEFORE) if name in values}
     arms = one_pair({name: values[name] for name in ARMS if name in values}, path)
     _check_motion(motion, table, {name: stated for name, (stated, _) in columns.items()})
     labels = tuple(record.get("test", str(i)) for i, (_, record) in enumerate(records, 1))
@@ -89,7 +92,8 @@ def _columns(table: UserTable) -> dict[str, tuple[str, Unit]]:
         means = f" {', '.join(known)} alone can be given as means: a file {MEANS}." if known else ""
         lacks = f"{table.path}: the header lacks {', '.join(missing)}."
         raise ResultError(f"{lacks} It needs {HEADER} (capitals: after impact).{means}")
-    stated = {name: table.quantity(name, dimension) for name, dimension in {**OF_TESTS, **ARMS}.items()}
+    every = {**OF_TESTS, **SPIN_BEFORE, **ARMS}
+    stated = {name: table.quantity(name, dimension) for name, dimension in every.items()}
     return {name: column for name, column in stated.items() if column}
 
 

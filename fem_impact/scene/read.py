@@ -3,8 +3,8 @@
 import tomllib
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from functools import partial
-from math import inf, isclose
+from functools import cache, partial
+from math import inf
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +13,7 @@ from fem_impact.scene import curve, fields, library, own_mesh, shapes, tables, t
 from fem_impact.scene.barrier import Barrier, Layer
 from fem_impact.scene.impact import WAYS, Following, Impact, the_way
 from fem_impact.scene.material import Material, Surface
+from fem_impact.scene.measured import differing
 from fem_impact.scene.projectile import Face, ProjectileSpec, Region, Segment
 from fem_impact.scene.surface_table import of_known, pair_surface, read_surface
 from fem_impact.scene.units import parse_number, parse_quantity, parse_share
@@ -96,7 +97,6 @@ def _parse(text: str, source: str) -> dict[str, Any]:
 
 SMOOTH = Surface("custom", 0.0, 0.0, 0.0, "no surface is stated and no friction effect named")
 SEGMENT = '{to = "50 mm", material = "rod-steel"}'
-ROD = ("length", "diameter", "tip_radius")
 TOP = ("id", "title", "measured", "restitution", "effects")
 """Keys of a scene above its sections, `PARTS`."""
 OPTIONAL = ("accuracy", "save", "heating", "strikes")
@@ -147,7 +147,7 @@ def read_scene(data: tables.Table) -> types.Scene:
 
 
 def _check_measured(scene: types.Scene) -> None:
-    """Refuse the name of a measured set beside another rod or angle, whose arms and results differ."""
+    """Refuse the name of a measured set beside another rod, impact, barrier or state of the surfaces."""
     if scene.measured is None:
         return
     if scene.measured.endswith(types.OWN):
@@ -155,22 +155,22 @@ def _check_measured(scene: types.Scene) -> None:
             remedy = "Name a CSV file, from the place of the scene's file."
             raise SceneError("there is no such file.", key="measured", value=scene.measured, remedy=remedy)
         return
-    stated, rod = library.stated(scene.measured), scene.projectile
-    other_tip = library.other_tip(scene.measured)
-    as_other = other_tip and rod.tip == other_tip["tip"]
-    measured_rod = _projectile(stated["projectile"] | (other_tip if as_other else {}))
-    pairs = {f"projectile.{key}": (getattr(rod, key), getattr(measured_rod, key)) for key in ROD}
-    angle = parse_quantity(stated["impact"]["angle"], "angle", "impact.angle")
-    pairs["impact.angle"] = (scene.impact.angle, angle)
-    other = [key for key, (a, b) in pairs.items() if not isclose(a, b, rel_tol=1e-3)]
-    other += ["projectile.tip"] if rod.tip != measured_rod.tip or not rod.is_rod else []
-    if other:
+    tip = library.other_tip(scene.measured)
+    if other := differing(scene, _published(scene.measured, scene.projectile.tip == tip.get("tip"))):
         raise SceneError(
             f"names a set that was measured with another {' and '.join(other)}.",
             key="measured",
             value=scene.measured,
             remedy='Leave out "measured".',
         )
+
+
+@cache
+def _published(name: str, as_other: bool) -> types.Scene:
+    """Return the scene of a measured set, with the other tip that its rows may be read with if so wanted."""
+    stated = {key: value for key, value in library.stated(name).items() if key != "measured"}
+    tip = library.other_tip(name) if as_other else {}
+    return read_scene(stated | {"projectile": stated["projectile"] | tip})
 
 
 def _projectile(table: tables.Table) -> ProjectileSpec:

@@ -64,7 +64,7 @@ def load_to_change(id_or_path: str | Path, changes: Mapping[str, Any]) -> Scene:
             raise
     path = Path(id_or_path)
     data = read_tables(path)
-    for key, value in changes.items():
+    for key, value in _ordered(changes):
         with suppress(SceneError):  # what stands in no table of the file is told when it is changed
             _change(data, key, value)
     if isinstance(data.get("impact"), dict):
@@ -126,9 +126,9 @@ def replace_all(scene: Scene, changes: Mapping[str, Any], source: str = "") -> S
 def _changed(scene: Scene, changes: Mapping[str, Any]) -> dict[str, Any]:
     """Return the tables of a scene with its changes, and with what follows from them."""
     data = to_dict(scene)
-    for key, value in changes.items():
+    for key, value in _ordered(changes):
         _change(data, key, plain_value(value))
-    if undone := next((key for key in changes if not _stands(data, key)), ""):
+    if undone := next((key for key, value in changes.items() if not _stands(data, key, value)), ""):
         remedy = "Keep one of the two."
         raise SceneError("is taken out again by another change of the same call.", key=undone, remedy=remedy)
     if any(_is_another_impact(scene, key, value) for key, value in changes.items()):
@@ -179,13 +179,41 @@ def plain_value(value: Any) -> Any:
     return os.fspath(value) if isinstance(value, os.PathLike) else value
 
 
-def _stands(data: dict[str, Any], key: str) -> bool:
-    """Return whether a dotted key has a value."""
-    *path, last = key.split(".")
-    table: Any = data
-    for name in path:
-        table = table.get(name) if isinstance(table, dict) else None
-    return isinstance(table, dict) and last in table
+def _ordered(changes: Mapping[str, Any]) -> list[tuple[str, Any]]:
+    """Return changes in an order that their own does not matter to: tables first, then what gives others.
+
+    A law or a state takes out the numbers of the old one, a friction its interval; a source and a name are
+    given anew with changed numbers.
+    """
+    ranks = {"state": 0, "law": 0, "friction": 1, "source": 3, "name": 3}
+
+    def place(change: tuple[str, Any]) -> tuple[int, int]:
+        *path, last = change[0].split(".")
+        return len(path), ranks.get(last, 2)
+
+    return sorted(changes.items(), key=place)
+
+
+def _stands(data: dict[str, Any], key: str, value: Any) -> bool:
+    """Return whether a dotted key has a value, of a state that which was stated."""
+    there = value_at(data, key)
+    return there == value if key == "surface.state" else value is None or there is not None
+
+
+def value_at(data: Mapping[str, Any], key: str) -> Any:
+    """Return the value of a dotted key in the tables of a scene, None where it has none."""
+    value: Any = data
+    for name in key.split("."):
+        value = value.get(name) if isinstance(value, Mapping) else None
+    return value
+
+
+def alters(scene: Scene, key: str, value: Any, other: str) -> bool:
+    """Return whether a changed key alters the value of another one, as a friction does its interval."""
+    data = to_dict(scene)
+    before = value_at(data, bare(other))
+    _change(data, key, plain_value(value))
+    return bool(value_at(data, bare(other)) != before)
 
 
 def moved(changes: Iterable[str]) -> set[str]:

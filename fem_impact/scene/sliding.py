@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from math import prod
+from math import isclose, prod
 from typing import TYPE_CHECKING, Any, Self
 
 from fem_impact.errors import SceneError
@@ -31,7 +31,7 @@ class SlidingLaw:
     Attributes
     ----------
     speed : m/s, growing from 0
-    factor : of f, one for each temperature, pressure and speed; the speed runs fastest
+    factor : of f, one for each temperature, pressure and speed, the first of all 1; the speed runs fastest
     source : where the factors come from
     pressure, temperature : Pa, K, growing; none where friction does not depend on them
     name : of a law that is shipped or added by a package; empty for that of a scene
@@ -59,6 +59,14 @@ class SlidingLaw:
             raise SceneError(problem, key="factor", remedy=f"Give at most {MOST}.")
         if not all(0 <= value <= LARGEST for value in self.factor):
             raise SceneError(f"must lie from 0 to {LARGEST:g}.", key="factor", value=list(self.factor))
+        if not isclose(self.factor[0], 1.0, rel_tol=1e-6):
+            raise SceneError(
+                "must begin with 1: it is a factor of the surface's f, which holds at the first speed, "
+                "pressure and temperature.",
+                key="factor",
+                value=self.factor[0],
+                remedy="Of values of f itself, divide each by the first one.",
+            )
 
     @classmethod
     def of(

@@ -1,6 +1,7 @@
 """A scene beside its own tests: errors, parts of their uncertainty, the joint statement, any number."""
 
 import json
+from dataclasses import replace
 from math import inf, sqrt
 
 import numpy as np
@@ -10,12 +11,13 @@ from scipy.stats import chi2
 from fem_impact.answers import validate as module
 from fem_impact.answers.compare import compare, measured_value
 from fem_impact.answers.v_and_v import NOT_APART, Comparison, freedom, joint, joint_or_why
-from fem_impact.answers.validate import _not_compared, interval_of, validate
+from fem_impact.answers.validate import KEYS, _not_compared, interval_of, validate
 from fem_impact.cli.main import main
 from fem_impact.errors import ResultError, SceneError, UsageError
 from fem_impact.outcome.keys import Unknown
 from fem_impact.run import tests as own_tests
 from fem_impact.run.simulate import simulate
+from fem_impact.scene.own_tests import HEADER
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.types import to_dict, to_toml
@@ -141,6 +143,49 @@ def test_single_tests_bring_their_own_correlation(tmp_path):
     C = tests.covariance(["V_n", "Omega"])
     assert C[0, 1] / np.sqrt(C[0, 0] * C[1, 1]) == pytest.approx(1.0)
     assert C[0, 0] == pytest.approx(0.05**2 / 3)
+
+
+SEEN = {
+    "at rest": {},
+    "with spin": {"impact.omega": "20 rad/s"},
+    "a barrier that comes": {"barrier.v_n": "0.5 m/s", "barrier.v_t": "-0.4 m/s"},
+    "a free barrier": {"barrier.v_n": "0.2 m/s", "barrier.mass": "0.3 kg", "impact.omega": "10 rad/s"},
+}
+
+
+@pytest.mark.parametrize("changes", SEEN.values(), ids=SEEN)
+@pytest.mark.parametrize("spin_column", [True, False])
+def test_single_tests_that_are_the_models_own_answer_have_its_numbers(tmp_path, changes, spin_column):
+    """Velocities over the ground, worked out with the spin before and relative to the barrier."""
+    scene = replace_all(load("quick"), changes)
+    motion, spin = simulate(scene, "rigid").motion, scene.impact.omega
+    numbers = (motion.v_n, motion.v_t, motion.V_n, motion.V_t, motion.Omega, spin)
+    names = HEADER.split(",") + ["omega_rad_per_s"] * spin_column
+    row = ",".join(repr(float(one)) for one in numbers[: len(names)])
+    (tmp_path / "own.csv").write_text("\n".join((",".join(names), row, row)))
+    scene = replace(scene, measured=str(tmp_path / "own.csv"))
+    assert own_tests.doubtful_tests(scene) == []
+    outcome, tests = simulate(scene, "rigid"), own_tests.tests_of(scene).statistics()
+    for name, key in KEYS.items():
+        assert tests[name].mean == pytest.approx(outcome.estimate(key)[0], rel=1e-9, abs=1e-12), name
+
+
+def test_single_tests_on_a_barrier_that_turns_have_no_restitution(tmp_path):
+    turning = {"barrier.mass": "0.3 kg", "barrier.inertia": "1e-4 kg m2", "barrier.centre_depth": "10 mm"}
+    (tmp_path / "own.csv").write_text(f"{HEADER}\n-1,-1,0.3,-0.5,5\n-1,-1,0.4,-0.5,5\n")
+    scene = replace_all(load("quick"), {"impact.v_n": "-1 m/s", "impact.v_t": "-1 m/s", **turning})
+    scene = replace(scene, measured=str(tmp_path / "own.csv"))
+    tests = own_tests.tests_of(scene).statistics()
+    assert tests["mu"].mean == pytest.approx((0.5 / 1.3 + 0.5 / 1.4) / 2)
+    assert not {"e", "e_m", "E_ln_over_E_0", "E_lt_over_E_0"} & set(tests)
+    assert any("The barrier turns" in one for one in own_tests.doubtful_tests(scene))
+
+
+def test_a_test_whose_spin_lifts_its_contact_off_is_refused(tmp_path):
+    (tmp_path / "own.csv").write_text(f"{HEADER},omega_rad_per_s\n" + "-1,-1,0.3,-0.5,5,900\n" * 2)
+    scene = replace(load("quick"), measured=str(tmp_path / "own.csv"))
+    with pytest.raises(ResultError, match="the contact point must approach the barrier"):
+        own_tests.tests_of(scene)
 
 
 def test_means_may_belong_together_and_one_test_has_its_systematic_uncertainty(tmp_path):

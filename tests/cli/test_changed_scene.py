@@ -1,5 +1,6 @@
 """Scenes changed by ``--set``: their title tells what was changed, paths are told from where one works."""
 
+from functools import reduce
 from pathlib import Path
 
 import pytest
@@ -8,7 +9,7 @@ from fem_impact.cli.paths import shown_path
 from fem_impact.cli.scene_options import changed_scene
 from fem_impact.errors import SceneError
 from fem_impact.scene.shipped import load, replace, replace_all
-from fem_impact.scene.types import to_toml
+from fem_impact.scene.types import to_dict, to_toml
 
 
 def test_the_title_follows_every_change_of_the_impact():
@@ -74,15 +75,47 @@ def test_a_change_mends_what_is_refused_in_the_file(tmp_path, bad, changes):
 @pytest.mark.parametrize(
     ("changes", "lost"),
     [
-        (["accuracy.tip_size=0.5 mm", "accuracy=5 %"], "accuracy.tip_size"),
         (["accuracy.tip_size=0.5 mm", "accuracy.target=5 %"], "accuracy.tip_size"),
         (["projectile.tip_radius=2 mm", "projectile.shape=hemisphere"], "projectile.tip_radius"),
-        (["surface.friction=0.3", "surface.state=cleaned"], "surface.friction"),
+        (["surface.friction=0.3", "surface.state=cleaned"], "surface.state"),
+        (["surface.state=cleaned", "surface.friction_low=0.1"], "surface.state"),
     ],
 )
 def test_a_change_that_another_one_takes_out_is_refused(changes, lost):
     with pytest.raises(SceneError, match=f"^--set: {lost}: is taken out again by another change"):
         changed_scene("t5b", changes)
+
+
+@pytest.mark.parametrize("way", [1, -1])
+@pytest.mark.parametrize(
+    "changes",
+    [
+        ["surface.friction=0.3", "surface.friction_low=0.1", "surface.friction_high=0.9"],
+        ["surface.friction=0.3", "surface.source=our own tests"],
+        ["surface.state=custom", "surface.friction=0.3", "surface.source=our own tests"],
+        ["barrier.material.E=200 GPa", "barrier.material.name=our plate"],
+        ["barrier.material.rate.law=johnson-cook", "barrier.material.rate.C=0.03"],
+        ["accuracy={levels = 2}", "accuracy.across=12"],
+    ],
+)
+def test_the_order_of_changes_does_not_matter(changes, way):
+    """A value that stands for others is set before them: none of those that are stated is lost."""
+    scene = changed_scene("t5b", changes[::way])
+    table = to_dict(scene)
+    for change in changes[-2:]:
+        key, _, value = change.partition("=")
+        *path, last = key.split(".")
+        at = reduce(dict.__getitem__, path, table)[last]
+        assert str(at) == value or isinstance(at, dict)
+
+
+def test_whole_tables_and_parts_of_them_are_refused_in_either_order():
+    for changes in (
+        ["accuracy.tip_size=0.5 mm", "accuracy=5 %"],
+        ["accuracy=5 %", "accuracy.tip_size=0.5 mm"],
+    ):
+        with pytest.raises(SceneError, match="stands beside accuracy = '5 %'"):
+            changed_scene("t5b", changes)
 
 
 def test_a_shape_takes_the_place_of_a_tip():

@@ -22,6 +22,22 @@ def test_scenes_lists_every_shipped_scene(cli):
     assert [row["digest"] for row in listed] == [digest(load(name)) for name in shipped()]
 
 
+def test_an_ambient_far_from_room_temperature_changes_no_strength_and_is_told(cli):
+    def said(*changes):
+        words = [word for change in changes for word in ("--set", f"heating.{change}")]
+        code, out, err = cli("check", "t5b", *words)
+        return code, " ".join((out + err).split())
+
+    told = "input: heating.ambient = 393.15 K adds to the heat alone: strengths and moduli are used as stated"
+    assert told in said("ambient=120 degC")[1]
+    for near in ("60 degC", "-20 degC"):
+        assert "adds to the heat alone" not in said(f"ambient={near}")[1]
+    code, refused = said("ambient=1500 degC", "ignition=2000 degC")
+    assert code == 3 and "is not below the temperature at which plate-steel begins to melt" in refused
+    code, refused = said("ambient=350 degC", "rod_melting=600 K")
+    assert code == 3 and "begins to melt, 600 K" in refused
+
+
 def test_check_prints_what_a_verdict_needs_on_one_screen(cli):
     code, out, _ = cli("check", "t5b", "--set", "effects=['auto', '-gravity', 'large-rotation']")
     said = " ".join(out.split())

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from fem_impact.case.case import Case
 from fem_impact.errors import SceneError, UsageError
+from fem_impact.run.tests import doubtful_tests
 from fem_impact.scene.impact import Impact
 from fem_impact.scene.library import material, materials
 from fem_impact.scene.material import Material
@@ -193,7 +194,7 @@ def test_a_byte_order_mark_is_no_mistake(tmp_path):
         ({}, "impact.angle"),
     ],
 )
-def test_a_set_that_was_measured_with_another_rod_is_not_named(changes, named):
+def test_a_set_that_was_measured_with_another_rod_or_angle_is_not_named(changes, named):
     data = to_dict(load("t5b"))
     data["projectile"] |= changes
     data["impact"] |= {} if changes else {"angle": "20 deg"}
@@ -201,6 +202,41 @@ def test_a_set_that_was_measured_with_another_rod_is_not_named(changes, named):
         read_dict(data)
     del data["measured"]
     assert read_dict(data).measured is None
+
+
+@pytest.mark.parametrize(
+    ("part", "changes", "named"),
+    [
+        ("impact", {"v_n": "-5 m/s"}, "impact.v_n"),
+        ("impact", {"v_t": "-0.9 m/s", "omega": "20 rad/s"}, "impact.v_t and impact.omega"),
+        ("barrier", {"mass": "0.3 kg"}, "barrier.mass"),
+        ("barrier", {"v_t": "0.3 m/s"}, "barrier.v_t"),
+        ("barrier", {"layers": [{"thickness": "1 mm", "material": "copper"}]}, "barrier.layers"),
+        ("barrier", {"thickness": "5 mm", "support": "infinite"}, "barrier.thickness and barrier.support"),
+        ("surface", {"state": "contaminated"}, "surface.state"),
+    ],
+)
+def test_a_set_that_was_measured_in_another_impact_is_not_named(part, changes, named):
+    data = to_dict(load("t5b"))
+    data[part] = changes if part == "surface" else data[part] | changes
+    with pytest.raises(SceneError, match=f'measured = "t5b": .*with another {named}\\. Leave out'):
+        read_dict(data)
+
+
+def test_a_measured_set_takes_another_friction_and_a_velocity_within_its_scatter():
+    data = to_dict(load("t5b"))
+    data["impact"] |= {"v_n": "-1.7 m/s"}
+    data["surface"] = {"state": "custom", "friction": 0.3, "source": "a test"}
+    assert read_dict(data).measured == "t5b"
+    assert doubtful_tests(read_dict(data)) == []
+
+
+def test_metals_of_other_names_than_the_tested_ones_are_told():
+    assert doubtful_tests(replace(load("t5b"), "barrier.material.E", "200 GPa")) == []
+    data = to_dict(load("t5b"))
+    data["barrier"]["material"] = "copper"
+    told = "barrier.material is copper, but t5b was measured with plate-steel."
+    assert doubtful_tests(read_dict(data)) == [told]
 
 
 def test_a_target_and_a_mesh_together_are_refused_by_name():

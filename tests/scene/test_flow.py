@@ -9,9 +9,11 @@ from scipy.integrate import solve_ivp
 
 from fem_impact.case.case import Case
 from fem_impact.case.effects.plasticity import hardening_of, strength_of
+from fem_impact.cli.statement import statement_of
 from fem_impact.errors import SceneError
-from fem_impact.physics.hardening import Hardening, TabulatedHardening
+from fem_impact.physics.hardening import Hardening, TabulatedHardening, rate_law
 from fem_impact.run.simulate import simulate
+from fem_impact.scene import curve
 from fem_impact.scene.inputs import inputs
 from fem_impact.scene.material import JohnsonCookFlow, Material, RambergOsgoodFlow, TableFlow
 from fem_impact.scene.read import read_dict
@@ -116,6 +118,30 @@ def test_kept_heat_softens_as_the_equation_of_the_temperature_says():
     assert stresses[-1] == stresses[-2]
 
 
+def test_johnson_and_cooks_curve_is_that_of_the_reference_rate():
+    """(A + B p^n)(1 + C ln(rate / reference)); a slow test gives the strengths of other curves alone."""
+    rate = {"law": "johnson-cook", "C": 0.025}
+    law = rate_law(metal(**LAWS["johnson-cook"], rate=rate))
+    assert law.factor(1000.0) == pytest.approx(1 + 0.025 * np.log(1000), rel=1e-12)
+    assert law.factor(0.01) == 1.0
+    fast = metal(**LAWS["johnson-cook"], rate=rate | {"reference": "10 /s"})
+    assert fast.rate.tested == 10.0
+    stated = metal(**LAWS["johnson-cook"], rate=rate | {"tested_per_s": 0.01})
+    assert (stated.rate.tested, metal(**LAWS["perfect"], rate=rate).rate.tested) == (0.01, 0.002)
+
+
+def test_the_rate_of_the_tests_is_told_where_a_scene_states_none():
+    def told(material):
+        every = statement_of(Case.of(scene(COPPER | material), "rigid"))["defaults"]
+        return {one["key"]: one["value"] for one in every if ".rate." in one["key"]}
+
+    rate = {"law": "johnson-cook", "C": 0.025}
+    keys = [f"projectile.material.rate.{key}" for key in ("reference", "tested")]
+    assert told(LAWS["johnson-cook"] | {"rate": rate}) == dict.fromkeys(keys, "1 /s")
+    assert told(LAWS["perfect"] | {"rate": rate}) == dict(zip(keys, ("1 /s", "0.002 /s"), strict=True))
+    assert told(LAWS["perfect"] | {"rate": rate | {"tested": "5 /s", "reference": "2 /s"}}) == {}
+
+
 def test_a_table_is_its_points():
     law = hardening_of(metal(**LAWS["table"]))
     assert law.flow_stress([0.0, 0.005, 0.01, 0.105, 0.2, 3.0]) == pytest.approx(
@@ -160,6 +186,24 @@ def test_the_limit_pressure_of_a_body_without_ultimate_stress_is_finite():
     assert strength_of(metal(**LAWS["plastic modulus"])) == pytest.approx(500e6)
     assert strength_of(metal(yield_stress="90 MPa", ultimate_stress="200 MPa")) == 200e6
     assert strength_of(metal()) == np.inf
+
+
+def test_strains_in_per_cent_are_taken_as_such_or_refused(tmp_path):
+    def points(header, kind="plastic"):
+        (tmp_path / "curve.csv").write_text(f"{header},stress_MPa\n0,350\n2,500\n15,700\n")
+        return curve.curve(str(tmp_path / "curve.csv"), kind, 2e11)
+
+    for header in ("strain_%", "strain [%]", "strain (%)"):
+        assert np.array(points(header)) == pytest.approx(np.array([[0, 350e6], [0.02, 500e6], [0.15, 700e6]]))
+    for kind in ("plastic", "true", "engineering"):
+        with pytest.raises(
+            SceneError, match=r"points: has a strain of 15, above 3. .*0.15, not 15, for 15 %"
+        ):
+            points("strain", kind)
+    with pytest.raises(SceneError, match="no two columns strain and stress"):
+        points("strain,strain_%")
+    with pytest.raises(SceneError, match="at most 3"):
+        TableFlow(((0.0, 350e6), (15.0, 700e6)))
 
 
 def test_the_numbers_of_a_flow_curve_are_changed_on_the_command_line():

@@ -92,7 +92,7 @@ def test_a_rod_that_presses_through_a_soft_thin_layer_may_yield_on_what_lies_und
     """On 0.5 mm of weak metal a rod met the base, told to stay elastic by the strength of the layer alone."""
     soft = {"name": "soft", "E": "96 GPa", "nu": 0.25, "rho": "7140 kg/m3", "source": "assumed"}
     soft |= {"yield_stress": "60 MPa", "hardening": "100 MPa"}
-    data = to_dict(load("quick")) | {"effects": "auto"}
+    data = to_dict(load("quick")) | {"effects": "auto", "measured": None}
     on = {}
     for thickness in ("0.5 mm", "40 mm"):
         data["barrier"] = {"material": "s355", "layers": [{"thickness": thickness, "material": soft}]}

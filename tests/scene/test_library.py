@@ -14,6 +14,7 @@ from fem_impact.scene.library import (
     material,
     materials,
     melting_of,
+    read_material,
     sourced_values,
     sources_of,
 )
@@ -109,10 +110,32 @@ def test_what_is_known_by_name_and_not_modelled_is_refused_with_the_reason():
         ("leaded thing", ""),
         ("crash pad", ""),
         ("cu", "copper"),
+        ("aluminium-bronze", "bronze"),
+        ("steel, stainless", "stainless steel"),
+        ("lead-free brass", "brass"),
+        ("tungsten-carbide", ""),
+        ("aluminium oxide", ""),
     ],
 )
 def test_a_family_is_read_from_a_word_of_the_name_and_from_no_part_of_one(name, family):
     assert family_by_words(name) == family
+
+
+@pytest.mark.parametrize(
+    ("name", "families"),
+    [
+        ("steel-reinforced concrete", "steel and of concrete"),
+        ("aluminum oxide ceramic", "aluminium and of ceramic"),
+        ("glass-fibre-nylon", "glass and of polyamide"),
+        ("tungsten-carbide", "tungsten and of ceramic"),
+        ("lead-glass", "lead and of glass"),
+    ],
+)
+def test_a_name_of_families_of_different_kinds_needs_a_stated_one(name, families):
+    table = {"name": name, "E": "70 GPa", "nu": 0.25, "rho": "2500 kg/m3"}
+    with pytest.raises(SceneError, match=f"family: is missing: the words of the name '{name}' .* {families}"):
+        read_material(table)
+    assert family_of(read_material(table | {"family": "glass"})) == "glass"
 
 
 def test_a_stated_family_comes_before_the_name():

@@ -194,9 +194,10 @@ def test_a_bad_shape_is_refused_with_its_key(projectile, told):
 
 def test_a_shape_does_not_repeat_a_measured_set():
     rod = {"tip": "B", "length": "80 mm", "diameter": "19 mm", "tip_radius": "3 mm"}
-    assert read_dict({**scene(rod), "measured": "t5b"}).measured == "t5b"
+    of_set = {"measured": "t5b", "impact": {"angle": "45 deg", "v_n": "-1.5 m/s", "v_t": "-1.5 m/s"}}
+    assert read_dict(scene(rod) | of_set).measured == "t5b"
     with pytest.raises(SceneError, match=r"another projectile\.tip"):
-        read_dict({**scene({**rod, "bore": [["20 mm", "4 mm"], ["80 mm", "4 mm"]]}), "measured": "t5b"})
+        read_dict(scene({**rod, "bore": [["20 mm", "4 mm"], ["80 mm", "4 mm"]]}) | of_set)
 
 
 TUBE = {"tip": "plain", "length": "80 mm", "diameter": "19 mm"}

@@ -74,6 +74,7 @@ def test_the_pressure_is_that_of_the_estimated_contact_and_speeds_beyond_are_tol
         ({**TABLE, "factor": [1.0, 0.8, 0.4]}, "is not 2 lists of 3 numbers"),
         ({**TABLE, "factor": [[1.0, 0.8], [0.9, "x"]]}, "must be numbers"),
         ({**TABLE, "factor": [[1.0, 0.8, 0.4], [0.9, 0.6, -0.2]]}, "must lie from 0 to 10"),
+        ({**TABLE, "factor": [[0.57, 0.5, 0.3], [0.5, 0.4, 0.2]]}, "must begin with 1"),
         ({**TABLE, "speed": [0.0, 1.0, 4.0]}, "speed"),
         ({key: TABLE[key] for key in ("speed", "pressure", "factor")}, "source"),
     ],

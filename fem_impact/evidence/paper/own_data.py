@@ -6,21 +6,29 @@ from typing import Any
 import numpy as np
 
 from fem_impact.evidence.paper.audit import estimate_entry, finite, statistic_entry
+from fem_impact.run.seen_tests import SeenTests
 from fem_impact.scene.own_tests import Camera
 from rigid import Arms, Body, bootstrap, critical_ratio, first_order, impulse_centre
-from rigid.experiments import derived_columns, statistic
+from rigid.experiments import statistic
 from rigid.inputs import Floats
 
 
 def own_coefficients(
-    camera: Camera, rod: Body, tip: tuple[str, float], alpha: float, arms: Arms, source: str
+    camera: Camera,
+    seen: SeenTests,
+    rod: Body,
+    tip: tuple[str, float],
+    alpha: float,
+    arms: Arms,
+    source: str,
 ) -> dict[str, Any]:
     """Work out e, mu and e_m of a set of tests (Eq 16-18) with their uncertainty.
 
     Parameters
     ----------
-    camera : velocities of the tests, SI
-    rod : the projectile: mass and k2 are used
+    camera : labels of the tests, and columns that were not used
+    seen : the tests as seen from the barrier
+    rod : the projectile, for the report
     tip : its tip and the radius of that, m, for the report
     alpha : inclination, rad
     arms : of the contact point, m
@@ -32,14 +40,14 @@ def own_coefficients(
         Plain JSON: rod, arms, coefficients with first-order and bootstrap intervals, scatter, losses as
         fractions of E_0, centre of impulse, one entry a test, notes.
     """
-    body: dict[str, Any] = {"d_c": float(arms.d_c), "d_d": float(arms.d_d), "k2": rod.k2}
-    tests = derived_columns(camera.motion, **body, mass=rod.mass)
-    mean = {name: values.mean() for name, values in camera.motion.items()}
-    centre = impulse_centre(**mean, d_d=arms.d_d, k2=rod.k2)
-    fall = float(mean["v_n"]), float(mean["v_t"])
+    body: dict[str, Any] = {"d_c": float(arms.d_c), "d_d": float(arms.d_d), "k2": seen.k2}
+    tests = seen.columns(arms)
+    mean = {name: values.mean() for name, values in seen.motion.items()}
+    centre = impulse_centre(**mean, d_d=arms.d_d, k2=seen.k2)
+    before = {name: float(mean[name]) for name in ("v_n", "v_t", "omega")}
     sizes = {"length_m": rod.length, "diameter_m": rod.diameter, "tip_radius_m": tip[1], "tip": tip[0]}
     # each coefficient of the mean motion with its first-order and bootstrap intervals
-    linear, drawn = first_order(camera.motion, **body), bootstrap(camera.motion, **body)
+    linear, drawn = first_order(seen.motion, **body), bootstrap(seen.motion, **body)
     estimates = {
         name: {
             "value": finite(linear[name].value),
@@ -58,7 +66,7 @@ def own_coefficients(
             for name, values in tests.items()
             if np.isfinite(values).all()
         },
-        "mu_c": finite(critical_ratio(*fall, e=max(0.0, float(tests["e"].mean())), **body)),
+        "mu_c": finite(critical_ratio(**before, e=max(0.0, float(tests["e"].mean())), **body)),
         "impulse_centre": {"d_c_m": float(centre.d_c), "from_contact_m": float(centre.d_c - arms.d_c)},
         "rows": [
             {"test": label, **{name: finite(values[i]) for name, values in tests.items()}}

@@ -88,6 +88,28 @@ def test_a_scene_states_the_projectile_that_was_tested(cli, camera_file):
     assert steep["rod"]["alpha_rad"] == pytest.approx(np.radians(40.0))
 
 
+def test_coefficients_count_the_spin_before_and_the_motion_of_the_barrier(cli, camera_file):
+    """The same impact over the ground and as seen from the barrier, and with its spin in either place."""
+    rows = [f"{i},-1.5,-1.48,-1.14,{v},61" for i, v in enumerate((-1.26, -1.25))]
+    spun = ("--scene", "t5b", "--set", "impact.omega=60 rad/s")
+    plain = json.loads(cli("coefficients", camera_file(*rows), *spun, "--json")[1])
+    assert 0.8 < plain["coefficients"]["e"]["value"] < 1.0
+    assert not any("more kinetic energy" in note for note in plain["notes"])
+    with_spin = camera_file(*(f"{row},60" for row in rows), header=f"{HEADER},omega_rad_per_s")
+    column = json.loads(cli("coefficients", with_spin, "--scene", "t5b", "--json")[1])
+    assert column["coefficients"] == plain["coefficients"]
+    assert not any("not used" in note for note in column["notes"])
+    moved = [f"{i},-0.5,-1.48,-0.14,{v},61" for i, v in enumerate((-1.26, -1.25))]
+    moving = (*spun, "--set", "impact.v_n=-0.5 m/s", "--set", "barrier.v_n=1 m/s")
+    seen = json.loads(cli("coefficients", camera_file(*moved), *moving, "--json")[1])
+    assert seen["coefficients"]["e"]["value"] == pytest.approx(plain["coefficients"]["e"]["value"])
+    assert not any("not the scene's impact" in note for note in seen["notes"])
+    turning = [f"barrier.{one}" for one in ("mass=0.3 kg", "inertia=1e-4 kg m2", "centre_depth=10 mm")]
+    asked = (word for one in turning for word in ("--set", one))
+    code, _, err = cli("coefficients", camera_file(*rows), *spun, *asked)
+    assert code == 3 and "The barrier turns" in err
+
+
 @pytest.mark.parametrize(
     ("more", "words"),
     [(ROD[:2], "--diameter, --angle are missing"), (("--scene", "tube", *ROD), "describes a rod")],
