@@ -96,6 +96,7 @@ class Case:
         followed.require_followed(scene)
         limits.require_own_mesh(self.bodies, fidelity)
         require_plate(self.bodies, self.meshed_through)
+        limits.require_shallow(self.bodies)
         limits.require_first_part(self.bodies)
         if fidelity != "rigid":
             limits.require_elastic_parts(self.bodies)
@@ -113,7 +114,6 @@ class Case:
 
     def _require_mesh(self, slots: ModelSpec) -> None:
         """Refuse what cannot be meshed, or needs more memory than there is (SceneError)."""
-        limits.require_shallow(self.bodies)
         if self.record is None:
             require_fine_zone(self.bodies)
         require_mesh(self.scene.projectile, self.scene.across)

@@ -38,6 +38,28 @@ def shaft_flows(bodies: Bodies) -> str:
     return f"a shaft that would yield along its length (axial stress, estimated: {told})"
 
 
+UPRIGHT = 0.1  # sine of the angle up to which a strike stretches more than it bends
+BENT = 0.0496
+"""Energy of the first free bending mode of a round rod over volume times sigma^2 / E, its highest stress."""
+
+
+def bends_beyond(bodies: Bodies, energy: float) -> str:
+    """Say that a round rod whose bending vibration holds so much energy, J, would yield by it; else empty.
+
+    The highest stress of the first free mode, sigma^2 = U E / (0.0496 V), is that of no other bending mode by
+    more than a few per cent. Upright strikes stretch the rod instead.
+    """
+    rod, contact = bodies.rod, bodies.contact
+    round_rod = rod.own_mesh is None and not rod.bore and len(rod.segments) < 2 and not rod.is_short
+    if not (round_rod and contact.rod_yields and abs(sin(contact.angle)) > UPRIGHT):
+        return ""
+    stress = sqrt(energy * contact.rod.E * contact.rod.rho / (BENT * contact.body.mass))
+    if stress < contact.rod.yield_stress:
+        return ""
+    told = f"{stress / 1e6:.3g} MPa over {contact.rod.yield_stress / 1e6:.3g} MPa"
+    return f"Left out: the rod would yield by bending away from its contact (estimated stress {told})."
+
+
 def _axial_force(bodies: Bodies) -> float:
     """Return the estimated force, N, of the contact along the axis."""
     size = bodies.estimate

@@ -124,10 +124,12 @@ def _with_edges(bodies: Bodies, omega: Array, sites: Sites) -> tuple[Array, Site
     of `wedge_compliance` times ln(4 b / max(a, R)) / (pi b E') along the bisector and across it, with
     E' = E / (1 - nu^2), as a half-space does by that logarithm (Johnson 1985, Contact Mechanics, 4.2). So
     a push across the barrier moves an edge along it, too. The modes are so high that they follow the force.
-    A contact that yields presses on metal that flows, and a part that lands flat has a law of its own.
+    A contact that yields presses on metal that flows, and a part that lands flat, or so nearly that all of it
+    may touch, has a law of its own.
     """
     pair = bodies.contact
-    if pair.lands_flat or begins_to_yield(pair):
+    flat = pair.lands_flat or (pair.body.face > 0 and pair.nearly_flat(pair.estimate.depth))
+    if flat or begins_to_yield(pair):
         return omega, sites
     metal, size, count = pair.rod, pair.estimate, len(sites.begin) - 1
     highest = min(section_frequency(metal, bodies.rod.diameter), AT_REST / size.duration)

@@ -29,7 +29,8 @@ VICKERS = 9.80665e6 / 0.927  # Pa, mean pressure on the projected area of the pr
 ASSUMPTIONS = (
     "every touching spot carries the hardness of the softer body: three times its ultimate stress, or its "
     "stated Vickers hardness if that is more, times what strain rate and skin add",
-    "it slides at the sum of the tip's tangential speed and its normal speed for three contact times",
+    "it slides at the sum of the tip's tangential speed and its normal speed, or the computed one if that is "
+    "higher, for three contact times, or the first period of bending or the computed time if that is longer",
     "all heat stays in the one body that is heated more, and none leaves sideways or to the air",
     "the properties are those at room temperature; melting, chemical heat and grit are left out",
 )
@@ -138,19 +139,21 @@ def closed_form(pair: ContactPair, friction_work: float, halves: Halves) -> tupl
     return flash, power, power / patch, patch
 
 
-def flash_bound(pair: ContactPair, friction: float, halves: Halves) -> float:
+def flash_bound(
+    pair: ContactPair, friction: float, halves: Halves, seconds: float = 0.0, fastest: float = 0.0
+) -> float:
     """Return a rise, K, that no spot of the contact exceeds under the ``ASSUMPTIONS``.
 
-    It is infinite between two bodies that never yield: no hardness limits the pressure of a spot.
+    ``seconds`` and ``fastest``, m/s, are the least time and sliding speed that count. It is infinite between
+    two bodies that never yield: no hardness limits the pressure of a spot.
     """
     rate = strain_rate(pair.estimate)
     softer = min(_hardness(metal, rate) for metal in (pair.rod, pair.barrier))
     if not friction or isinf(softer):
         return inf if friction else 0.0
-    speed = max(
-        abs(pair.sliding) + pair.approach, pair.most_sliding
-    )  # what the impact turns of it counts, too
-    q, t = friction * softer * speed, 3 * pair.estimate.duration
+    # what the impact turns of the normal speed counts, too
+    speed = max(abs(pair.sliding) + pair.approach, pair.most_sliding, fastest)
+    q, t = friction * softer * speed, max(3 * pair.estimate.duration, seconds)
     return max(float(short_rise([0.0, t], [q], body)[-1]) for body in halves)
 
 

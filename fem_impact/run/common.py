@@ -7,17 +7,14 @@ from math import atan2, cos, hypot, inf, pi, sin
 import rigid
 from fem_impact.arrays import Array
 from fem_impact.case.case import Case
-from fem_impact.case.effects.heating import halves
 from fem_impact.case.effects.registry import AUTO
 from fem_impact.case.shaft import gives_elsewhere
-from fem_impact.outcome.groups import ArmCoefficients, BarrierMotion, Heat, Restitution, RodMotion
+from fem_impact.outcome.groups import ArmCoefficients, BarrierMotion, Restitution, RodMotion
 from fem_impact.outcome.keys import Num, Unknown, known, unknown
 from fem_impact.physics.contact import ContactPair
 from fem_impact.physics.contact_law import BEGINS, FULLY_PLASTIC
-from fem_impact.physics.flash import Flash, flash_bound
 from fem_impact.physics.hardening import rate_factor, strain_rate
 from fem_impact.run.tests import tests_of
-from fem_impact.scene.inputs import first_melting, melting
 from fem_impact.scene.types import Scene
 from fem_impact.tables.text import plain
 
@@ -28,11 +25,8 @@ TURNING = Unknown("the barrier turns: rigid theory's arms are those of one that 
 UNBENT = Unknown("the plate-bending effect is off")
 CUT_OFF = Unknown("the run ended before the last separation was certain")
 UNSHEARED = Unknown("in this contact law the skin of the body that yields first alone is sheared")
-HARD = "neither body yields, so that no hardness limits the pressure of a touching spot"
 UNDETERMINED = Unknown("the contact point does not approach, or no moment acts about the mass centre: 0 / 0")
 NO_PUSH = Unknown("gravity has drawn the projectile to the barrier more than that has pushed it away")
-MELTS = "melt; melting is left out"
-"""End of the reason of a temperature beyond a melting point."""
 RESIDUAL_LIMIT = 1e-4  # of E_0: above it a run failed
 OPEN_LEDGER = "The energy ledger misses"  # how the reason begins, which a level looks for
 EARLY = 0.02
@@ -350,51 +344,3 @@ def plastic_shares(case: Case, share: float, skin: float = 0.0) -> tuple[float, 
         return share - last, last
     last = max(min(last, share - skin), 0.0)
     return last, share - last
-
-
-def heat(case: Case, flash: Flash, power: float, flux: float, patch: float, less_vibration: Num) -> Heat:
-    """Return the heat of the contact: peaks of power, W, flux, W/m2, and patch, m2, of the whole contact."""
-    ambient, ignition = case.scene.heating.ambient, case.scene.heating.ignition
-    temperature = below_melting(case, ambient + flash.peak, "at least {limit:.0f} K; ")
-    return Heat(
-        patch=patch,
-        power=power,
-        flux=flux,
-        rise=temperature if isinstance(temperature, Unknown) else flash.peak,
-        temperature=temperature,
-        ignition=ignition,
-        time_above_ignition=flash.time_above(ignition - ambient),
-        bound=_bound(case, ambient),
-        less_vibration=less_vibration,
-    )
-
-
-def _bound(case: Case, ambient: float) -> Num:
-    """Return the temperature, K, that no spot exceeds; without both melting points none can be told."""
-    over = case.slots.friction_over_speed
-    largest = case.bodies.friction * (max(over[1]) if over else 1.0)
-    rise = flash_bound(case.contact, largest, halves(case.bodies))
-    known_of = melting(case.scene)
-    unstated = [f"heating.{body}_melting" for body in ("rod", "barrier") if body not in known_of]
-    if rise == inf:
-        return Unknown(HARD)
-    if unstated:
-        missing = " and ".join(unstated)
-        return Unknown(
-            f"not resolved: conduction of heat alone has no end where a body melts; state {missing}"
-        )
-    return below_melting(case, ambient + rise)
-
-
-def below_melting(case: Case, temperature: float, known: str = "") -> Num:
-    """Return a temperature of the contact, K; it is not known where a body melts: latent heat is left out.
-
-    ``known`` is what is said of it then, of the melting point ``limit``.
-    """
-    lowest, name = first_melting(case.scene)
-    if temperature < lowest:
-        return temperature
-    return Unknown(
-        f"{known.format(limit=lowest)}not resolved: conduction of heat alone gives {temperature:.0f} K, "
-        f"above {lowest:.0f} K, where {name} begins to {MELTS}"
-    )

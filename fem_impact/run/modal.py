@@ -2,11 +2,14 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from math import pi
 
 from fem_impact.case.case import Case
 from fem_impact.case.effects import radiation
+from fem_impact.case.effects.damping import loss_factor
 from fem_impact.case.effects.plasticity import struck
 from fem_impact.case.layers import require_heavier
+from fem_impact.case.shaft import bends_beyond
 from fem_impact.errors import SceneError
 from fem_impact.modal.impact import Arrival, ModalResult, solve
 from fem_impact.outcome.groups import Energy, Heat, Markers, RunCost, limitations
@@ -64,7 +67,8 @@ def reduce(case: Case, result: ModalResult) -> Outcome:
     """Return the Outcome of a modal impact."""
     barrier, base = case.scene.barrier, (result.V_bn, result.V_bt)
     turns = barrier.inertia is not None
-    omitted, strange = common.flow_omitted(case), _too_light(case) or _unlike_layer(case)
+    omitted, strange = common.flow_omitted(case), _too_light(case) or _unlike_layer(case) or _lossy(case)
+    strange = strange or bends_beyond(case.bodies, float(result.energies.max(initial=0.0)))
     end = ImpactEnd(
         V_n=result.V_n,
         V_t=result.V_t,
@@ -139,6 +143,21 @@ def _too_light(case: Case) -> str:
     except SceneError as light:
         return f"The barrier's mass of {light.value} {light.problem}" if light.key == "barrier.mass" else ""
     return ""
+
+
+LOSSY = 0.1
+"""What a half wave may lose of its amplitude by the loss factor, pi eta / 2, while the body is in contact."""
+
+
+def _lossy(case: Case) -> str:
+    """Say that the body loses much of its vibration while it touches, empty where it does not."""
+    eta = loss_factor(case.bodies)
+    if 0.5 * pi * eta <= LOSSY:
+        return ""
+    return (
+        f"Left out: the body's loss factor of {eta:g} takes much of its vibration while it still touches; "
+        "here it does so after the impact alone, so that e is too high."
+    )
 
 
 def _unlike_layer(case: Case) -> str:

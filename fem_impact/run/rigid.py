@@ -18,7 +18,8 @@ from fem_impact.physics.contact_law import restitution as thornton
 from fem_impact.physics.flash import closed_form
 from fem_impact.physics.viscous import viscous_restitution
 from fem_impact.run.assemble import ImpactEnd, Reduction
-from fem_impact.run.common import MASSIVE, after, flow_omitted, heat, plastic_shares
+from fem_impact.run.common import MASSIVE, after, flow_omitted, plastic_shares
+from fem_impact.run.heated import heat
 from fem_impact.scene.sliding import SpeedTable
 
 STIFF_PLATE = "Bending of the plate, which takes energy and lowers e, is left out."

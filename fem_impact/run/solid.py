@@ -10,13 +10,15 @@ import numpy as np
 import rigid
 from fem_impact.case.cells import advice
 from fem_impact.case.effects.heating import halves, why_off
+from fem_impact.case.shaft import bends_beyond
 from fem_impact.errors import RunError
 from fem_impact.outcome.groups import ContactSite, Energy, Heat, Readings, RodMotion, RunCost, limitations
 from fem_impact.outcome.keys import Num, Unknown, known, or_none, unknown
 from fem_impact.physics.contact import fall
 from fem_impact.physics.flash import flash
 from fem_impact.run.assemble import ImpactEnd, Reduction
-from fem_impact.run.common import CUT_OFF, MASSIVE, UNBENT, after, heat
+from fem_impact.run.common import CUT_OFF, MASSIVE, UNBENT, after
+from fem_impact.run.heated import heat
 from fem_impact.run.markers import replay
 from fem_impact.run.resolution import NOT_RESOLVED, unresolved
 from fem_impact.run.unusual import LEAST_RATIO, PLOUGHING, pierced
@@ -89,7 +91,11 @@ def reduce(result: SolidResult) -> Outcome:
         limited=(
             *limitations("resolution", narrow, _ringing(result)),
             *result.limitations,
-            *limitations("result", pierced(case, result.record, known(read.dent_depth))),
+            *limitations(
+                "result",
+                bends_beyond(case.bodies, (or_none(energy.vibration) or 0.0) * energy.E_0),
+                pierced(case, result.record, known(read.dent_depth)),
+            ),
             *limitations("run", _untimed(result)),
         ),
         withheld=narrow if case.scene.accuracy.unresolved == "withhold" else "",
@@ -233,7 +239,7 @@ def _heat(result: SolidResult, E_lt: Num, vibration: Num) -> Heat:
     rise = flash(np.array(watch.t), flux, np.sqrt(patch / np.pi), speed, *halves(result.case.bodies))
     peaks = (float(power.max()), float(flux.max()), float(patch.max()))
     less = vibration if isinstance(vibration, Unknown) else known(E_lt) - vibration
-    return heat(result.case, rise, *peaks, less)
+    return heat(result.case, rise, *peaks, less, float(speed.max()))
 
 
 def _cost(result: SolidResult) -> RunCost:

@@ -23,7 +23,8 @@ from fem_impact.outcome.record import Outcome
 from fem_impact.outcome.shares import heat_ends
 from fem_impact.physics.contact_law import contact_law
 from fem_impact.physics.flash import flash
-from fem_impact.run.common import MELTS, part_of_last
+from fem_impact.run.common import part_of_last
+from fem_impact.run.heated import MELTS
 from fem_impact.run.modal import closed, reduce
 from fem_impact.run.modal_error import SPLIT, factor_of, farness, place_of
 from fem_impact.scene.fields import LEVELS, check_choice

@@ -20,7 +20,8 @@ def number(bodies: Bodies) -> float:
     if rod.is_short or (rod.own_mesh is not None and rod.length <= rod.diameter):
         return inf
     longest = bodies.stretching_period
-    if bodies.scene.impact.angle != 0:
+    pair = bodies.contact
+    if pair.angle != 0 or pair.arms[0] != 0 or (bodies.friction and pair.sliding):  # what bends it
         longest = max(longest, bodies.bending_period, bodies.ovalling_period)
     return longest / bodies.estimate.duration
 

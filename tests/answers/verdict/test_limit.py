@@ -24,7 +24,8 @@ from fem_impact.errors import SceneError, UsageError
 from fem_impact.modal.motion import ROW
 from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.shares import heat_ends
-from fem_impact.run.common import MELTS, part_of_last
+from fem_impact.run.common import part_of_last
+from fem_impact.run.heated import MELTS
 from fem_impact.run.modal import closed
 from fem_impact.run.modal_error import SPLIT
 
