@@ -255,6 +255,17 @@ def test_a_study_refuses_a_scene_without_tests(cli, tmp_path):
     assert not Path("results").exists()
 
 
+def test_a_study_refuses_two_scenes_of_one_id(cli, tmp_path):
+    """The run of the first was lost, and the results of the second were compared with its tests."""
+    path = write(tmp_path)
+    other = tmp_path / "other.toml"
+    other.write_text(path.read_text().replace("45 deg", "60 deg"))
+    code, _, err = cli("study", "sets", "mine.toml", "other.toml", "--quick")
+    assert code == 3
+    assert 'other.toml: id = "mine": is the id of mine.toml, too' in err and "id of its own" in err
+    assert not Path("results").exists()
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [
