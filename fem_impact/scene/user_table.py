@@ -99,7 +99,7 @@ def read_user_table(path: str | Path, header: str) -> UserTable:
     Raises
     ------
     ResultError
-        The file cannot be read, is empty, or is not CSV.
+        The file cannot be read, is empty, is not CSV, or has two columns of one name.
     """
     lines = list(_lines(_text(path), path))
     if not lines:
@@ -107,6 +107,8 @@ def read_user_table(path: str | Path, header: str) -> UserTable:
     names = lines[0][1]
     while names and not names[-1]:  # spreadsheets end lines by empty cells
         names.pop()
+    if twice := next((name for name in names if name and names.count(name) > 1), ""):
+        raise ResultError(f"{path}: has two columns {twice!r}. Keep one.")
     return UserTable(path, tuple(names), tuple(lines[1:]))
 
 
