@@ -150,6 +150,15 @@ def count(tests: MeasuredTests) -> int:
     return max(one.n for one in tests.statistics().values())
 
 
+def unused_columns(scene: Scene) -> list[str]:
+    """Return a sentence on the columns of a file of tests that were not used; none where all were."""
+    file = scene.measured or ""
+    if not file.endswith(OWN):
+        return []
+    ignored = (read_means(file, NUMBERS) if holds_means(file) else read_camera(file)).ignored
+    return [f"columns not used: {', '.join(ignored)}"] if ignored else []
+
+
 FAR = 0.2
 """Difference from the scene's velocity, over its speed, above which a test is told to be another impact."""
 

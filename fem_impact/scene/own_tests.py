@@ -77,8 +77,8 @@ def read_camera(path: str | Path) -> Camera:
     arms = one_pair({name: values[name] for name in ARMS if name in values}, path)
     _check_motion(motion, table, {name: stated for name, (stated, _) in columns.items()})
     labels = tuple(record.get("test", str(i)) for i, (_, record) in enumerate(records, 1))
-    used = {stated for stated, _ in columns.values()}
-    return Camera(motion, labels, tuple(name for name in table.names if name not in (*used, "test")), arms)
+    used = {stated for stated, _ in columns.values()} | {"test"}
+    return Camera(motion, labels, table.unused(used, ("test", *ARMS)), arms)
 
 
 def _columns(table: UserTable) -> dict[str, tuple[str, Unit]]:
@@ -164,9 +164,20 @@ class Mean:
 
 @dataclass(frozen=True, slots=True)
 class Means:
-    """Means by quantity, and the arms of the contact point (d_c, d_d), m, where the file states them."""
+    """Means of a file.
+
+    Attributes
+    ----------
+    means : mapping of str to Mean
+        By quantity.
+    ignored : tuple of str
+        Columns of the file that were not used.
+    arms : (d_c, d_d) or None
+        Arms of the contact point, m, where the file states them.
+    """
 
     means: Mapping[str, Mean]
+    ignored: tuple[str, ...]
     arms: tuple[float, float] | None
 
 
@@ -200,6 +211,9 @@ def read_means(path: str | Path, others: Collection[str] = ()) -> Means:
     means: dict[str, Mean] = {}
     stated = {name: table.quantity(name, dimension) for name, dimension in ARMS.items()}
     columns = {name: column for name, column in stated.items() if column}
+    used = {"quantity", "mean", scatter, "n", "systematic", *(column for column, _ in columns.values())}
+    used |= {name for name in table.names if name.startswith(CORRELATION)}
+    ignored = table.unused(used, ("systematic", *ARMS, *(f"{CORRELATION}{name}" for name in OF_MEANS)))
     arms: dict[str, list[float]] = {name: [] for name in columns}
     for line, row in table.records():
         place = f"{path}: line {line}"
@@ -212,7 +226,7 @@ def read_means(path: str | Path, others: Collection[str] = ()) -> Means:
     if not means:
         raise ResultError(f"{path}: holds no line below its header.")
     _check_correlations(means, path)
-    return Means(means, one_pair(arms, path))
+    return Means(means, ignored, one_pair(arms, path))
 
 
 def _check_correlations(means: Mapping[str, Mean], path: str | Path) -> None:

@@ -8,8 +8,9 @@ import csv
 import io
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
+from difflib import get_close_matches
 from pathlib import Path
 
 from fem_impact.errors import ResultError
@@ -17,6 +18,8 @@ from fem_impact.files.atomic import read_bytes
 from fem_impact.scene.units import DIMENSIONS, Unit
 
 DECIMAL = re.compile(r"([+-]?\d*),(\d+(?:[eE][+-]?\d+)?)")  # a number with a decimal comma
+MISSPELT = 0.85
+"""Likeness of a column's name to a known one from which it is taken for that, misspelt."""
 Line = tuple[int, list[str]]
 """Number and cells of a line of the file."""
 
@@ -61,6 +64,30 @@ class UserTable:
     def stating(self, key: str) -> list[str]:
         """Return the names of the columns that state a quantity, in whatever unit."""
         return [name for name in self.names if _stated(name, key)]
+
+    def unused(self, used: Collection[str], optional: Collection[str]) -> tuple[str, ...]:
+        """Return the columns that are not used.
+
+        Parameters
+        ----------
+        used : names of columns as the header states them
+        optional : names, without units, of columns that there may be
+
+        Raises
+        ------
+        ResultError
+            One is nearly an optional column that the file does not have: ``Systematic``, ``d_c mm``.
+        """
+        held = [name for name in self.names if name in used]
+        lacking = [one for one in optional if not any(_stated(name, one) for name in held)]
+        left = tuple(name for name in self.names if name and name not in used)
+        for name in left:
+            near = [one for one in lacking if re.match(rf"{one}(?![a-z])", name.lower())]
+            near += get_close_matches(name.lower(), lacking, 1, MISSPELT)
+            if near:
+                remedy = f"Did you mean {near[0]}? Give a column of your own another name."
+                raise ResultError(f"{self.path}: column {name!r} is not one that is read. {remedy}")
+        return left
 
     def quantity(self, key: str, dimension: str, bare: Unit | None = None) -> tuple[str, Unit] | None:
         """Return name and unit of the column that states a quantity, None where none does.

@@ -3,6 +3,7 @@
 import pytest
 
 from fem_impact.errors import ResultError
+from fem_impact.scene.own_tests import read_camera, read_means
 from fem_impact.scene.user_table import read_user_table
 
 
@@ -21,3 +22,34 @@ def test_a_column_that_stands_twice_is_refused(tmp_path):
 
 def test_columns_without_a_name_may_repeat(tmp_path):
     assert table(tmp_path, "quantity,,mean,,sd,n\ne,,0.4,,0.05,8\n").column("mean")[0][1] == "0.4"
+
+
+@pytest.mark.parametrize(
+    ("column", "meant"),
+    [
+        *((name, "systematic") for name in ("Systematic", "sytematic", "systematic_%", "systematic_error")),
+        *(("D_c_mm", "d_c"), ("d_d mm", "d_d"), ("R_mu", "r_mu")),
+    ],
+)
+def test_a_misspelt_column_of_means_is_refused(tmp_path, column, meant):
+    """It was left out: the tests had no systematic uncertainty, or e other arms."""
+    file = tmp_path / "my.csv"
+    file.write_text(f"quantity,mean,sd,n,{column}\ne,0.4,0.05,8,0.2\nmu,0.5,0.05,8,0.2\n")
+    with pytest.raises(ResultError) as refused:
+        read_means(file)
+    assert f"column {column!r} is not one that is read. Did you mean {meant}?" in str(refused.value)
+
+
+@pytest.mark.parametrize("column", ["Test", "tests", "test_no", "D_c_m"])
+def test_a_misspelt_column_of_single_tests_is_refused(camera_file, column):
+    header = f"v_n_m_per_s,v_t_m_per_s,V_n_m_per_s,V_t_m_per_s,Omega_rad_per_s,{column}"
+    with pytest.raises(ResultError, match=f"column '{column}' is not one that is read. Did you mean"):
+        read_camera(camera_file("-1.5,-1.5,0.3,-0.4,5,1", "-1.5,-1.5,0.4,-0.4,5,2", header=header))
+
+
+@pytest.mark.parametrize("column", ["remark", "median", "note", "systematic_source", "n_rejected"])
+def test_columns_of_ones_own_beside_means_are_not_used(tmp_path, column):
+    file = tmp_path / "my.csv"
+    file.write_text(f"quantity,mean,sd,n,systematic,{column}\ne,0.4,0.05,8,0.02,3\n")
+    found = read_means(file)
+    assert found.ignored == (column,) and found.means["e"].systematic == 0.02

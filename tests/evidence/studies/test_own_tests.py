@@ -286,6 +286,19 @@ def test_check_refuses_a_file_of_tests_that_cannot_be_used(cli, tmp_path, text, 
     assert words in " ".join(err.split())
 
 
+@pytest.mark.parametrize(
+    "text",
+    ["quantity,mean,sd,n,remark\ne,0.3,0.1,8,wet\n", f"{HEADER},remark\n" + 3 * "-1.5,-1.48,.3,-.4,4,wet\n"],
+)
+def test_columns_that_are_not_used_are_told(cli, tmp_path, text):
+    path = write(tmp_path)
+    (tmp_path / "my_tests.csv").write_text(text)
+    quick = ("--fidelity", "rigid", "--quiet")
+    for line in (("check",), ("run", *quick), ("validate", *quick, "--samples", "2")):
+        code, out, _ = cli(line[0], str(path), *line[1:])
+        assert code == 0 and "columns not used: remark" in out
+
+
 @pytest.mark.parametrize("mean", ["e,-0.2", "e,1.4", "mu,-0.6", "mu,3"])
 def test_unusual_means_are_read(tmp_path, mean):
     (tmp_path / "my.csv").write_text(f"quantity,mean,sd,n\n{mean},0.1,8\n")
