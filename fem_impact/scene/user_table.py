@@ -17,7 +17,8 @@ from fem_impact.errors import ResultError
 from fem_impact.files.atomic import read_bytes
 from fem_impact.scene.units import DIMENSIONS, Unit
 
-DECIMAL = re.compile(r"([+-]?\d*),(\d+(?:[eE][+-]?\d+)?)")  # a number with a decimal comma
+DECIMAL = re.compile(r"^([+-]?\d*),(\d+(?:[eE][+-]?\d+)?)$")  # a number with a decimal comma
+POINT = re.compile(r"[+-]?\d*\.\d+(?:[eE][+-]?\d+)?")
 MISSPELT = 0.85
 """Likeness of a column's name to a known one from which it is taken for that, misspelt."""
 Line = tuple[int, list[str]]
@@ -126,9 +127,10 @@ def read_user_table(path: str | Path, header: str) -> UserTable:
     Raises
     ------
     ResultError
-        The file cannot be read, is empty, is not CSV, or has two columns of one name.
+        The file cannot be read, is empty, is not CSV, has two columns of one name, or has decimal
+        commas and decimal points.
     """
-    lines = list(_lines(_text(path), path))
+    lines = _lines(_text(path), path)
     if not lines:
         raise ResultError(f"{path}: is empty. Begin it with the header {header}.")
     names = lines[0][1]
@@ -149,25 +151,35 @@ def _text(path: str | Path) -> str:
     raise ResultError(f"{path}: is no text. Save it as CSV.")
 
 
-def _lines(text: str, path: str | Path) -> Iterator[Line]:
+def _lines(text: str, path: str | Path) -> list[Line]:
     header = next((line for line in text.split("\n") if line.strip() and not line.startswith("#")), "")
     mark = max(",;\t", key=header.count)
     reader = csv.reader(io.StringIO(text), strict=True, delimiter=mark)
     try:
-        for cells in reader:
-            if any(cell.strip() for cell in cells) and not cells[0].startswith("#"):
-                yield (
-                    reader.line_num,
-                    [_point(cell.strip()) if mark != "," else cell.strip() for cell in cells],
-                )
+        stated = [(reader.line_num, [cell.strip() for cell in cells]) for cells in reader]
     except csv.Error as error:
         raise ResultError(f"{path}: line {reader.line_num} is not CSV ({error}).") from None
+    lines = [(line, cells) for line, cells in stated if any(cells) and not cells[0].startswith("#")]
+    return lines if mark == "," else _with_points(lines, path)
 
 
-def _point(cell: str) -> str:
-    """Return a number with a decimal comma with a point, other text as it is."""
-    found = DECIMAL.fullmatch(cell)
-    return f"{found[1]}.{found[2]}" if found else cell
+def _with_points(lines: list[Line], path: str | Path) -> list[Line]:
+    """Return lines whose numbers with a decimal comma have a point.
+
+    Raises
+    ------
+    ResultError
+        Others have a point: one of the two marks stands between thousands.
+    """
+    comma, point = (
+        next((f"{cell} (line {line})" for line, cells in lines for cell in cells if kind.fullmatch(cell)), "")
+        for kind in (DECIMAL, POINT)
+    )
+    if comma and point:
+        both = f"has numbers with a comma, such as {comma}, and with a point, such as {point}"
+        remedy = "Write all with a decimal point, or all with a decimal comma, and no mark between thousands."
+        raise ResultError(f"{path}: {both}. {remedy}")
+    return [(line, [DECIMAL.sub(r"\1.\2", cell) for cell in cells]) for line, cells in lines]
 
 
 def unit_of(stated: str, dimension: str, name: str, place: str) -> Unit:

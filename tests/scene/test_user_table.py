@@ -53,3 +53,13 @@ def test_columns_of_ones_own_beside_means_are_not_used(tmp_path, column):
     file.write_text(f"quantity,mean,sd,n,systematic,{column}\ne,0.4,0.05,8,0.02,3\n")
     found = read_means(file)
     assert found.ignored == (column,) and found.means["e"].systematic == 0.02
+
+
+@pytest.mark.parametrize("mark", ["\t", ";"])
+def test_a_comma_between_thousands_is_not_taken_for_a_decimal_one(tmp_path, mark):
+    """A mean force of 3,400 N was read as 3.4 N."""
+    rows = "quantity mean sd n\npeak_force_N 3,400 200.5 8\n"
+    with pytest.raises(ResultError) as refused:
+        table(tmp_path, rows.replace(" ", mark))
+    assert "a comma, such as 3,400 (line 2), and with a point, such as 200.5 (line 2)" in str(refused.value)
+    assert table(tmp_path, rows.replace("200.5", "200").replace(" ", mark)).column("mean")[0][1] == "3.400"
