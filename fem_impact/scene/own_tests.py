@@ -24,6 +24,7 @@ LARGEST_OTHER = 1e100
 """Bound of the size of any other number of an outcome, SI, of which variances must stay finite."""
 FASTEST = -V_N.low
 """The most that a scene may state as a speed, m/s."""
+TOO_FAST = f"is more than {FASTEST:g} m/s, the most that a scene may state: is its unit right?"
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,8 +132,7 @@ def _check_motion(motion: Mapping[str, Floats], table: UserTable, stated: Mappin
     for name in (name for name, dimension in OF_TESTS.items() if dimension == "speed"):
         if (fast := abs(motion[name]) > FASTEST).any():
             place, text = table.column(stated[name])[int(np.argmax(fast))]
-            rule = f"is more than {FASTEST:g} m/s, the most that a scene may state: is its unit right?"
-            raise ResultError(f"{place}: {text} {rule}")
+            raise ResultError(f"{place}: {text} {TOO_FAST}")
 
 
 OF_MEANS = {"e": "", "mu": "", "Omega": "angular speed", "V_n": "speed", "V_t": "speed"}
@@ -141,6 +141,7 @@ LIKELY = {
     "e": (-1.0, 2.0, "the contact point's normal velocity after the impact over that before, a number"),
     "mu": (-10.0, 10.0, "the tangential impulse over the normal one, a number"),
 }
+SHARE = (-1.0, 2.0, "a share of the kinetic energy before the impact, a number")
 """Bounds of the means of pure numbers, and what these are; beyond them it is per cent or another quantity."""
 SCATTER = ("sd", "standard_error")
 CORRELATION = "r_"
@@ -303,9 +304,14 @@ def _read_row(row: Mapping[str, str], scatter: str, place: str, others: Collecti
 
 
 def _check_likely(name: str, mean: float, place: str) -> None:
-    if name not in LIKELY:
+    if OF_MEANS.get(name) == "speed" or name.endswith("_m_per_s"):
+        if abs(mean) > FASTEST:
+            raise ResultError(f"{place}: {name} = {mean:g} m/s {TOO_FAST}")
         return
-    low, high, meaning = LIKELY[name]
+    bounds = SHARE if name.endswith("_over_E_0") else LIKELY.get(name)
+    if bounds is None:
+        return
+    low, high, meaning = bounds
     if not low <= mean <= high:
         raise ResultError(
             f"{place}: {name} = {mean:g} is none of an impact: {name} is {meaning} from {low:g} to {high:g}, "

@@ -271,6 +271,9 @@ def test_a_study_refuses_two_scenes_of_one_id(cli, tmp_path):
     [
         ("quantity,mean,sd,n\ne,5,0.1,8\n", "line 2: e = 5 is none of an impact"),
         ("quantity,mean,sd,n\ne,0.3,0.1,8\nmu,40,2,8\n", "line 3: mu = 40 is none of an impact"),
+        ("quantity,mean,sd,n\nE_r_over_E_0,18,2,8\n", "line 2: E_r_over_E_0 = 18 is none of an impact"),
+        ("quantity,mean,sd,n\nV_n_m_per_s,1700,10,8\n", "line 2: V_n = 1700 m/s is more than 500 m/s"),
+        ("quantity,mean,sd,n\nmarker_V_n_m_per_s,-1700,10,8\n", "-1700 m/s is more than 500 m/s"),
         ("quantity,mean,sd,n\ne,0.3,0.1\n", "line 2"),
         ("speed,time\n1,2\n", "the header lacks v_n"),
         ("e,mu,Omega\n0.3,0.5,5\n", f"lacks v_n, v_t, V_n, V_t. It needs {HEADER}"),
