@@ -27,6 +27,10 @@ FASTEST = -V_N.low
 TOO_FAST = f"is more than {FASTEST:g} m/s, the most that a scene may state: is its unit right?"
 
 
+NO_TESTS = ("mean", "average", "median", "sd", "std", "min", "max", "sum", "total")
+"""Labels, in small letters, of rows that spreadsheets add below the tests."""
+
+
 @dataclass(frozen=True, slots=True)
 class Camera:
     """Velocities of each test.
@@ -77,6 +81,7 @@ def read_camera(path: str | Path) -> Camera:
     motion = {name: values[name] for name in OF_TESTS}
     arms = one_pair({name: values[name] for name in ARMS if name in values}, path)
     _check_motion(motion, table, {name: stated for name, (stated, _) in columns.items()})
+    _check_labels(table)
     labels = tuple(record.get("test", str(i)) for i, (_, record) in enumerate(records, 1))
     used = {stated for stated, _ in columns.values()} | {"test"}
     return Camera(motion, labels, table.unused(used, ("test", *ARMS)), arms)
@@ -100,6 +105,18 @@ def _number(place: str, text: str, unit: Unit) -> float:
     if abs(value) > LARGEST:
         raise ResultError(f"{place}: {text[:40]} is no speed of a dropped rod.")
     return value
+
+
+def _check_labels(table: UserTable) -> None:
+    """Refuse a test that stands twice, and a row of what was worked out from tests."""
+    seen = set[str]()
+    for place, label in table.column("test") if "test" in table.names else ():
+        if label.lower() in NO_TESTS:
+            raise ResultError(f"{place}: {label!r} is no single test. Leave the line out.")
+        if label and label in seen:
+            remedy = "Leave one out, or give each test its own label."
+            raise ResultError(f"{place}: test {label!r} stands in two lines. {remedy}")
+        seen.add(label)
 
 
 def one_pair(arms: Mapping[str, Iterable[float]], path: str | Path) -> tuple[float, float] | None:

@@ -63,3 +63,22 @@ def test_a_comma_between_thousands_is_not_taken_for_a_decimal_one(tmp_path, mark
         table(tmp_path, rows.replace(" ", mark))
     assert "a comma, such as 3,400 (line 2), and with a point, such as 200.5 (line 2)" in str(refused.value)
     assert table(tmp_path, rows.replace("200.5", "200").replace(" ", mark)).column("mean")[0][1] == "3.400"
+
+
+@pytest.mark.parametrize(
+    ("labels", "told"),
+    [
+        (("1", "2", "3", "1", "2", "3"), "line 5, column test: test '1' stands in two lines. Leave one out"),
+        (("1", "2", "Mean"), "line 4, column test: 'Mean' is no single test. Leave the line out."),
+        (("1", "2", "average"), "line 4, column test: 'average' is no single test."),
+    ],
+)
+def test_a_test_counts_once_and_a_mean_is_none(camera_file, labels, told):
+    """Pasted twice, three tests had an interval as narrow as six."""
+    with pytest.raises(ResultError) as refused:
+        read_camera(camera_file(*(f"{label},-1.5,-1.5,0.3,-0.4,5" for label in labels)))
+    assert told in str(refused.value)
+
+
+def test_tests_may_have_no_labels(camera_file):
+    assert read_camera(camera_file(*3 * [",-1.5,-1.5,0.3,-0.4,5"])).tests == ("", "", "")
