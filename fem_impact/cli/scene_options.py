@@ -88,12 +88,20 @@ def _change(change: str) -> tuple[str, Any]:
         from fem_impact.scene.read import read_tables
 
         return key, read_tables(Path(text[1:]))
+    if names_material(key) and re.fullmatch(r"[\d.]+", text):
+        return key, text
     if re.fullmatch(r"[+-]?\.\d+", text):  # .36, which TOML refuses
         return key, float(text)
     try:
         return key, tomllib.loads(f"value = {text}")["value"] if "\n" not in text else text
     except (ValueError, RecursionError):
         return key, text
+
+
+def names_material(key: str) -> bool:
+    """Return whether a key takes the name of a material, which may be a number: 4340, 1.4404."""
+    *path, last = key.split(".")
+    return last == "material" or path[-1:] == ["mesh_materials"]
 
 
 def command_line(options: Options, command: str, *names: str, scene: str = "") -> str:

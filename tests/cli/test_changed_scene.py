@@ -6,6 +6,7 @@ import pytest
 
 from fem_impact.cli.paths import shown_path
 from fem_impact.cli.scene_options import changed_scene
+from fem_impact.cli.values import read_values
 from fem_impact.errors import SceneError
 from fem_impact.scene.shipped import load, replace, replace_all
 from fem_impact.scene.types import to_toml
@@ -146,3 +147,13 @@ def test_velocities_along_the_axis_at_the_new_angle_need_no_warning(cli, tmp_pat
 def test_a_number_may_begin_with_its_point():
     assert changed_scene("t5b", ["surface.friction=.36"]).surface.friction == 0.36
     assert changed_scene("t5b", ["accuracy.grid_shift=+.5"]).accuracy.grid_shift == 0.5
+
+
+@pytest.mark.parametrize(("number", "name"), [("4340", "steel-4340"), ("1.4404", "stainless-316l")])
+def test_a_number_in_the_place_of_a_material_is_a_name(number, name):
+    """TOML reads it as a number, which is no material."""
+    assert changed_scene("t5b", [f"projectile.material={number}"]).projectile.material.name == name
+    vary = read_values(f"projectile.material={number},304,316L")
+    assert vary == ("projectile.material", [name, "stainless-304", "316L"])
+    with pytest.raises(SceneError, match=r'barrier\.material = "9999": is not a shipped material'):
+        read_values("barrier.material=9999,304")
