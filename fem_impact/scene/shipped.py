@@ -11,11 +11,11 @@ from typing import Any
 from fem_impact.errors import SceneError, UsageError, did_you_mean
 from fem_impact.scene import fields
 from fem_impact.scene.impact import FIRST, one_way, restated
-from fem_impact.scene.library import CHANGED, nearest_scene, shipped, stated
+from fem_impact.scene.library import CHANGED, material, nearest_scene, shipped, stated
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.read import read_dict, read_scene, read_tables, read_toml
 from fem_impact.scene.shapes import BY_LENGTH, REPLACED, TIP
-from fem_impact.scene.types import OWN, Scene, to_dict
+from fem_impact.scene.types import OWN, Scene, material_table, to_dict
 from fem_impact.scene.units import DIMENSIONS, parse_quantity
 
 
@@ -198,9 +198,9 @@ def _open_at_tail(rod: Any, was: ProjectileSpec) -> None:
 def _change(data: dict[str, Any], key: str, value: Any) -> None:
     *path, last = key.split(".")
     if path[-2:] in (["material", "rate"], ["material", "flow"], ["material", "skin"]):
-        material = _section(data, path[:-1], key)
-        if last == "law" or path[-1] not in material:
-            material[path[-1]] = {}  # another law leaves none of the old one's numbers
+        metal = _section(data, path[:-1], key)
+        if last == "law" or path[-1] not in metal:
+            metal[path[-1]] = {}  # another law leaves none of the old one's numbers
     if not path and last not in data:
         # refuse a key without its section that one of a section comes near to, such as ``lenght``
         sections = ((name, table) for name, table in data.items() if isinstance(table, dict))
@@ -269,6 +269,11 @@ def _section(data: dict[str, Any], path: list[str], key: str) -> dict[str, Any]:
         if name == "accuracy" and isinstance(inner, str):
             remedy = "Give the error that is allowed, or a mesh, not both."
             raise SceneError(f"stands beside accuracy = {inner!r}.", key=key, remedy=remedy)
+        if name == "material" and isinstance(inner, str):  # of a shipped one its values
+            try:
+                inner = table[name] = material_table(material(inner))
+            except SceneError as error:
+                raise error.under(f"{key.partition('.material')[0]}.material") from None
         if not isinstance(inner, dict):
             sections = [k for k, v in table.items() if isinstance(v, Mapping)]
             hint = did_you_mean(name, sections, "Write section.key, such as accuracy.tip_size.")

@@ -157,3 +157,12 @@ def test_a_number_in_the_place_of_a_material_is_a_name(number, name):
     assert vary == ("projectile.material", [name, "stainless-304", "316L"])
     with pytest.raises(SceneError, match=r'barrier\.material = "9999": is not a shipped material'):
         read_values("barrier.material=9999,304")
+
+
+def test_values_of_a_material_that_is_named_in_the_same_call_may_be_changed():
+    stated = ["projectile.material=copper", "projectile.material.E=100 GPa", "barrier.material=lead"]
+    changed = changed_scene("t5b", stated)
+    metal = changed.projectile.material
+    assert (metal.name, metal.E, metal.rho) == ("copper (changed)", 100e9, 8930.0)
+    with pytest.raises(SceneError, match=r'projectile\.material = "coppr".*Did you mean copper'):
+        changed_scene("t5b", ["projectile.material=coppr", "projectile.material.E=100 GPa"])
