@@ -166,3 +166,20 @@ def test_values_of_a_material_that_is_named_in_the_same_call_may_be_changed():
     assert (metal.name, metal.E, metal.rho) == ("copper (changed)", 100e9, 8930.0)
     with pytest.raises(SceneError, match=r'projectile\.material = "coppr".*Did you mean copper'):
         changed_scene("t5b", ["projectile.material=coppr", "projectile.material.E=100 GPa"])
+
+
+def test_a_shape_a_plain_tip_and_a_state_replace_what_they_have_themselves():
+    """No option can leave out what stands in the file."""
+    ball = changed_scene("t5b", ["projectile.shape=ball"]).projectile
+    assert ball.is_ball and ball.length == ball.diameter == 0.019
+    cone = ["projectile.shape=cone", "projectile.cone_angle=30 deg", "projectile.face_diameter=2 mm"]
+    other = [*cone[::-1], "projectile.length_m=0.1"]
+    assert changed_scene("t5b", other).projectile.length == 0.1
+    ogive = replace_all(changed_scene("t5b", cone), {"projectile.shape": "hemisphere"}).projectile
+    assert (ogive.tip, ogive.tip_radius) == ("B", 0.0095)
+    assert changed_scene("t5b", ["projectile.tip=plain"]).projectile.tip_radius == 0.0
+    for stated in (["surface.friction=0.3", "surface.state=custom"], ["surface.friction=0.3"]):
+        surface = changed_scene("t5b", stated).surface
+        assert (surface.state, surface.friction, surface.friction_high) == ("custom", 0.3, 0.3)
+    with pytest.raises(SceneError, match=r"surface\.friction: is taken out again by another change"):
+        changed_scene("t5b", ["surface.friction=0.3", "surface.state=cleaned"])
