@@ -61,9 +61,11 @@ def changed_scene(id_or_path: str, changes: Sequence[str]) -> Scene:
 
 def placed(error: SceneError, options: Options) -> SceneError:
     """Return a complaint about a key of the scene with the place that states it: the file or ``--set``."""
-    if error.source or not re.fullmatch(r"[a-z_]+(\.[a-z_0-9]+)*", error.key):
+    key, of, _ = error.key.partition(" of ")  # hardness of rod-steel: of whichever body is made of it
+    if error.source or not re.fullmatch(r"[a-z_]+(\.[a-z_0-9]+)*", key):
         return error
-    changed = error.key in read_changes(options.changes)
+    changes = read_changes(options.changes)
+    changed = error.key in changes or any(of and one.endswith(f"material.{key}") for one in changes)
     file = options.scene if Path(options.scene).is_file() else ""
     return error.under("", "--set" if changed else file)
 
