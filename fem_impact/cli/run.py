@@ -117,8 +117,8 @@ def _say_comparison(scene: Scene, outcome: Outcome, options: Options) -> None:
         print_table(Table.of(head, rows, left=(0, 4)), options, indent="  ")
     else:
         sys.stdout.write(f"{measured}: no number that was measured is known of this run\n")
-    told = [*unused_columns(scene), *(f"warning: {one}" for one in doubtful_tests(scene))]
-    sys.stdout.writelines(f"{line}\n" for one in told for line in wrapped(one))
+    said = [*unused_columns(scene), *(f"warning: {one}" for one in doubtful_tests(scene))]
+    sys.stdout.writelines(f"{line}\n" for one in said for line in wrapped(one))
 
 
 def _say_screening(case: Case, options: Options) -> None:

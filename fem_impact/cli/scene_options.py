@@ -187,7 +187,10 @@ def named_scene(options: Options, needed: Sequence[str]) -> Scene | None:
             raise UsageError("describes a rod, but a scene is named too.", key=given[0], remedy=remedy)
         return asked_scene(options)
     missing = [f"--{name}" for name in needed if not getattr(options, name)]
-    if options.changes or missing:
+    if options.changes and not missing:
+        remedy = "Name a scene to change, or leave --set out."
+        raise UsageError("changes a scene, and none is named.", key="--set", remedy=remedy)
+    if missing:
         what = (
             "no scene is given"
             if len(missing) == len(needed)
