@@ -82,3 +82,15 @@ def test_a_test_counts_once_and_a_mean_is_none(camera_file, labels, told):
 
 def test_tests_may_have_no_labels(camera_file):
     assert read_camera(camera_file(*3 * [",-1.5,-1.5,0.3,-0.4,5"])).tests == ("", "", "")
+
+
+@pytest.mark.parametrize(
+    ("header", "dimension", "symbol"),
+    [
+        *(("stress [N/mm²]", "stress", "N/mm2"), ("stress (N/mm^2)", "stress", "N/mm2")),
+        *(("Omega [°/s]", "angular speed", "deg/s"), ("z [µm]", "length", "um"), ("z_μm", "length", "um")),
+    ],
+)
+def test_units_of_a_header_have_the_spellings_of_a_scene(tmp_path, header, dimension, symbol):
+    found = table(tmp_path, f"{header}\n1\n").quantity(header.split()[0].split("_")[0], dimension)
+    assert found is not None and (found[0], found[1].symbol) == (header, symbol)
