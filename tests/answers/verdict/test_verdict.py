@@ -834,6 +834,7 @@ LIKE_UNCERTAIN = "--uncertain: impact.v_n = -1.6: a bare number is not a speed"
         (("t5b", "--within", "e five"), 2, "is not a change of a number"),
         (("t5b", "--within", "mu 5 %"), 2, "Name one of e, energy, friction"),
         (("t5b", "--within", "e 500 %"), 2, '--within "e 500 %": is not a change of a number, above 0 and'),
+        (("t5b", "--within", "e 2 %", "--within", "e 5 %"), 2, "argument --within: is given twice. Keep one"),
         (
             ("t5b", "--within", "e nan"),
             2,
