@@ -6,7 +6,6 @@ from math import inf
 
 from fem_impact.case.effects.plasticity import hardening_of
 from fem_impact.case.effects.skin import skin_of
-from fem_impact.errors import SceneError
 from fem_impact.physics.indentation import FRICTIONS, HardnessTest, skin_depth, vickers
 from fem_impact.scene.inputs import materials_of
 from fem_impact.scene.material import Material
@@ -41,6 +40,7 @@ class Hardness:
     place : dotted key of the material
     material : its name
     HV : as stated; ``bulk`` : by the flow curve, at each friction of `FRICTIONS` under the pyramid
+    reason : why bulk and points are not known: the curve lies outside the indentations computed; else empty
     skin : depth, m, of the layer that the scene states, None without one
     points : layers that meet the stated number, none where it is less than that of the bulk
     """
@@ -51,6 +51,7 @@ class Hardness:
     bulk: tuple[float, ...]
     skin: float | None
     points: tuple[SkinPoint, ...]
+    reason: str = ""
 
 
 def hardnesses(scene: Scene, loads: Sequence[float] = (), scatter: float = 0.0) -> Iterator[Hardness]:
@@ -58,27 +59,24 @@ def hardnesses(scene: Scene, loads: Sequence[float] = (), scatter: float = 0.0) 
 
     Loads are in kgf, by default those of the scene or `LOADS`. Depths range over friction under the pyramid
     and a ``scatter`` of the hardness, HV.
-
-    Raises
-    ------
-    SceneError
-        If a flow curve lies outside the indentations that were computed.
     """
     for place, metal in materials_of(scene).items():
         if metal.hardness is None or not metal.yields or metal.law == "hardness":
             continue
-        law, skin = hardening_of(metal), skin_of(metal)
+        law, stated = hardening_of(metal), (place, metal.name, metal.hardness)
         try:
             bulk = tuple(vickers(metal.E, law, friction) for friction in FRICTIONS)
         except ValueError as error:
-            raise SceneError(str(error), key=f"hardness of {metal.name}", value=metal.hardness) from None
+            yield Hardness(*stated, (), None, (), str(error))
+            continue
+        skin = skin_of(metal)
         usual = (metal.skin.load,) if metal.skin and metal.skin.load else LOADS
         points = tuple(
             _point(metal, metal.hardness, load, factor, scatter)
             for load in loads or usual
             for factor in sorted({*FACTORS, *([skin.factor] if skin else [])})
         )
-        yield Hardness(place, metal.name, metal.hardness, bulk, skin.depth if skin else None, points)
+        yield Hardness(*stated, bulk, skin.depth if skin else None, points)
 
 
 def _point(metal: Material, HV: float, load: float, factor: float, scatter: float) -> SkinPoint:

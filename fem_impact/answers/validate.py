@@ -389,4 +389,4 @@ def _refused(
         if key in changes
     )
     remedy = f"{error.remedy} (Within the stated {where}.)".strip()
-    return SceneError(error.problem, key=error.key, value=error.value, remedy=remedy)
+    return SceneError(error.problem, key=error.key, value=error.value, remedy=remedy, source="uncertain=")

@@ -1,6 +1,7 @@
 """What a scene's materials say of their flow stress, what they do not say, and what that leaves out."""
 
 import json
+from math import sqrt
 
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.effects.heating import number as flash_number
@@ -8,7 +9,7 @@ from fem_impact.case.effects.heating import thermal
 from fem_impact.case.effects.plasticity import hardening_of
 from fem_impact.case.elastic_only import left_out
 from fem_impact.errors import SceneError
-from fem_impact.physics.hardening import TABOR_STRAIN, rate_gain, rate_law
+from fem_impact.physics.hardening import TABOR_STRAIN, rate_gain, rate_law, tabor_stress
 from fem_impact.scene import material as materials
 from fem_impact.scene.inputs import first_melting, materials_of, melting
 from fem_impact.scene.library import family_of
@@ -21,6 +22,7 @@ RATES = (1e2, 1e3, 1e4)  # 1/s, at which flow stresses are told
 HOT = 0.3  # expected flash rise over that to ignition; finite elements gave up to 3.3 times the expected rise
 NEAR_ROOM = 50.0  # K from 20 degC within which strengths and moduli are those of 20 degC
 HEAVY, SOFT = 2500.0, 1e9  # kg/m3, Pa: no usual solid is heavier and softer
+HARDEST, MOST_HARDENED = 1200.0, 5.0  # HV, and its flow stress over the yield stress: no usual metal has more
 YIELDS = {"rod": "rod-plasticity", "barrier": "barrier-elastoplastic"}
 
 
@@ -38,9 +40,10 @@ def unknowns(bodies: Bodies) -> tuple[str, ...]:
     """Return what materials do not say and the model would use, a sentence each; heat, one number, last."""
     under = [("barrier", metal) for _, metal in bodies.barrier.strata[1:]]
     of_metals = [_body(body, metal, bodies) for body, metal in (*_metals(bodies).items(), *under)]
-    soft = [_unlike_solids(key, metal) for key, metal in materials_of(bodies.scene).items()]
+    stated = materials_of(bodies.scene).items()
+    unlikely = [ask(key, metal) for key, metal in stated for ask in (_unlike_solids, _unlike_hardness)]
     ambient = _ambient(bodies.scene.heating)
-    sentences = (*soft, ambient, *dict.fromkeys(of_metals), _friction(bodies), _heat(bodies))
+    sentences = (*unlikely, ambient, *dict.fromkeys(of_metals), _friction(bodies), _heat(bodies))
     return tuple(sentence for sentence in sentences if sentence)
 
 
@@ -83,13 +86,39 @@ def _body(body: str, metal: materials.Material, bodies: Bodies) -> str:
 
 
 def _unlike_solids(key: str, metal: materials.Material) -> str:
-    """Return the question whether the unit of E is right where a body is heavy and soft as no solid is."""
-    if metal.rho <= HEAVY or metal.E >= SOFT:
-        return ""
+    """Return the question whether a unit is right where a body is heavy and soft, or light and stiff.
+
+    Of a body that yields, one that is as light is refused.
+    """
     E, rho = format_quantity(metal.E, "stress"), format_quantity(metal.rho, "density")
+    if metal.rho > HEAVY and metal.E < SOFT:
+        return (
+            f"{key}.E = {E} ({metal.name}): is its unit right? Metals, ceramics and stones, as heavy as its "
+            f"rho = {rho}, have 10 to 400 GPa; rubbers, woods and plastics, which are as soft, are lighter."
+        )
+    if metal.E <= materials.STIFFEST and (speed := sqrt(metal.E / metal.rho)) > materials.MOST_SPEED:
+        return (
+            f"{key}.rho = {rho} ({metal.name}): is its unit right? With E = {metal.E / 1e9:.4g} GPa, "
+            f"sqrt(E/rho), the speed of waves, is {speed / 1e3:.3g} km/s; metals, ceramics and stones have 1 "
+            f"to {materials.MOST_SPEED / 1e3:g} km/s."
+        )
+    return ""
+
+
+def _unlike_hardness(key: str, metal: materials.Material) -> str:
+    """Return the question whether a hardness is a number HV where no metal is as hard for its yield stress.
+
+    The ratio is 1.1 to 3.5 of the shipped metals: annealed copper has the most.
+    """
+    if metal.hardness is None or not metal.yields or kind_of(family_of(metal)) not in ("metal", None):
+        return ""
+    flow = tabor_stress(metal.hardness)
+    if metal.hardness <= HARDEST and flow <= MOST_HARDENED * metal.yield_stress:
+        return ""
     return (
-        f"{key}.E = {E} ({metal.name}): is its unit right? Metals, ceramics and stones, as heavy as its "
-        f"rho = {rho}, have 10 to 400 GPa; rubbers, woods and plastics, which are as soft, are lighter."
+        f"{key}.hardness = {metal.hardness:g} ({metal.name}): is it Vickers' number HV, and no MPa? It "
+        f"stands for a flow stress of {_MPa(flow)}, {flow / metal.yield_stress:.3g} times the yield stress. "
+        "Hardened steel has HV 900, and no shipped metal more than 3.5 times its yield stress."
     )
 
 

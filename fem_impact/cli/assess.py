@@ -129,13 +129,21 @@ def _within(options: Options) -> tuple[str, float]:
         return "e", TOLERANCE
     of, _, text = options.within.strip().partition(" ")
     remedy = f'Name one of {", ".join(CHANGED)} and a change of it, such as "e 0.05" or "energy 2 %".'
-    wrong = UsageError("is not a change of a number.", key="--within", value=options.within, remedy=remedy)
+    wrong = UsageError(
+        "is not a change of a number, above 0 and below 1.",
+        key="--within",
+        value=options.within,
+        remedy=remedy,
+    )
     if of not in CHANGED:
         raise wrong
     try:
-        return of, parse_change(text, "--within")
+        change = parse_change(text, "--within")
     except SceneError as error:
         raise wrong from error
+    if not 0.0 < change < 1.0:
+        raise wrong
+    return of, change
 
 
 def _text(answer: dict[str, Any]) -> str:

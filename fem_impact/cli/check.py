@@ -22,7 +22,7 @@ from fem_impact.figures.outline import drawn
 from fem_impact.outcome.groups import EffectChoice, texts
 from fem_impact.pages.drawing import draw_projectile
 from fem_impact.progress import clock_text, range_text
-from fem_impact.run.tests import count, doubtful_tests, tests_of
+from fem_impact.run.tests import count, doubtful_tests, tests_of, unused_columns
 from fem_impact.scene.inputs import STATED, inputs, rounded_text
 from fem_impact.scene.types import Scene, to_dict, to_toml
 from fem_impact.tables.table import Table
@@ -88,7 +88,8 @@ def _tests_lines(scene: Scene) -> list[str]:
     tests = tests_of(scene)
     if tests is None:
         return []
-    lines = wrapped(f"measured: {count(tests)} tests, {shown_path(str(scene.measured))}")
+    told = [f"measured: {count(tests)} tests, {shown_path(str(scene.measured))}", *unused_columns(scene)]
+    lines = [line for one in told for line in wrapped(one)]
     return lines + [line for one in doubtful_tests(scene) for line in wrapped(f"warning: {one}")]
 
 

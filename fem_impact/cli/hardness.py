@@ -9,13 +9,14 @@ from fem_impact.cli.parser import Options
 from fem_impact.cli.scene_options import asked_scene
 from fem_impact.cli.terminal import print_answer
 from fem_impact.errors import UsageError
+from fem_impact.scene.fields import SKIN
 from fem_impact.tables.table import Table
 from fem_impact.tables.text import wrapped
 
 
 def hardness(options: Options) -> int:
     """Print the layers that meet the hardness of each material."""
-    loads = [_number("--loads", text) for text in options.loads.split(",")] if options.loads else []
+    loads = [_load(text) for text in options.loads.split(",")] if options.loads else []
     scatter = _number("--scatter", options.scatter) if options.scatter else 0.0
     found = list(hardnesses(asked_scene(options), loads, scatter))
     lines = [line for one in found for line in _lines(one)] or wrapped("No material states a hardness.")
@@ -33,6 +34,15 @@ def _number(option: str, text: str) -> float:
     return number
 
 
+def _load(text: str) -> float:
+    """Return a load of a hardness test, kgf, within the bounds of that of a skin."""
+    load = _number("--loads", text)
+    allowed = next(number for number in SKIN if number.key == "load")
+    if not allowed.allows(load):
+        raise UsageError(f"must be {allowed.low:g} to {allowed.high:g} kgf.", key="--loads", value=text)
+    return load
+
+
 def _document(one: Hardness) -> dict[str, object]:
     """Return a hardness for ``--json``, where no finite depth is null."""
     plain = asdict(one)
@@ -41,6 +51,10 @@ def _document(one: Hardness) -> dict[str, object]:
 
 
 def _lines(one: Hardness) -> Iterator[str]:
+    if one.reason:
+        where = f"{one.place} ({one.material}): HV {one.HV:g} is stated, but no layer that meets it is known"
+        yield from [*wrapped(f"{where}. {one.reason}"), ""]
+        return
     low, usual, high = one.bulk
     yield from wrapped(
         f"{one.place} ({one.material}): HV {one.HV:g} is stated; its flow curve alone has HV "

@@ -207,11 +207,22 @@ class HelpLines(argparse.RawDescriptionHelpFormatter):
             self._action_max_length += 2
 
 
+class Once(argparse.Action):
+    """The action ``once``: store a value, and refuse a second one."""
+
+    def __call__(self, parser: Any, namespace: Any, values: Any, option_string: str | None = None) -> None:
+        """Store the value, or raise ArgumentError."""
+        if getattr(namespace, self.dest) != self.default:
+            raise argparse.ArgumentError(self, "is given twice. Keep one of the two.")
+        setattr(namespace, self.dest, values)
+
+
 class CommandParser(argparse.ArgumentParser):
     """A parser that raises `UsageError` instead of ending the program, and answers with the nearest name."""
 
     def __init__(self, **settings: Any) -> None:
         super().__init__(formatter_class=HelpLines, **settings)
+        self.register("action", "once", Once)
 
     def state(self, handler: Callable[[Options], int], stated: Mapping[str, Any]) -> None:
         """State what a command does, and add its options and those that all commands have.

@@ -100,7 +100,7 @@ def run(options: Options) -> int:
 def _say_comparison(scene: Scene, outcome: Outcome, options: Options) -> None:
     """Print the outcome beside the tests that its scene names."""
     from fem_impact.answers.compare import compare, told
-    from fem_impact.run.tests import count, doubtful_tests, tests_of
+    from fem_impact.run.tests import count, doubtful_tests, tests_of, unused_columns
 
     tests = tests_of(scene)
     if tests is None:
@@ -118,7 +118,8 @@ def _say_comparison(scene: Scene, outcome: Outcome, options: Options) -> None:
         print_table(Table.of(head, rows, left=(0, 4)), options, indent="  ")
     else:
         sys.stdout.write(f"{measured}: no number that was measured is known of this run\n")
-    sys.stdout.writelines(f"{line}\n" for one in doubtful_tests(scene) for line in wrapped(f"warning: {one}"))
+    said = [*unused_columns(scene), *(f"warning: {one}" for one in doubtful_tests(scene))]
+    sys.stdout.writelines(f"{line}\n" for one in said for line in wrapped(one))
 
 
 def _say_screening(case: Case, options: Options) -> None:

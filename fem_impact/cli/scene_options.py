@@ -56,9 +56,11 @@ def changed_scene(id_or_path: str, changes: Sequence[str]) -> Scene:
 
 def placed(error: SceneError, options: Options) -> SceneError:
     """Return a complaint about a key of the scene with the place that states it: the file or ``--set``."""
-    if error.source or not re.fullmatch(r"[a-z_]+(\.[a-z_0-9]+)*", error.key):
+    key, of, _ = error.key.partition(" of ")  # hardness of rod-steel: of whichever body is made of it
+    if error.source or not re.fullmatch(r"[a-z_]+(\.[a-z_0-9]+)*", key):
         return error
-    changed = error.key in read_changes(options.changes)
+    changes = read_changes(options.changes)
+    changed = error.key in changes or any(of and one.endswith(f"material.{key}") for one in changes)
     file = options.scene if Path(options.scene).is_file() else ""
     return error.under("", "--set" if changed else file)
 
@@ -83,12 +85,20 @@ def _change(change: str) -> tuple[str, Any]:
         from fem_impact.scene.read import read_tables
 
         return key, read_tables(Path(text[1:]))
+    if names_material(key) and re.fullmatch(r"[\d.]+", text):
+        return key, text
     if re.fullmatch(r"[+-]?\.\d+", text):  # .36, which TOML refuses
         return key, float(text)
     try:
         return key, tomllib.loads(f"value = {text}")["value"] if "\n" not in text else text
     except (ValueError, RecursionError):
         return key, text
+
+
+def names_material(key: str) -> bool:
+    """Return whether a key takes the name of a material, which may be a number: 4340, 1.4404."""
+    *path, last = key.split(".")
+    return last == "material" or path[-1:] == ["mesh_materials"]
 
 
 def command_line(options: Options, command: str, *names: str, scene: str = "") -> str:
@@ -172,7 +182,10 @@ def named_scene(options: Options, needed: Sequence[str]) -> Scene | None:
             raise UsageError("describes a rod, but a scene is named too.", key=given[0], remedy=remedy)
         return asked_scene(options)
     missing = [f"--{name}" for name in needed if not getattr(options, name)]
-    if options.changes or missing:
+    if options.changes and not missing:
+        remedy = "Name a scene to change, or leave --set out."
+        raise UsageError("changes a scene, and none is named.", key="--set", remedy=remedy)
+    if missing:
         what = (
             "no scene is given"
             if len(missing) == len(needed)

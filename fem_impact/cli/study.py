@@ -14,7 +14,7 @@ from fem_impact.cli.page import asked_page, write_study_page
 from fem_impact.cli.parser import CommandParser, Options, stated
 from fem_impact.cli.paths import checked_out, told_kept
 from fem_impact.cli.terminal import chosen_meter, print_answer, print_json, print_markdown, print_notes
-from fem_impact.errors import RunError, UsageError, did_you_mean
+from fem_impact.errors import RunError, SceneError, UsageError, did_you_mean
 from fem_impact.evidence.data import read_stated
 from fem_impact.progress import clock_text
 
@@ -190,20 +190,29 @@ def _checked_ids(ids: Sequence[str], own: bool) -> tuple[str, ...]:
     """Return the ids of measured sets, with ``own`` also files of scenes that name own tests, each once."""
     from fem_impact.scene.types import MEASURED_SETS
 
-    for name in ids:
+    by_id = dict[str, str]()
+    for name in dict.fromkeys(ids):
         if own and name.endswith(".toml"):
-            _refuse_without_tests(name)
-        elif name not in MEASURED_SETS:
+            scene_id = _id_with_tests(name)
+        elif name in MEASURED_SETS:
+            scene_id = name
+        else:
             remedy = did_you_mean(name, MEASURED_SETS, f"Measured: {', '.join(MEASURED_SETS)}.")
             raise UsageError("is not a measured set.", key="ID", value=name, remedy=remedy)
-    return tuple(dict.fromkeys(ids))
+        if (other := by_id.setdefault(scene_id, name)) != name:
+            problem = f"is the id of {other}, too, and runs are kept by it."
+            remedy = "Give each scene an id of its own."
+            raise SceneError(problem, key="id", value=scene_id, remedy=remedy, source=name)
+    return tuple(by_id.values())
 
 
-def _refuse_without_tests(name: str) -> None:
-    """Refuse a scene file without tests, or with some that cannot be read."""
+def _id_with_tests(name: str) -> str:
+    """Return the id of a scene file; refuse one without tests, or with some that cannot be read."""
     from fem_impact.run.tests import tests_of
     from fem_impact.scene.shipped import load
 
-    if tests_of(load(name)) is None:
+    scene = load(name)
+    if tests_of(scene) is None:
         remedy = 'Write measured = "my_tests.csv" in it.'
         raise UsageError("states no measured tests.", key="ID", value=name, remedy=remedy)
+    return scene.id

@@ -15,6 +15,7 @@ from fem_impact.cli.values import read_all
 from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import Unknown, known, or_none
 from fem_impact.progress import range_text
+from fem_impact.run.tests import unused_columns
 from fem_impact.tables.table import Table
 from fem_impact.tables.text import wrapped
 
@@ -29,7 +30,7 @@ def validate(options: Options) -> int:
         found = validated(scene, intervals or None, samples=options.samples, options=kept, **fidelities)
     line = f"{command_line(options, 'validate', 'uncertain')} --fidelity solid"
     solid = range_text(*LevelMeshes.of(Case(scene)).whole_s), line
-    print_answer(options, _document(found), _text(found, options.fidelity, solid))
+    print_answer(options, _document(found), _text(found, options.fidelity, solid, unused_columns(scene)))
     return 0
 
 
@@ -54,7 +55,8 @@ def _document(found: Validation) -> dict[str, Any]:
     }
 
 
-def _text(found: Validation, fidelity: str, solid: tuple[str, str]) -> str:
+def _text(found: Validation, fidelity: str, solid: tuple[str, str], notes: list[str]) -> str:
+    """Return the answer; ``solid`` are the time and the command of finite elements."""
     parts = [
         (key, *(f"{100 * share:.0f} %" for share in row))
         for key, row in zip((*found.inputs, "tests", "model"), found.shares.tolist(), strict=True)
@@ -72,6 +74,7 @@ def _text(found: Validation, fidelity: str, solid: tuple[str, str]) -> str:
     )
     sentences = [joint, *[doubt] * bool(found.doubtful)]
     sentences += [f"{name} is not compared: {why}" for name, why in found.unknown.items()]
+    sentences += notes
     return "\n".join(
         [
             *_better(found, fidelity, solid),

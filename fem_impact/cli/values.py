@@ -8,7 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from fem_impact.answers.vary import MOST, NUMBER, quantity
-from fem_impact.errors import UsageError
+from fem_impact.cli.scene_options import names_material
+from fem_impact.errors import SceneError, UsageError
+from fem_impact.scene.library import material
 from fem_impact.scene.read import read_tables
 from fem_impact.scene.shipped import bare
 
@@ -49,7 +51,9 @@ def read_values(text: str) -> tuple[str, list[Any]]:
     if match is None and re.match(rf"\s*{NUMBER}[^,]*(\.\.|:)", listed):
         problem = "is no range: that is first..last:step, with one unit at its end."
         raise UsageError(problem, key=f'"{text}"', remedy=_EXAMPLE)
-    return key.strip(), _steps(match, text) if match else _listed(listed)
+    if match:
+        return key.strip(), _steps(match, text)
+    return key.strip(), _listed(listed, key.strip())
 
 
 def read_all(texts: Iterable[str], option: str) -> dict[str, list[Any]]:
@@ -89,11 +93,23 @@ def _no_step(match: re.Match[str], text: str, count: int) -> UsageError:
     return UsageError(problem, key=f'"{text}"', remedy=f"Write {' or '.join(ranges)}.")
 
 
-def _listed(text: str) -> list[Any]:
-    """Return the values of a list; a unit after the last one is that of those before without one."""
+def _listed(text: str, key: str) -> list[Any]:
+    """Return the values of a list; a unit after the last one is that of those before without one.
+
+    A number in the place of a material, such as 4340, is another name of a shipped one.
+    """
     parts = [part.strip() for part in _split(text)]
     _, unit = quantity(parts[-1]) or ("", "")
-    return [_value(part, unit) for part in parts]
+    named = names_material(key)
+    return [_name(part, key) if named and quantity(part) else _value(part, unit) for part in parts]
+
+
+def _name(number: str, key: str) -> str:
+    """Return the shipped material that has a number as a name."""
+    try:
+        return material(number).name
+    except SceneError as error:
+        raise error.under(key) from None
 
 
 def _split(text: str) -> Iterator[str]:

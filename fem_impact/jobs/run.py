@@ -100,9 +100,12 @@ def run_jobs(
     Raises
     ------
     RunError
-        A worker holds another version of the program.
+        Two jobs have one name, or a worker holds another version of the program.
     """
-    by_name = {job.name: job for job in jobs}
+    by_name = dict[str, Work[Result]]()
+    for job in jobs:
+        if by_name.setdefault(job.name, job) is not job:
+            raise RunError(f"two runs have one name, {job.name}: only one could be kept.")
     with Store.open(store) as base:
         results = stored_results(base, by_name.values(), progress)
         costs = expected_costs(by_name.values(), results)

@@ -169,6 +169,15 @@ def tests_freedom(tests: MeasuredTests, names: Sequence[str]) -> float:
     return min((statistics[name].n for name in names if statistics[name].sd > 0), default=inf) - 1
 
 
+def unused_columns(scene: Scene) -> list[str]:
+    """Return a sentence on the columns of a file of tests that were not used; none where all were."""
+    file = scene.measured or ""
+    if not file.endswith(OWN):
+        return []
+    ignored = (read_means(file, NUMBERS) if holds_means(file) else read_camera(file)).ignored
+    return [f"columns not used: {', '.join(ignored)}"] if ignored else []
+
+
 def doubtful_tests(scene: Scene) -> list[str]:
     """Return a sentence on single tests of another impact than the scene's, and on those that gained energy.
 

@@ -68,6 +68,15 @@ def curve(stated: Any, strain: Any, E: float) -> Points:
             key="points",
             remedy="Give the point at which the body yields, with strain = stress / E.",
         )
+    if plastic[first][1] == 0 and len(points) > 1:
+        e, s = points[first + 1]
+        raise SceneError(
+            f"leaves the elastic line of E = {E / 1e9:.4g} GPa at its point without stress: the next, at a "
+            f"true strain of {e:.4g}, has {s / 1e6:.4g} MPa, of which stress over E is a strain of "
+            f"{s / E:.4g}.",
+            key="points",
+            remedy="Are the strains in per cent? Give 0.01 for 1 %, and the point at which the body yields.",
+        )
     return ((0.0, plastic[first][1]), *plastic[first + 1 :])
 
 

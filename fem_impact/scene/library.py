@@ -98,8 +98,8 @@ CHANGED = " (changed)"
 """End of the name of a shipped material of which a scene changes a value."""
 BESIDE = ("melting", "intervals", "sources", "aliases", "about")
 """Keys of a shipped material that are no values of it."""
-MISSPELT = 0.9
-"""Likeness of a name to a shipped material's from which it is taken for that, misspelt."""
+MISSPELT, NEAR = 0.9, 0.75
+"""Likeness of a name to a shipped material's from which it is taken for that, misspelt, and is proposed."""
 _DATA = files("fem_impact.scene").joinpath("data")
 
 
@@ -207,7 +207,8 @@ def _nearest_material(name: str, known: Collection[str]) -> str:
         return f"Did you mean {near[0]}?"
     if len(found) > 1 and part:
         return f"Some that are: {', '.join(found)}. {ALL_MATERIALS}"
-    return f"Did you mean {found[0]}?" if len(found) == 1 else did_you_mean(part, known, ALL_MATERIALS)
+    proposed = found if len(found) == 1 else get_close_matches(part, known, 1, NEAR)
+    return f"Did you mean {proposed[0]}?" if proposed else ALL_MATERIALS
 
 
 def family_of(metal: Material) -> str:

@@ -385,7 +385,8 @@ class Surface:
     def __post_init__(self) -> None:
         fields.check_choice(self.state, ("machined", "contaminated", "cleaned", "pair", "custom"), "state")
         fields.check_numbers(self, fields.SURFACE)
-        fields.check_text(self.source, "source", 1000)
+        if not fields.check_text(self.source, "source", 1000).strip():
+            raise SceneError("says nothing.", key="source", remedy="Say where the friction is known from.")
         if not self.friction_low <= self.friction <= self.friction_high:
             raise SceneError(
                 f"lies outside its own interval, {self.friction_low:g} to {self.friction_high:g}.",

@@ -26,6 +26,11 @@ LARGEST_OTHER = 1e100
 """Bound of the size of any other number of an outcome, SI, of which variances must stay finite."""
 FASTEST = -V_N.low
 """The most that a scene may state as a speed, m/s."""
+TOO_FAST = f"is more than {FASTEST:g} m/s, the most that a scene may state: is its unit right?"
+
+
+NO_TESTS = ("mean", "average", "median", "sd", "std", "min", "max", "sum", "total")
+"""Labels, in small letters, of rows that spreadsheets add below the tests."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,9 +84,10 @@ def read_camera(path: str | Path) -> Camera:
     motion = {name: values[name] for name in (*OF_TESTS, *SPIN_BEFORE) if name in values}
     arms = one_pair({name: values[name] for name in ARMS if name in values}, path)
     _check_motion(motion, table, {name: stated for name, (stated, _) in columns.items()})
+    _check_labels(table)
     labels = tuple(record.get("test", str(i)) for i, (_, record) in enumerate(records, 1))
-    used = {stated for stated, _ in columns.values()}
-    return Camera(motion, labels, tuple(name for name in table.names if name not in (*used, "test")), arms)
+    used = {stated for stated, _ in columns.values()} | {"test"}
+    return Camera(motion, labels, table.unused(used, ("test", *ARMS)), arms)
 
 
 def _columns(table: UserTable) -> dict[str, tuple[str, Unit]]:
@@ -103,6 +109,18 @@ def _number(place: str, text: str, unit: Unit) -> float:
     if abs(value) > LARGEST:
         raise ResultError(f"{place}: {text[:40]} is no speed of a dropped rod.")
     return value
+
+
+def _check_labels(table: UserTable) -> None:
+    """Refuse a test that stands twice, and a row of what was worked out from tests."""
+    seen = set[str]()
+    for place, label in table.column("test") if "test" in table.names else ():
+        if label.lower() in NO_TESTS:
+            raise ResultError(f"{place}: {label!r} is no single test. Leave the line out.")
+        if label and label in seen:
+            remedy = "Leave one out, or give each test its own label."
+            raise ResultError(f"{place}: test {label!r} stands in two lines. {remedy}")
+        seen.add(label)
 
 
 def one_pair(arms: Mapping[str, Iterable[float]], path: str | Path) -> tuple[float, float] | None:
@@ -135,8 +153,7 @@ def _check_motion(motion: Mapping[str, Floats], table: UserTable, stated: Mappin
     for name in (name for name, dimension in OF_TESTS.items() if dimension == "speed"):
         if (fast := abs(motion[name]) > FASTEST).any():
             place, text = table.column(stated[name])[int(np.argmax(fast))]
-            rule = f"is more than {FASTEST:g} m/s, the most that a scene may state: is its unit right?"
-            raise ResultError(f"{place}: {text} {rule}")
+            raise ResultError(f"{place}: {text} {TOO_FAST}")
 
 
 OF_MEANS = {"e": "", "mu": "", "Omega": "angular speed", "V_n": "speed", "V_t": "speed"}
@@ -145,6 +162,7 @@ LIKELY = {
     "e": (-1.0, 2.0, "the contact point's normal velocity after the impact over that before, a number"),
     "mu": (-10.0, 10.0, "the tangential impulse over the normal one, a number"),
 }
+SHARE = (-1.0, 2.0, "a share of the kinetic energy before the impact, a number")
 """Bounds of the means of pure numbers, and what these are; beyond them it is per cent or another quantity."""
 SCATTER = ("sd", "standard_error")
 CORRELATION = "r_"
@@ -168,9 +186,20 @@ class Mean:
 
 @dataclass(frozen=True, slots=True)
 class Means:
-    """Means by quantity, and the arms of the contact point (d_c, d_d), m, where the file states them."""
+    """Means of a file.
+
+    Attributes
+    ----------
+    means : mapping of str to Mean
+        By quantity.
+    ignored : tuple of str
+        Columns of the file that were not used.
+    arms : (d_c, d_d) or None
+        Arms of the contact point, m, where the file states them.
+    """
 
     means: Mapping[str, Mean]
+    ignored: tuple[str, ...]
     arms: tuple[float, float] | None
 
 
@@ -204,6 +233,9 @@ def read_means(path: str | Path, others: Collection[str] = ()) -> Means:
     means: dict[str, Mean] = {}
     stated = {name: table.quantity(name, dimension) for name, dimension in ARMS.items()}
     columns = {name: column for name, column in stated.items() if column}
+    used = {"quantity", "mean", scatter, "n", "systematic", *(column for column, _ in columns.values())}
+    used |= {name for name in table.names if name.startswith(CORRELATION)}
+    ignored = table.unused(used, ("systematic", *ARMS, *(f"{CORRELATION}{name}" for name in OF_MEANS)))
     arms: dict[str, list[float]] = {name: [] for name in columns}
     for line, row in table.records():
         place = f"{path}: line {line}"
@@ -216,7 +248,7 @@ def read_means(path: str | Path, others: Collection[str] = ()) -> Means:
     if not means:
         raise ResultError(f"{path}: holds no line below its header.")
     _check_correlations(means, path)
-    return Means(means, one_pair(arms, path))
+    return Means(means, ignored, one_pair(arms, path))
 
 
 def _check_correlations(means: Mapping[str, Mean], path: str | Path) -> None:
@@ -293,9 +325,14 @@ def _read_row(row: Mapping[str, str], scatter: str, place: str, others: Collecti
 
 
 def _check_likely(name: str, mean: float, place: str) -> None:
-    if name not in LIKELY:
+    if OF_MEANS.get(name) == "speed" or name.endswith("_m_per_s"):
+        if abs(mean) > FASTEST:
+            raise ResultError(f"{place}: {name} = {mean:g} m/s {TOO_FAST}")
         return
-    low, high, meaning = LIKELY[name]
+    bounds = SHARE if name.endswith("_over_E_0") else LIKELY.get(name)
+    if bounds is None:
+        return
+    low, high, meaning = bounds
     if not low <= mean <= high:
         raise ResultError(
             f"{place}: {name} = {mean:g} is none of an impact: {name} is {meaning} from {low:g} to {high:g}, "

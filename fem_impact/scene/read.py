@@ -363,7 +363,7 @@ def _accuracy(table: tables.Table | str) -> types.Accuracy:
 def _wanted(text: Any, key: str) -> dict[str, Any]:
     """Read a wanted error such as ``"2 %"``, or ``"e 2 %"`` of one number alone."""
     of, _, share = text.partition(" ") if isinstance(text, str) and text[:1].isalpha() else ("", "", text)
-    return {"target": parse_share(share, key), "target_of": of or None}
+    return {"target": parse_share(share or text, key), "target_of": of or None}
 
 
 PARTS: Mapping[str, Callable[[Any], Any]] = {

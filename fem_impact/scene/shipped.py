@@ -11,11 +11,11 @@ from typing import Any
 from fem_impact.errors import SceneError, UsageError, did_you_mean
 from fem_impact.scene import fields
 from fem_impact.scene.impact import FIRST, one_way, restated
-from fem_impact.scene.library import CHANGED, nearest_scene, own_name, shipped, stated
+from fem_impact.scene.library import CHANGED, material, nearest_scene, own_name, shipped, stated
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.read import read_dict, read_scene, read_tables, read_toml
-from fem_impact.scene.shapes import BY_LENGTH, REPLACED, TIP
-from fem_impact.scene.types import OWN, Scene, to_dict
+from fem_impact.scene.shapes import BY_LENGTH, NEEDS, REPLACED, SIZES, TIP
+from fem_impact.scene.types import OWN, Scene, material_table, to_dict
 from fem_impact.scene.units import DIMENSIONS, parse_quantity
 
 
@@ -234,9 +234,9 @@ def _open_at_tail(rod: Any, was: ProjectileSpec) -> None:
 def _change(data: dict[str, Any], key: str, value: Any) -> None:
     *path, last = key.split(".")
     if path[-2:] in (["material", "rate"], ["material", "flow"], ["material", "skin"]):
-        material = _section(data, path[:-1], key)
-        if last == "law" or path[-1] not in material:
-            material[path[-1]] = {}  # another law leaves none of the old one's numbers
+        metal = _section(data, path[:-1], key)
+        if last == "law" or path[-1] not in metal:
+            metal[path[-1]] = {}  # another law leaves none of the old one's numbers
     if not path and last not in data:
         # refuse a key without its section that one of a section comes near to, such as ``lenght``
         sections = ((name, table) for name, table in data.items() if isinstance(table, dict))
@@ -246,17 +246,8 @@ def _change(data: dict[str, Any], key: str, value: Any) -> None:
             remedy = f"Did you mean {whole[near[0]]}?"
             raise SceneError("is not a key of a scene.", key=key, remedy=remedy)
     table = _section(data, path, key)
-    # an SI key replaces the key with a unit, and the other way round: ``length_m`` and ``length``
-    for other in [key for key in table if bare(key) == bare(last) and path[-1:] not in SETS]:
-        del table[other]
-    if path == ["projectile"] and bare(last) in (BY_LENGTH, *REPLACED):
-        for other in {BY_LENGTH, *REPLACED} - {bare(last)}:
-            table.pop(other, None)  # one of them states the form of a nose
-    if path == ["projectile"] and bare(last) == "inner_diameter":
-        table.pop("bore", None)  # it states the bore
-    if path == ["projectile"] and last == "shape":
-        for other in TIP:
-            table.pop(other, None)  # a shape has its own
+    for other in _replaced(table, path, last, value):
+        table.pop(other, None)
     table[last] = value
     _rename(table, path, last)
     if "material" in path and last != "name":
@@ -266,6 +257,26 @@ def _change(data: dict[str, Any], key: str, value: Any) -> None:
         mesh = [key for key in table if key.removesuffix("_m") in fields.MESH]
         for other in mesh if last == "target" else ["target"] if last in mesh else []:
             table.pop(other, None)  # a mesh replaces a target, and a target a mesh
+
+
+def _replaced(table: Mapping[str, Any], path: list[str], last: str, value: Any) -> list[str]:
+    """Return the keys of a table that a new value takes the place of."""
+    # an SI key replaces the key with a unit, and the other way round: ``length_m`` and ``length``
+    same = [key for key in table if bare(key) == bare(last) and path[-1:] not in SETS]
+    if path == ["surface"] and last == "state" and value != table.get("state"):
+        return [*same, *PAIR]
+    if path != ["projectile"]:
+        return same
+    if bare(last) in (BY_LENGTH, *REPLACED):  # one of them states the form of a nose
+        return [*same, *({BY_LENGTH, *REPLACED} - {bare(last)})]
+    if bare(last) == "inner_diameter":
+        return [*same, "bore"]  # it states the bore
+    if last == "tip" and value == "plain":
+        return [*same, *TIP[1:]]  # it has no radius
+    if last == "shape":  # it has its own tip and sizes
+        unneeded = {size.key for size in SIZES} - {*NEEDS[value], BY_LENGTH} if str(value) in NEEDS else ()
+        return [*same, *TIP, *(key for key in table if bare(key) in unneeded)]
+    return same
 
 
 def bare(key: str) -> str:
@@ -318,6 +329,11 @@ def _section(data: dict[str, Any], path: list[str], key: str) -> dict[str, Any]:
         if name == "accuracy" and isinstance(inner, str):
             remedy = "Give the error that is allowed, or a mesh, not both."
             raise SceneError(f"stands beside accuracy = {inner!r}.", key=key, remedy=remedy)
+        if name == "material" and isinstance(inner, str):  # of a shipped one its values
+            try:
+                inner = table[name] = material_table(material(inner))
+            except SceneError as error:
+                raise error.under(f"{key.partition('.material')[0]}.material") from None
         if not isinstance(inner, dict):
             sections = [k for k, v in table.items() if isinstance(v, Mapping)]
             hint = did_you_mean(name, sections, "Write section.key, such as accuracy.tip_size.")
@@ -332,6 +348,3 @@ def _rename(table: dict[str, Any], path: list[str], last: str) -> None:
         table |= {"state": "custom", "source": "set by the user"}
         if last == "friction":
             table |= {"friction_low": table["friction"], "friction_high": table["friction"]}
-    elif path == ["surface"] and last == "state":
-        for key in PAIR:
-            table.pop(key, None)

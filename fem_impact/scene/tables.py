@@ -27,8 +27,12 @@ _JOHNSON_COOK = (
     'Johnson and Cook\'s A is yield_stress; B and n stand in flow = { law = "johnson-cook", ... }, C in '
     'rate = { law = "johnson-cook", ... }.'
 )
-INSTEAD = dict.fromkeys(("C10", "C01"), _RUBBER) | dict.fromkeys(("A", "B", "C", "n"), _JOHNSON_COOK)
-"""What to write for keys of laws in other programs, in the table of a material."""
+_DIAMETER = "Give diameter, twice the radius."
+INSTEAD = {
+    "rho": dict.fromkeys(("C10", "C01"), _RUBBER) | dict.fromkeys(("A", "B", "C", "n"), _JOHNSON_COOK),
+    "diameter": {"radius": _DIAMETER, "radius_m": _DIAMETER},
+}
+"""What to write for keys of other programs, by a key of the table in which they stand."""
 PLACES = {
     f.key: place
     for place, wanted in (
@@ -142,7 +146,9 @@ def check_keys(table: Table, known: Iterable[str], shown: Iterable[str] = ()) ->
             near = next(
                 (name for word, name in OTHER_NAMES.items() if word in str(key) and name in known), str(key)
             )
-            told = INSTEAD.get(str(key)) if "rho" in known else None
+            told = next(
+                (words[str(key)] for of, words in INSTEAD.items() if of in known and key in words), ""
+            )
             remedy = told or (
                 f"It is a key of {PLACES[near]}."
                 if near in PLACES and near not in known

@@ -84,6 +84,10 @@ class Accuracy:
             fields.check_choice(self.target_of, get_args(fields.TargetOf), "target")
         if self.target is not None and not (isinstance(self.target, float) and 0.0 < self.target <= 1.0):
             raise SceneError("must be a share above 0 and at most 1.", key="target", value=self.target)
+        if self.target is not None and self.levels == 1:
+            problem = "is one mesh, which tells no error, beside a target, the wanted error."
+            remedy = "Give at least 2, or leave out the target."
+            raise SceneError(problem, key="levels", value=1, remedy=remedy)
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,6 +17,20 @@ _LONGEST = 64
 SPELLINGS = {"³": "3", "^3": "3", "²": "2", "^2": "2", "°": "deg", "µ": "u", "μ": "u"}
 
 
+def spelt(symbol: str) -> str:
+    """Return the symbol of a unit without spaces, its usual spellings as one.
+
+    Examples
+    --------
+    >>> spelt("N/mm²"), spelt("°/s"), spelt("kg / m^3")
+    ('N/mm2', 'deg/s', 'kg/m3')
+    """
+    bare = "".join(symbol.split())
+    for other, letter in SPELLINGS.items():
+        bare = bare.replace(other, letter)
+    return bare
+
+
 @dataclass(frozen=True, slots=True)
 class Unit:
     """One unit: ``value_SI = number * 10**power * factor + offset``; factor is 1 for every decimal unit."""
@@ -42,8 +56,8 @@ class Dimension:
     units: tuple[Unit, ...]
 
     def unit(self, symbol: str) -> Unit | None:
-        """Return the unit of that symbol, with or without its spaces, or None."""
-        bare = symbol.replace(" ", "")
+        """Return the unit of that symbol, with or without its spaces and in its usual spellings, or None."""
+        bare = spelt(symbol)
         return next((u for u in self.units if u.symbol.replace(" ", "") == bare), None)
 
     @property
@@ -96,10 +110,7 @@ def parse_quantity(value: Any, dimension: str, key: str, si_key: str = "") -> fl
         endless = value.strip().lower().lstrip("+-").startswith(("nan", "inf"))
         problem = "must be a finite number." if endless else f"cannot be read as {dim.name}."
         raise SceneError(problem, key=key, value=value, remedy=remedy)
-    # the usual spellings of a unit are one
-    number, symbol = match[1], (match[2] or "").strip().replace(" ", "")
-    for other, letter in SPELLINGS.items():
-        symbol = symbol.replace(other, letter)
+    number, symbol = match[1], spelt(match[2] or "")
     if symbol.startswith(","):
         raise SceneError("has a decimal comma; write a decimal point.", key=key, value=value, remedy=remedy)
     if not symbol:

@@ -8,15 +8,19 @@ import csv
 import io
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
+from difflib import get_close_matches
 from pathlib import Path
 
 from fem_impact.errors import ResultError
 from fem_impact.files.atomic import read_bytes
 from fem_impact.scene.units import DIMENSIONS, Unit
 
-DECIMAL = re.compile(r"([+-]?\d*),(\d+(?:[eE][+-]?\d+)?)")  # a number with a decimal comma
+DECIMAL = re.compile(r"^([+-]?\d*),(\d+(?:[eE][+-]?\d+)?)$")  # a number with a decimal comma
+POINT = re.compile(r"[+-]?\d*\.\d+(?:[eE][+-]?\d+)?")
+MISSPELT = 0.85
+"""Likeness of a column's name to a known one from which it is taken for that, misspelt."""
 Line = tuple[int, list[str]]
 """Number and cells of a line of the file."""
 
@@ -62,6 +66,30 @@ class UserTable:
         """Return the names of the columns that state a quantity, in whatever unit."""
         return [name for name in self.names if _stated(name, key)]
 
+    def unused(self, used: Collection[str], optional: Collection[str]) -> tuple[str, ...]:
+        """Return the columns that are not used.
+
+        Parameters
+        ----------
+        used : names of columns as the header states them
+        optional : names, without units, of columns that there may be
+
+        Raises
+        ------
+        ResultError
+            One is nearly an optional column that the file does not have: ``Systematic``, ``d_c mm``.
+        """
+        held = [name for name in self.names if name in used]
+        lacking = [one for one in optional if not any(_stated(name, one) for name in held)]
+        left = tuple(name for name in self.names if name and name not in used)
+        for name in left:
+            near = [one for one in lacking if re.match(rf"{one}(?![a-z])", name.lower())]
+            near += get_close_matches(name.lower(), lacking, 1, MISSPELT)
+            if near:
+                remedy = f"Did you mean {near[0]}? Give a column of your own another name."
+                raise ResultError(f"{self.path}: column {name!r} is not one that is read. {remedy}")
+        return left
+
     def quantity(self, key: str, dimension: str, bare: Unit | None = None) -> tuple[str, Unit] | None:
         """Return name and unit of the column that states a quantity, None where none does.
 
@@ -99,14 +127,17 @@ def read_user_table(path: str | Path, header: str) -> UserTable:
     Raises
     ------
     ResultError
-        The file cannot be read, is empty, or is not CSV.
+        The file cannot be read, is empty, is not CSV, has two columns of one name, or has decimal
+        commas and decimal points.
     """
-    lines = list(_lines(_text(path), path))
+    lines = _lines(_text(path), path)
     if not lines:
         raise ResultError(f"{path}: is empty. Begin it with the header {header}.")
     names = lines[0][1]
     while names and not names[-1]:  # spreadsheets end lines by empty cells
         names.pop()
+    if twice := next((name for name in names if name and names.count(name) > 1), ""):
+        raise ResultError(f"{path}: has two columns {twice!r}. Keep one.")
     return UserTable(path, tuple(names), tuple(lines[1:]))
 
 
@@ -120,25 +151,35 @@ def _text(path: str | Path) -> str:
     raise ResultError(f"{path}: is no text. Save it as CSV.")
 
 
-def _lines(text: str, path: str | Path) -> Iterator[Line]:
+def _lines(text: str, path: str | Path) -> list[Line]:
     header = next((line for line in text.split("\n") if line.strip() and not line.startswith("#")), "")
     mark = max(",;\t", key=header.count)
     reader = csv.reader(io.StringIO(text), strict=True, delimiter=mark)
     try:
-        for cells in reader:
-            if any(cell.strip() for cell in cells) and not cells[0].startswith("#"):
-                yield (
-                    reader.line_num,
-                    [_point(cell.strip()) if mark != "," else cell.strip() for cell in cells],
-                )
+        stated = [(reader.line_num, [cell.strip() for cell in cells]) for cells in reader]
     except csv.Error as error:
         raise ResultError(f"{path}: line {reader.line_num} is not CSV ({error}).") from None
+    lines = [(line, cells) for line, cells in stated if any(cells) and not cells[0].startswith("#")]
+    return lines if mark == "," else _with_points(lines, path)
 
 
-def _point(cell: str) -> str:
-    """Return a number with a decimal comma with a point, other text as it is."""
-    found = DECIMAL.fullmatch(cell)
-    return f"{found[1]}.{found[2]}" if found else cell
+def _with_points(lines: list[Line], path: str | Path) -> list[Line]:
+    """Return lines whose numbers with a decimal comma have a point.
+
+    Raises
+    ------
+    ResultError
+        Others have a point: one of the two marks stands between thousands.
+    """
+    comma, point = (
+        next((f"{cell} (line {line})" for line, cells in lines for cell in cells if kind.fullmatch(cell)), "")
+        for kind in (DECIMAL, POINT)
+    )
+    if comma and point:
+        both = f"has numbers with a comma, such as {comma}, and with a point, such as {point}"
+        remedy = "Write all with a decimal point, or all with a decimal comma, and no mark between thousands."
+        raise ResultError(f"{path}: {both}. {remedy}")
+    return [(line, [DECIMAL.sub(r"\1.\2", cell) for cell in cells]) for line, cells in lines]
 
 
 def unit_of(stated: str, dimension: str, name: str, place: str) -> Unit:

@@ -10,7 +10,8 @@ from fem_impact.case.metals import laws, unknowns
 from fem_impact.errors import SceneError
 from fem_impact.outcome.groups import texts
 from fem_impact.run.simulate import simulate
-from fem_impact.scene.material import Material
+from fem_impact.scene.library import family_of, materials
+from fem_impact.scene.material import Material, kind_of
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load, replace, replace_all
 
@@ -70,6 +71,39 @@ def test_a_body_as_heavy_as_metal_and_as_soft_as_rubber_is_asked_for_its_unit(E,
         told = [one for one in texts(case.limitations, "input") if "is its unit right?" in one]
         assert len(told) == asked
         assert not asked or told[0].startswith(f"projectile.material.E = {E} (my-titanium): is its unit")
+
+
+@pytest.mark.parametrize(
+    ("stated", "asked"),
+    [
+        ({"rho": "785 kg/m3"}, "material.rho = 785 kg/m3 (my-steel): is its unit right? With E = 210 GPa"),
+        ({"rho": "7850 kg/m3"}, ""),
+        ({"E": "310 GPa", "rho": "1850 kg/m3"}, ""),
+        ({"E": "1000 GPa", "rho": "785 kg/m3"}, ""),
+        (
+            {"hardness": 2000, "yield_stress": "355 MPa", "law": "hardness"},
+            "hardness = 2000 (my-steel): is it",
+        ),
+        ({"hardness": 200, "yield_stress": "120 MPa", "law": "hardness"}, "5.45 times the yield stress"),
+        (
+            {"hardness": 1300, "yield_stress": "2000 MPa", "law": "hardness"},
+            "hardness = 1300 (my-steel): is it",
+        ),
+        ({"hardness": 900, "yield_stress": "2000 MPa", "law": "hardness"}, ""),
+        ({"hardness": 1500, "yield_stress": "4000 MPa", "law": "hardness", "family": "ceramic"}, ""),
+    ],
+)
+def test_a_density_or_a_hardness_that_no_metal_has_is_asked_for_its_unit(stated, asked):
+    own = {"name": "my-steel", "E": "210 GPa", "nu": 0.3, "rho": "7850 kg/m3", **stated}
+    case = Case(read_dict(drop("plate-steel", own)), "rigid")
+    told = " ".join(one for one in texts(case.limitations, "input") if ": is it" in one)
+    assert asked in told and bool(told) == bool(asked)
+
+
+def test_no_shipped_material_is_asked_for_a_unit():
+    for name in (one for one, metal in materials().items() if kind_of(family_of(metal)) != "ground"):
+        case = Case(read_dict(drop("plate-steel", name)), "rigid")
+        assert not [one for one in texts(case.limitations, "input") if ": is it" in one]
 
 
 def test_a_rubber_ball_is_not_warned_of_cracks():

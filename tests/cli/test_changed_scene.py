@@ -7,6 +7,7 @@ import pytest
 
 from fem_impact.cli.paths import shown_path
 from fem_impact.cli.scene_options import changed_scene
+from fem_impact.cli.values import read_values
 from fem_impact.errors import SceneError
 from fem_impact.scene.shipped import load, replace, replace_all
 from fem_impact.scene.types import to_dict, to_toml
@@ -179,3 +180,39 @@ def test_velocities_along_the_axis_at_the_new_angle_need_no_warning(cli, tmp_pat
 def test_a_number_may_begin_with_its_point():
     assert changed_scene("t5b", ["surface.friction=.36"]).surface.friction == 0.36
     assert changed_scene("t5b", ["accuracy.grid_shift=+.5"]).accuracy.grid_shift == 0.5
+
+
+@pytest.mark.parametrize(("number", "name"), [("4340", "steel-4340"), ("1.4404", "stainless-316l")])
+def test_a_number_in_the_place_of_a_material_is_a_name(number, name):
+    """TOML reads it as a number, which is no material."""
+    assert changed_scene("t5b", [f"projectile.material={number}"]).projectile.material.name == name
+    vary = read_values(f"projectile.material={number},304,316L")
+    assert vary == ("projectile.material", [name, "stainless-304", "316L"])
+    with pytest.raises(SceneError, match=r'barrier\.material = "9999": is not a shipped material'):
+        read_values("barrier.material=9999,304")
+
+
+def test_values_of_a_material_that_is_named_in_the_same_call_may_be_changed():
+    stated = ["projectile.material=copper", "projectile.material.E=100 GPa", "barrier.material=lead"]
+    changed = changed_scene("t5b", stated)
+    metal = changed.projectile.material
+    assert (metal.name, metal.E, metal.rho) == ("copper (changed)", 100e9, 8930.0)
+    with pytest.raises(SceneError, match=r'projectile\.material = "coppr".*Did you mean copper'):
+        changed_scene("t5b", ["projectile.material=coppr", "projectile.material.E=100 GPa"])
+
+
+def test_a_shape_a_plain_tip_and_a_state_replace_what_they_have_themselves():
+    """No option can leave out what stands in the file."""
+    ball = changed_scene("t5b", ["projectile.shape=ball"]).projectile
+    assert ball.is_ball and ball.length == ball.diameter == 0.019
+    cone = ["projectile.shape=cone", "projectile.cone_angle=30 deg", "projectile.face_diameter=2 mm"]
+    other = [*cone[::-1], "projectile.length_m=0.1"]
+    assert changed_scene("t5b", other).projectile.length == 0.1
+    ogive = replace_all(changed_scene("t5b", cone), {"projectile.shape": "hemisphere"}).projectile
+    assert (ogive.tip, ogive.tip_radius) == ("B", 0.0095)
+    assert changed_scene("t5b", ["projectile.tip=plain"]).projectile.tip_radius == 0.0
+    for stated in (["surface.friction=0.3", "surface.state=custom"], ["surface.friction=0.3"]):
+        surface = changed_scene("t5b", stated).surface
+        assert (surface.state, surface.friction, surface.friction_high) == ("custom", 0.3, 0.3)
+    with pytest.raises(SceneError, match=r"surface\.friction: is taken out again by another change"):
+        changed_scene("t5b", ["surface.friction=0.3", "surface.state=cleaned"])

@@ -4,6 +4,8 @@ import json
 
 from fem_impact.cli.main import main
 from fem_impact.physics.indentation import HardnessTest
+from fem_impact.scene.shipped import load, replace_all
+from fem_impact.scene.types import to_toml
 
 
 def test_it_tells_numbers_and_the_curve_of_each_material(capsys):
@@ -33,3 +35,29 @@ def test_its_document_has_every_point_with_its_range(capsys):
 def test_a_load_that_is_no_number_is_refused(capsys):
     assert main(["hardness", "t5b", "--loads", "HV30"]) == 2
     assert '--loads "HV30": is no number above 0' in capsys.readouterr().err
+
+
+def test_a_load_that_no_hardness_test_has_is_refused(cli):
+    for kgf in ("1e9", "0.001", "10,0.5"):
+        code, _, err = cli("hardness", "t5b", "--loads", kgf)
+        assert code == 2 and "must be 1 to 120 kgf." in err
+
+
+def test_a_curve_outside_the_indentations_computed_is_told_beside_the_other_body(cli):
+    code, out, err = cli("hardness", "t5b", "--set", "projectile.material=copper")
+    told = " ".join(out.split())
+    assert (code, err) == (0, "")
+    assert "projectile.material (copper): HV 51 is stated, but no layer that meets it is known." in told
+    assert "barrier.material (plate-steel): HV 163 is stated; its flow curve alone has" in told
+    documents = json.loads(cli("hardness", "t5b", "--set", "projectile.material=copper", "--json")[1])
+    assert "lies outside the indentations computed" in documents[0]["reason"] and not documents[1]["reason"]
+
+
+def test_a_hardness_below_yield_names_the_place_that_states_it(cli, tmp_path):
+    soft = ("--set", "barrier.material.law=hardness", "--set", "barrier.material.hardness=60")
+    assert "--set: hardness of plate-steel (changed)" in cli("check", "t5b", *soft)[2]
+    own = to_toml(
+        replace_all(load("t5b"), {"barrier.material.hardness": 60, "barrier.material.law": "hardness"})
+    )
+    (tmp_path / "own.toml").write_text(own)
+    assert "own.toml: hardness of plate-steel (changed)" in cli("check", "own.toml")[2]

@@ -65,6 +65,7 @@ DROP = (*ROD, "--height", "0.82 m", "--surface", "machined")
         (("audit", "--set", "t5e"), "is not a measured set"),
         (("coefficients", "mine.csv", *ROD, "--d-c", "22 mm"), "one arm alone"),
         (("assess", *DROP, "--length", "80"), "has no unit"),
+        (("assess", *DROP, "--set", "surface.friction=0.3"), "--set: changes a scene, and none is named."),
     ],
 )
 def test_a_wrong_command_line_is_two(cli, line, complaint):

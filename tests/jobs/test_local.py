@@ -142,3 +142,9 @@ def test_a_study_killed_at_once_loses_and_repeats_nothing(tmp_path):
     # at most the two that were running when the study was killed
     assert len(twice) <= 2
     assert sum(begun.values()) - len(twice) >= 3
+
+
+def test_two_jobs_of_one_name_are_refused(tmp_path):
+    with pytest.raises(RunError, match="two runs have one name, a"):
+        run_jobs([job("a"), job("b"), job("a", "fail")], tmp_path / "store.sqlite", NullMeter())
+    assert not (tmp_path / "store.sqlite").exists()

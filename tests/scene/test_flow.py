@@ -257,6 +257,16 @@ MISTAKES = [
         },
         "falls from 300 to 290 MPa at a strain of 0.2: the bar necks",
     ),
+    (
+        {
+            "flow": {
+                **TABLE,
+                "strain": "engineering",
+                "points": [[0, "0 MPa"], [0.17, "355 MPa"], [2, "400 MPa"]],
+            }
+        },
+        "flow.points: leaves the elastic line.*at a true strain of 0.157, has 415.4 MPa.*in per cent",
+    ),
     ({"flow": {"law": "table", "points": "none.csv"}}, "flow.points: none.csv: cannot be read"),
     ({"yield_stress": "90 MPa", "A": "90 MPa"}, "A is yield_stress; B and n stand in flow"),
     ({"flow": "table"}, "must be a table"),

@@ -211,7 +211,7 @@ def test_changes_are_checked_together():
     changes = {"projectile.tip": "plain", "projectile.tip_radius": "0 mm"}
     assert replace_all(load("t4"), changes).projectile.tip == "plain"
     with pytest.raises(SceneError, match="tip_radius"):
-        replace(load("t4"), "projectile.tip", "plain")
+        replace(load("t4"), "projectile.tip_radius", "0 mm")
 
 
 def test_no_surface_is_needed_without_friction():

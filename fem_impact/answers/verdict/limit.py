@@ -141,10 +141,10 @@ def _question(of: Criterion | str, limit: float | str) -> tuple[Criterion, float
     """Return a criterion and its limit in SI units (SceneError: one of them is none)."""
     criterion = criterion_of(of) if isinstance(of, str) else of
     if isinstance(limit, str) and criterion.dimension:
-        limit = parse_quantity(limit, criterion.dimension, "limit")
-    limit = parse_change(limit, "limit")
+        limit = parse_quantity(limit, criterion.dimension, "limit=")
+    limit = parse_change(limit, "limit=")
     if not 0.0 < limit < inf:
-        raise SceneError("must lie above 0.", key="limit", value=in_unit(criterion, limit))
+        raise SceneError("must lie above 0.", key="limit=", value=in_unit(criterion, limit))
     return criterion, limit
 
 

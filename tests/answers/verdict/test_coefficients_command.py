@@ -175,7 +175,7 @@ def test_tables_of_spreadsheets_are_read_as_they_are_saved(cli, camera_file, mar
         (GOOD, HEADER.replace("Omega_rad_per_s", "spin"), ["lacks Omega"]),
         (GOOD, HEADER.replace("v_n_m_per_s", "v_n"), ["'v_n' names no unit", "v_n_m_per_s"]),
         (GOOD, HEADER.replace("v_n_m_per_s", "v_n [kn]"), ["'kn' is not a unit of speed", "mm/s"]),
-        (GOOD, HEADER.replace("v_t_m", "v_n_m"), ["v_n has two columns"]),
+        (GOOD, HEADER.replace("v_t_m_per_s", "v_n [m/s]"), ["v_n has two columns"]),
         (GOOD, HEADER.replace(",", ";"), ["line 2 has 1 cells, the header 6"]),
         (('1,"-1.5', "2"), HEADER, ["not CSV"]),
     ],

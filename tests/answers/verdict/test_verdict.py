@@ -822,6 +822,9 @@ def test_the_command_prints_three_lines_first_and_writes_a_page(cli):
     assert 'src="http' not in page
 
 
+LIKE_UNCERTAIN = "--uncertain: impact.v_n = -1.6: a bare number is not a speed"
+
+
 @pytest.mark.parametrize(
     ("line", "code", "words"),
     [
@@ -830,7 +833,19 @@ def test_the_command_prints_three_lines_first_and_writes_a_page(cli):
         (("--length", "80 mm"), 2, "--diameter"),
         (("t5b", "--within", "e five"), 2, "is not a change of a number"),
         (("t5b", "--within", "mu 5 %"), 2, "Name one of e, energy, friction"),
-        (("t5b", "--within", "e 500 %"), 3, "between 0 and 1"),
+        (("t5b", "--within", "e 500 %"), 2, '--within "e 500 %": is not a change of a number, above 0 and'),
+        (("t5b", "--within", "e 2 %", "--within", "e 5 %"), 2, "argument --within: is given twice. Keep one"),
+        (
+            ("t5b", "--within", "e nan"),
+            2,
+            '--within "e nan": is not a change of a number, above 0 and below 1',
+        ),
+        (("t5b", "--for", "force", "--limit", "-8 kN"), 3, '--limit "-8 kN": must lie above 0'),
+        (
+            ("t5b", "--for", "force", "--limit", "8 kN", "--uncertain", "impact.v_n=-1.6,-1.4"),
+            3,
+            LIKE_UNCERTAIN,
+        ),
         (("t5b", "--budget", "60"), 2, "has no unit"),
         (("t5bb",), 2, "Did you mean t5b"),
     ],

@@ -262,11 +262,25 @@ def test_a_study_refuses_a_scene_without_tests(cli, tmp_path):
     assert not Path("results").exists()
 
 
+def test_a_study_refuses_two_scenes_of_one_id(cli, tmp_path):
+    """The run of the first was lost, and the results of the second were compared with its tests."""
+    path = write(tmp_path)
+    other = tmp_path / "other.toml"
+    other.write_text(path.read_text().replace("45 deg", "60 deg"))
+    code, _, err = cli("study", "sets", "mine.toml", "other.toml", "--quick")
+    assert code == 3
+    assert 'other.toml: id = "mine": is the id of mine.toml, too' in err and "id of its own" in err
+    assert not Path("results").exists()
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [
         ("quantity,mean,sd,n\ne,5,0.1,8\n", "line 2: e = 5 is none of an impact"),
         ("quantity,mean,sd,n\ne,0.3,0.1,8\nmu,40,2,8\n", "line 3: mu = 40 is none of an impact"),
+        ("quantity,mean,sd,n\nE_r_over_E_0,18,2,8\n", "line 2: E_r_over_E_0 = 18 is none of an impact"),
+        ("quantity,mean,sd,n\nV_n_m_per_s,1700,10,8\n", "line 2: V_n = 1700 m/s is more than 500 m/s"),
+        ("quantity,mean,sd,n\nmarker_V_n_m_per_s,-1700,10,8\n", "-1700 m/s is more than 500 m/s"),
         ("quantity,mean,sd,n\ne,0.3,0.1\n", "line 2"),
         ("speed,time\n1,2\n", "the header lacks v_n"),
         ("e,mu,Omega\n0.3,0.5,5\n", f"lacks v_n, v_t, V_n, V_t. It needs {HEADER}"),
@@ -280,6 +294,19 @@ def test_check_refuses_a_file_of_tests_that_cannot_be_used(cli, tmp_path, text, 
     code, out, err = cli("check", str(tmp_path / "own.toml"))
     assert (code, out) == (5, "")
     assert words in " ".join(err.split())
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["quantity,mean,sd,n,remark\ne,0.3,0.1,8,wet\n", f"{HEADER},remark\n" + 3 * "-1.5,-1.48,.3,-.4,4,wet\n"],
+)
+def test_columns_that_are_not_used_are_told(cli, tmp_path, text):
+    path = write(tmp_path)
+    (tmp_path / "my_tests.csv").write_text(text)
+    quick = ("--fidelity", "rigid", "--quiet")
+    for line in (("check",), ("run", *quick), ("validate", *quick, "--samples", "2")):
+        code, out, _ = cli(line[0], str(path), *line[1:])
+        assert code == 0 and "columns not used: remark" in out
 
 
 @pytest.mark.parametrize("mean", ["e,-0.2", "e,1.4", "mu,-0.6", "mu,3"])
