@@ -96,7 +96,6 @@ class Case:
         followed.require_followed(scene)
         limits.require_own_mesh(self.bodies, fidelity)
         require_plate(self.bodies, self.meshed_through)
-        limits.require_shallow(self.bodies)
         limits.require_first_part(self.bodies)
         if fidelity != "rigid":
             limits.require_elastic_parts(self.bodies)
@@ -106,6 +105,7 @@ class Case:
         require_layers(self.bodies, fidelity)
         require_skins(self.bodies, fidelity)
         require_closed_form(self.bodies, slots, fidelity)
+        limits.require_shallow(self.bodies)
         if fidelity == "solid":
             followed.require_carried(scene, slots)
             self._require_mesh(slots)

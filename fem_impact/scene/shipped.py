@@ -185,7 +185,7 @@ def _ordered(changes: Mapping[str, Any]) -> list[tuple[str, Any]]:
     A law or a state takes out the numbers of the old one, a friction its interval; a source and a name are
     given anew with changed numbers.
     """
-    ranks = {"state": 0, "law": 0, "friction": 1, "source": 3, "name": 3}
+    ranks = {"state": 0, "law": 0, "tip": 1, "friction": 1, "source": 3, "name": 3}
 
     def place(change: tuple[str, Any]) -> tuple[int, int]:
         *path, last = change[0].split(".")

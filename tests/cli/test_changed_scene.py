@@ -214,5 +214,5 @@ def test_a_shape_a_plain_tip_and_a_state_replace_what_they_have_themselves():
     for stated in (["surface.friction=0.3", "surface.state=custom"], ["surface.friction=0.3"]):
         surface = changed_scene("t5b", stated).surface
         assert (surface.state, surface.friction, surface.friction_high) == ("custom", 0.3, 0.3)
-    with pytest.raises(SceneError, match=r"surface\.friction: is taken out again by another change"):
+    with pytest.raises(SceneError, match=r"surface\.state: is taken out again by another change"):
         changed_scene("t5b", ["surface.friction=0.3", "surface.state=cleaned"])
