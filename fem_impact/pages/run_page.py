@@ -208,7 +208,11 @@ def _other_end(outcome: Outcome, scene: Scene, figures: Path) -> html.Markup:
     ratio = outcome.strikes.other_end
     if isinstance(ratio, Unknown):
         return html.Markup("")
-    return html.figure(tail_picture(other_end_curve(scene), (scene.impact.angle, ratio)), figures)
+    try:
+        curve = other_end_curve(scene)
+    except SceneError:  # rigid theory does not follow the body at some inclination
+        return html.Markup("")
+    return html.figure(tail_picture(curve, (scene.impact.angle, ratio)), figures)
 
 
 def _stated(folder: Path) -> Scene | None:

@@ -46,6 +46,7 @@ TOLD = (
 # over the part of the plastic work that the body takes which yields last: see `part_of_last`
 SPLIT = 0.6
 PLASTIC = ("E_plastic_rod_over_E_0", "E_plastic_barrier_over_E_0")
+CARRIED = ("W_radiated_over_E_0", "W_plate_over_E_0", "W_damping_over_E_0")
 FACTORS = ("peak_force_N", "dent_m", "flash_rise_K")
 """Numbers that are held against limits; their errors are natural logarithms of the ratio of both models."""
 
@@ -234,7 +235,10 @@ def half_widths(place: Place, outcome: Outcome, approach: float, last: float = 0
     whole = sum(known(KEY_TABLE[key].of(outcome)) for key in plastic)
     for key in plastic:
         halves[key] = others * known(KEY_TABLE[key].of(outcome)) / whole + SPLIT * last * whole
-    for key in (*TOLD[-3:], *plastic):  # shares lie between 0 and 1
+    for key in CARRIED:  # no stored scene tells their errors: what all others leave open
+        if or_none(KEY_TABLE[key].of(outcome)):
+            halves[key] = others
+    for key in (*TOLD[-3:], *plastic, *CARRIED):  # shares lie between 0 and 1
         if key in halves:
             share = known(KEY_TABLE[key].of(outcome))
             halves[key] = min(halves[key], max(share, 1.0 - share))

@@ -85,7 +85,7 @@ class ModalCourse:
     @classmethod
     def at_first(cls, case: Case, followed: Followed) -> "ModalCourse":
         """Return the course after the first strike."""
-        first, begin = closed(case, alone=False), followed.coming
+        first, begin = closed(case), followed.coming
         course = cls(case, followed, first.rod, begin, first.last.q, first.last.rate, modal_loss(case))
         course._enter(begin, first, 0.0, [])
         return course

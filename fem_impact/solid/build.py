@@ -22,6 +22,7 @@ from fem_impact.fem.layout import DofLayout
 from fem_impact.fem.sliding import speed_table
 from fem_impact.fem.sparse import Hanging, NodeProduct
 from fem_impact.fem.stable import stable_step
+from fem_impact.fem.uneven import uneven
 from fem_impact.physics.hardening import HardeningLaw
 from fem_impact.physics.viscous import LinearSolid, linear_solid
 from fem_impact.solid.contact.moving_plane import MovingPlane
@@ -43,7 +44,6 @@ if TYPE_CHECKING:
     from fem_impact.solid.rigid_rest import ElasticNose, RigidRest
     from fem_impact.solid.viscous import MaxwellCells
     from fem_impact.solid.yielding import YieldingZone
-
 
 START_GAP = 1e-10  # m, so small that contact begins in the first step, before gravity or spin acts
 PLAY, BAND = 0.05, 0.02  # over the tip size, see `SurfaceContact`
@@ -120,13 +120,12 @@ class Builder:
     def v(self) -> Array:
         """Return the velocities (size,) of the mass points at time 0, m/s; omega is positive from n to t."""
         v, impact = np.zeros(self.meshed.layout.size), self.scene.relative
-        arm = self.meshed.x[self.meshed.rod.places] - mass_centre(
-            self.meshed.mass, self.meshed.x, self.meshed.rod.places
-        )
+        places, x = self.meshed.rod.places, self.meshed.x
+        arm = x[places] - mass_centre(self.meshed.mass, x, places)
         speed = np.zeros_like(arm)
         speed[:, 0] = impact.v_t + impact.omega * arm[:, 2]
         speed[:, 2] = impact.v_n - impact.omega * arm[:, 0]
-        v[self.meshed.rod.places] = speed
+        v[places] = speed
         return v
 
     @cached_property
@@ -381,6 +380,7 @@ class Builder:
             rod_stiffness=stiffness if self.spec.vibrating else None,
             steps=steps,
             start=(self.meshed.x, self.v),
+            uneven=uneven(self.meshed),
         )
 
 

@@ -49,6 +49,7 @@ class Model:
         vibrate
     steps : stable step of each body with its safety factor, s
     start : (size,) positions and (size,) velocities at time 0
+    uneven : what is told of a mesh that has the body's mass elsewhere, see `fem_impact.fem.uneven`
     """
 
     geometry: Geometry
@@ -68,6 +69,7 @@ class Model:
     rod_stiffness: MassStiffness | None
     steps: Mapping[str, float]
     start: tuple[Array, Array]
+    uneven: str = ""
 
     @property
     def step(self) -> float:

@@ -255,7 +255,7 @@ def _result(
         cost=cost,
         limitations=(
             *limitations("run", *(w for f in watchers.frames for w in f.writer.warnings)),
-            *limitations("resolution", *outside_zones(model, watchers.skin)),
+            *limitations("resolution", model.uneven, *outside_zones(model, watchers.skin)),
         ),
         record=replace(
             watchers.skin.with_landed(watchers.contact.record(), model, state.x),

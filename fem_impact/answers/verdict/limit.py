@@ -7,7 +7,7 @@ where its error leaves the answer open.
 from collections.abc import Mapping, Sequence
 from functools import partial
 from itertools import product
-from math import inf
+from math import ceil, inf
 from time import perf_counter
 
 import numpy as np
@@ -215,7 +215,8 @@ def _by_solids(
             bound, said, more = by_levels(pair, criterion.solid, as_text, limit, left, *told)
         except (SceneError, RunError) as refused:
             bound, said = None, [f"{NO_ANSWER}: {refused}"]
-            more = with_budget(budget_of(refused))
+            wanted = budget_of(refused)
+            more = with_budget(None if wanted is None else ceil(before) + wanted)
         notes += said
         solids |= {} if bound is None else {place: bound}
         if bound is None or bound.answer(limit) != "yes":

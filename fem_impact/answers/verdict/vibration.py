@@ -53,7 +53,7 @@ def known_error(case: Case, whole: Outcome, of: str, change: float) -> tuple[flo
     case : of the scene
     whole : outcome by the reduced model, with vibration
     of : number of `CHANGED`
-    change : of that number by vibration
+    change : of that number by vibration, to which the half-width is in proportion
     """
     at, table = place_of(case, whole), stored()
     half = inf
@@ -287,10 +287,13 @@ def modal_pair(scene: Scene) -> Pair:
 def modal_effect(scene: Scene, pair: Pair, of: str = "e") -> VibrationEffect:
     """Return what the reduced model says of the change of a number, with its known error.
 
-    Shares of E_0 have the half-widths that the run itself tells.
+    Shares of E_0 have the half-widths that the run itself tells. Where e changes less than mu does, its
+    change passes through zero near the scene, and is as little known as that of mu is large.
     """
     value, case = difference(pair, of), Case(scene.untargeted, "modal")
-    half, far = known_error(case, pair[0], of, value)
+    mu, stiff_mu = (or_none(one.restitution.mu) or 0.0 for one in pair)
+    turned = abs(mu - stiff_mu) if of == "e" else 0.0
+    half, far = known_error(case, pair[0], of, max(abs(value), turned))
     e = or_none(pair[0].restitution.edge.e)
     thin = half_space_error(case.bodies) * abs(1.0 if e is None else e) if is_thin(case.bodies) else 0.0
     halves = {share.key.path[-1]: pair[0].estimate(share.key)[1] for share in SHARES}

@@ -1,0 +1,19 @@
+"""A mesh that puts the mass of a body elsewhere is told."""
+
+import pytest
+
+from fem_impact.case.case import Case
+from fem_impact.fem.body import MeshedBodies
+from fem_impact.fem.uneven import uneven
+from fem_impact.scene.shipped import load, replace_all
+
+STEP = [["0 mm", "8.5 mm"], ["40 mm", "8.5 mm"], ["40 mm", "2.5 mm"], ["80 mm", "2.5 mm"]]
+SLOPE = [["0 mm", "6 mm"], ["80 mm", "6 mm"]]
+
+
+@pytest.mark.parametrize(("bore", "told"), [(STEP, True), (SLOPE, False)])
+def test_a_step_of_the_bore_that_cells_do_not_follow_is_told(bore, told):
+    """The nose had .54 of its mass, the body .88 of its radius of gyration squared, untold."""
+    stated = {"projectile.bore": bore, "projectile.tip": "plain", "impact.angle": "20 deg"}
+    meshed = MeshedBodies(Case(replace_all(load("t5b"), stated)))
+    assert ("mass centre of the mesh" in uneven(meshed)) == told
