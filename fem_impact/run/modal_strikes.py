@@ -28,8 +28,9 @@ LOOK, LOOKS = 0.5, 1000  # rad of the fastest mode between looks at a rod that n
 MARGIN = 1.2  # over the amplitudes of the modes together, about which a touch is looked for
 TOLD = (
     "{} strikes are computed with modes, {}; what touches again within {:g} bending periods belongs to the "
-    "strike before. In flight the modes swing on, damped by the loss factor {}. Strikes after {} by modes "
-    "are those of a rigid body, and so are weak ones; the modes do not feel them."
+    "strike before, but for the slap of the other end after the first. In flight the modes swing on, damped "
+    "by the loss factor {}. Strikes after {} by modes are those of a rigid body, and so are weak ones; the "
+    "modes do not feel them."
 )
 FRESH = "each on a surface that no strike before has dented"
 AGAIN = (
