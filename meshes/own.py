@@ -9,6 +9,7 @@ import scipy.sparse as sp
 
 from meshes.common import BoolArray, FloatArray, IntArray, MeshError
 from meshes.faces import file_faces, filling, lopsided, named_faces
+from meshes.fallen import as_they_are
 from meshes.gauss import jacobians
 from meshes.halving import across, halved_tetrahedra, straight
 from meshes.hexahedra import as_hexahedra
@@ -95,7 +96,7 @@ def read_own(path: str | Path, unit: float = 1.0, stated: Stated | None = None) 
         If the file cannot be read, holds cells that cannot be taken, or is no such body.
     """
     stated = stated or Stated()
-    stored = stored_mesh(path)
+    stored = as_they_are(stored_mesh(path))
     if len(stored.surfaces.corners):
         _require_numbered(stored.points, stored.surfaces.corners, -1)
     if not stored.blocks:

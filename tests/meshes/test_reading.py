@@ -10,7 +10,9 @@ from own_bodies import taper
 
 import meshes
 from meshes import MeshError, own_body, read_own
+from meshes.fallen import as_they_are
 from meshes.hexahedra import as_hexahedra
+from meshes.reading.stored import StoredMesh
 from meshes.reading.text import included
 
 TETRAHEDRA = [[0, 1, 2, 6], [0, 2, 3, 6], [0, 3, 7, 6], [0, 7, 4, 6], [0, 4, 5, 6], [0, 5, 1, 6]]
@@ -676,7 +678,8 @@ def test_a_wedge_given_as_a_hexahedron_of_20_nodes_keeps_the_middles_of_its_edge
     points = np.vstack([corners, middles])
     plain = as_hexahedra(points, (("wedge15", np.arange(15)[None]),))
     fallen = [0, 1, 2, 2, 3, 4, 5, 5, 6, 7, 2, 8, 9, 10, 5, 11, 12, 13, 14, 14]
-    found = as_hexahedra(points, (("hexahedron20", np.array([fallen])),))
+    stored = as_they_are(StoredMesh(points, (("hexahedron20", np.array([fallen])),)))
+    found = as_hexahedra(points, stored.blocks)
     places = [np.unique(one.points[one.cells].reshape(-1, 3).round(9), axis=0) for one in (found, plain)]
     assert places[0] == pytest.approx(places[1])
     assert (found.points[:, 0].min(), len(found.cells)) == (-0.3, 6)
