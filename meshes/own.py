@@ -69,6 +69,7 @@ class OwnBody:
     lopsided : names of sets of which one side of y = 0 holds more than the other
     masses : masses without volume that the file holds
     told : sentences about what the file holds and how it was taken
+    assumed : as in `Part`
     """
 
     half: HexMesh
@@ -77,6 +78,7 @@ class OwnBody:
     lopsided: frozenset[str] = frozenset()
     masses: tuple[LooseMass, ...] = ()
     told: tuple[str, ...] = ()
+    assumed: str = ""
 
 
 def read_own(path: str | Path, unit: float = 1.0, stated: Stated | None = None) -> OwnBody:
@@ -268,7 +270,7 @@ def _own(part: Part, stated: Stated, hint: str) -> tuple[OwnBody, IntArray]:
     placed, corners = _placed(half)
     doubled = size_text(part, (1,))
     told = (*part.told, *_leaning(placed), f"whole body: {doubled}")
-    return OwnBody(placed, told=told), part.origin.ravel()[corners]
+    return OwnBody(placed, told=told, assumed=part.assumed), part.origin.ravel()[corners]
 
 
 def _require_numbered(points: FloatArray, cells: IntArray, least: int) -> None:

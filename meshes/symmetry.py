@@ -28,12 +28,14 @@ class Part:
     cells : (m, 8) int64
     origin : (m, 8) int64, for each corner of each cell 8 times the cell as read that it is one of, and which
     told : sentences about what was done
+    assumed : which of `PARTS` it was taken as though nothing is stated, "" of all of a body
     """
 
     points: FloatArray
     cells: IntArray
     origin: IntArray
     told: tuple[str, ...] = ()
+    assumed: str = ""
 
     @property
     def near(self) -> float:
@@ -81,6 +83,7 @@ def half_of(part: Part, stated: str | None, ends: bool = False) -> Part:
         half = _on_positive_side(part)
     else:
         half = _cut(part if _crosses(part) else _centred(part))
+    half = replace(half, assumed="" if stated else name)
     return half.tell(
         f"the mesh is taken as a {name} of a body that is symmetric about {where}".replace("a e", "an e")
     )

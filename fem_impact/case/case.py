@@ -230,7 +230,12 @@ class Case:
         of_scene = limits.scene_limitations(self.bodies, self.slots.bending is not None)
         meshed = self.fidelity == "solid"
         of_scene += limitations("model", *too_thin(self.bodies, meshed))
-        unstated = limitations("input", *unknowns(self.bodies), limits.unused(self.scene, self.fidelity))
+        unstated = limitations(
+            "input",
+            *unknowns(self.bodies),
+            limits.assumed_part(self.scene.projectile.own_mesh),
+            limits.unused(self.scene, self.fidelity),
+        )
         if not meshed:
             skin = NOT_RIGID if "machined-skin" in self.active else ""
             return self.said((*of_scene, *limitations("model", skin), *unstated))

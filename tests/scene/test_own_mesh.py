@@ -47,6 +47,17 @@ def stated(path, **projectile):
     )
 
 
+@pytest.mark.parametrize("fidelity", ["rigid", "modal", "solid"])
+def test_a_body_that_is_taken_as_a_half_unasked_is_a_limitation(scene, tmp_path, fidelity):
+    """A flat bar that stands on y = 0 may be a whole body, of half the mass."""
+    told = [one for one in Case(scene, fidelity).limitations if "is taken as a half of the body" in one.text]
+    assert [one.kind for one in told] == ["input"]
+    assert 'State mesh_symmetry = "half", or "whole"' in told[0].text
+    for symmetry in ("half", "whole"):
+        sure = stated(tmp_path / "bar.vtu", mesh_unit="mm", mesh_symmetry=symmetry)
+        assert "is taken as" not in " ".join(texts(Case(sure, fidelity).limitations))
+
+
 def test_a_mesh_is_shown_as_seen_from_the_scene(scene, tmp_path):
     assert 'mesh = "bar.vtu"\n' in to_toml(scene, tmp_path)
     assert str(tmp_path / "bar.vtu") in to_toml(scene)
