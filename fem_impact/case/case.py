@@ -105,6 +105,8 @@ class Case:
         require_layers(self.bodies, fidelity)
         require_skins(self.bodies, fidelity)
         require_closed_form(self.bodies, slots, fidelity)
+        if fidelity == "modal" and slots.vibrating:
+            require_mesh(scene.projectile, scene.across)  # its modes are those of a mesh
         if fidelity == "solid":
             followed.require_carried(scene, slots)
             self._require_mesh(slots)
