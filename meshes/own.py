@@ -5,7 +5,6 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
-import scipy.sparse as sp
 
 from meshes.common import BoolArray, FloatArray, IntArray, MeshError
 from meshes.faces import file_faces, filling, lopsided, named_faces
@@ -13,17 +12,16 @@ from meshes.fallen import as_they_are
 from meshes.gauss import jacobians
 from meshes.halving import across, halved_tetrahedra, straight
 from meshes.hexahedra import as_hexahedra
-from meshes.hexmesh import FACES, SYMMETRY, HexMesh, face_keys, from_cells, half_body_tags
+from meshes.hexmesh import SYMMETRY, HexMesh, from_cells, half_body_tags
 from meshes.masses import LooseMass, loose_masses
 from meshes.moments import cell_moments
 from meshes.oblique import Tip, is_oblique, stood_up
 from meshes.order import in_order
-from meshes.quality import edge_lengths, scaled_jacobians
 from meshes.reading.read import stored_mesh
 from meshes.reading.stored import NODES, StoredMesh, counted
-from meshes.symmetry import NEAR, Part, at_planes, half_of, place_text, size_text
+from meshes.sound import require_sound
+from meshes.symmetry import NEAR, Part, at_planes, half_of, size_text
 
-SAME = 1e-6  # of the shortest edge: nodes so near to each other are one place
 FARTHEST = 1e30  # of a coordinate, m: its powers that moments need are numbers
 SLENDER = 2.0  # second moment along z over that along x, from which on a body has an axis
 LEAN = 1.0  # deg between the axis of least inertia and z, from which on it is told
@@ -253,10 +251,7 @@ def _own(part: Part, stated: Stated, hint: str) -> tuple[OwnBody, IntArray]:
     used, new = np.unique(cells, return_inverse=True)
     part = Part(points[used], new.reshape(cells.shape), part.origin)
     mesh = from_cells(part.points, part.cells, half_body_tags)
-    _require_unfolded(mesh)
-    _require_joined(mesh)
-    _require_one(mesh, hint)
-    _require_closed(mesh)
+    require_sound(mesh, hint)
     if stated.tip:
         part = replace(part, points=_axes(part.points, stated.tip))
     elif stated.symmetry is None:
@@ -279,74 +274,6 @@ def _require_numbered(points: FloatArray, cells: IntArray, least: int) -> None:
     if not there or not (np.abs(points[cells]) < FARTHEST).all():
         raise MeshError(
             "has points that are no finite numbers, or cells that name points that are not there."
-        )
-
-
-def _require_unfolded(mesh: HexMesh) -> None:
-    worst = np.minimum(scaled_jacobians(mesh).min(axis=1), np.linalg.det(jacobians(mesh)).min(axis=1))
-    bad = np.flatnonzero(~(worst > 0.0))
-    if not len(bad):
-        return
-    where = place_text(mesh.points[mesh.cells[bad[0]]].mean(axis=0))
-    raise MeshError(
-        f"has {len(bad)} of {len(worst)} cells that are folded or inside out, the first cell {bad[0]} about "
-        f"{where}. A corner or a node on an edge of such a cell lies beyond its other faces. Mend them in "
-        "the mesher: smooth the mesh there, or make it anew with smaller cells or with straight edges."
-    )
-
-
-def _require_joined(mesh: HexMesh) -> None:
-    """Refuse nodes that lie on each other, or in the middle of an edge or face of another cell."""
-    from scipy.spatial import cKDTree  # here: every command imports this room, few read such a mesh
-
-    least = SAME * float(edge_lengths(mesh).min())
-    tree = cKDTree(mesh.points)
-    if pairs := tree.query_pairs(least):
-        a, _ = min(pairs)
-        raise MeshError(
-            f"has {len(pairs)} pairs of nodes in one place, the first at {place_text(mesh.points[a])}: "
-            "the cells there are not joined. Merge equal nodes, in ParaView by Clean to Grid for example."
-        )
-    corners = mesh.points[mesh.faces]
-    middles = np.concatenate(
-        [0.5 * (corners + np.roll(corners, 1, axis=1)).reshape(-1, 3), corners.mean(axis=1)]
-    )
-    near = np.isfinite(tree.query(middles, distance_upper_bound=least)[0])
-    if near.any():
-        raise MeshError(
-            f"has nodes in the middle of an edge or face of another cell, the first at "
-            f"{place_text(middles[near][0])}: hanging nodes are not tied. Use cells that share whole faces."
-        )
-
-
-def _require_one(mesh: HexMesh, hint: str) -> None:
-    """Refuse cells that are not all joined face by face."""
-    keys = face_keys(mesh.cells[:, FACES].reshape(-1, 4))
-    order = np.argsort(keys, kind="stable")
-    inside = np.flatnonzero(np.diff(keys[order]) == 0)
-    pairs = order[inside] // 6, order[inside + 1] // 6
-    joined = sp.coo_matrix((np.ones(len(inside)), pairs), shape=(len(mesh.cells),) * 2)
-    parts, part = sp.csgraph.connected_components(joined, directed=False)
-    if parts > 1:
-        sizes = ", ".join(str(size) for size in np.sort(np.bincount(part))[::-1][:5])
-        raise MeshError(
-            f"is in {parts} parts that share no faces (of {sizes} cells). A projectile is one body: join its "
-            f"parts node by node, or leave the others out.{hint}"
-        )
-
-
-def _require_closed(mesh: HexMesh) -> None:
-    """Refuse a face that three cells share, and an edge at which more than two outer faces meet."""
-    keys = face_keys(mesh.cells[:, FACES].reshape(-1, 4))
-    if (np.unique(keys, return_counts=True)[1] > 2).any():
-        raise MeshError("has a face that three cells share: they lie in each other. Remove doubled cells.")
-    ends = np.sort(np.stack([mesh.faces, np.roll(mesh.faces, -1, axis=1)], axis=-1).reshape(-1, 2), axis=1)
-    edges, count = np.unique(ends, axis=0, return_counts=True)
-    if (count != 2).any():
-        where = place_text(mesh.points[edges[count != 2][0]].mean(axis=0))
-        raise MeshError(
-            f"has an outer surface that is not closed: at the edge about {where} {count[count != 2][0]} "
-            "outer faces meet, not two. Cells that touch at an edge alone must share a face or no node."
         )
 
 
