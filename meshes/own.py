@@ -20,7 +20,7 @@ from meshes.order import in_order
 from meshes.reading.read import stored_mesh
 from meshes.reading.stored import NODES, StoredMesh, counted
 from meshes.sound import require_sound
-from meshes.symmetry import NEAR, Part, at_planes, half_of, size_text
+from meshes.symmetry import NEAR, PARTS, Frame, Part, at_planes, half_of, size_text
 
 FARTHEST = 1e30  # of a coordinate, m: its powers that moments need are numbers
 SLENDER = 2.0  # second moment along z over that along x, from which on a body has an axis
@@ -114,9 +114,11 @@ def read_own(path: str | Path, unit: float = 1.0, stated: Stated | None = None) 
     used = np.concatenate([cells.ravel() for _, cells in blocks])
     masses = loose_masses(stored.masses, points, used if stated.sets else None)
     stood = tuple[str, ...]()
+    frame = Frame()
     if stated.planes:
-        points, symmetry = at_planes(points, used[used >= 0], stated.planes)
-        stated = replace(stated, symmetry=symmetry)
+        points, shift = at_planes(points, used[used >= 0], stated.planes)
+        stated = replace(stated, symmetry=PARTS[len(stated.planes)])
+        frame = frame if is_oblique(stated.tip) else Frame(shift=shift)
     if is_oblique(stated.tip):
         whole = as_hexahedra(points, blocks)
         points, stated, stood = _stood(whole.points, whole.cells, points, stated)
@@ -127,7 +129,8 @@ def read_own(path: str | Path, unit: float = 1.0, stated: Stated | None = None) 
         stated = replace(stated, symmetry="half", tip="-z" if stated.tip else None)
     names = ", ".join(f'"{name}"' for name in sorted(stored.sets)[:8])
     hint = f" Or name those that are the body: mesh_sets = [...] of {names}." if names else ""
-    body, origin = _own(Part(made.points, made.cells, _corners(made.cells)), stated, hint)
+    part = Part(made.points, made.cells, _corners(made.cells), frame=frame)
+    body, origin = _own(part, stated, hint)
     files = file_faces(stored, chosen)
     of = parent[origin // 8]  # (m, 8), all corners of a cell are of one cell of the file
     sets = {name: np.isin(of[:, 0], cells) for name, cells in stored.sets.items()}
@@ -249,14 +252,16 @@ def _own(part: Part, stated: Stated, hint: str) -> tuple[OwnBody, IntArray]:
     points, cells = part.points, part.cells
     _require_numbered(points, cells, 0)
     used, new = np.unique(cells, return_inverse=True)
-    part = Part(points[used], new.reshape(cells.shape), part.origin)
-    mesh = from_cells(part.points, part.cells, half_body_tags)
+    part = replace(part, points=points[used], cells=new.reshape(cells.shape))
+    mesh = from_cells(part.points + part.frame.shift, part.cells, half_body_tags)
     require_sound(mesh, hint)
     if stated.tip:
-        part = replace(part, points=_axes(part.points, stated.tip))
+        assert isinstance(stated.tip, str), "an oblique body stands upright by now"
+        frame = replace(part.frame, axes=TIPS[stated.tip])
+        part = replace(part, points=_axes(part.points, stated.tip), frame=frame)
     elif stated.symmetry is None:
         _require_upright(part, 1.0)  # what mirror images add makes it wider, not longer
-    part = half_of(part, stated.symmetry, bool(stated.planes))
+    part = half_of(part, stated.symmetry, stated.planes)
     if not stated.tip:
         _require_upright(part, 2.0)
     half = from_cells(part.points, part.cells, half_body_tags)
