@@ -18,7 +18,7 @@ from meshes.moments import cell_moments
 from meshes.oblique import Tip, is_oblique, stood_up
 from meshes.order import in_order
 from meshes.reading.read import stored_mesh
-from meshes.reading.stored import NODES, StoredMesh, counted
+from meshes.reading.stored import NODES, StoredMesh, counted, sets_named
 from meshes.sound import require_sound
 from meshes.symmetry import NEAR, PARTS, Frame, Part, at_planes, half_of, size_text
 
@@ -200,12 +200,14 @@ def _chosen(stored: StoredMesh, sets: tuple[str, ...]) -> BoolArray:
     if not sets:
         return np.ones(count, dtype=bool)
     chosen = np.zeros(count, dtype=bool)
-    by_name = {name.upper(): name for name in stored.sets}
     for name in sets:
-        if name.upper() not in by_name:
+        meant = sets_named(name, stored.sets)
+        if len(meant) > 1:
+            raise MeshError(f"has no set of cells {name!r}, but {' and '.join(meant)}: name one of them.")
+        if not meant:
             known = ", ".join(sorted(stored.sets)[:12]) or "none"
             raise MeshError(f"has no set of cells {name!r}; it has {known}.")
-        chosen[stored.sets[by_name[name.upper()]]] = True
+        chosen[stored.sets[meant[0]]] = True
     return chosen
 
 

@@ -12,6 +12,7 @@ import meshes
 from meshes import MeshError, own_body, read_own
 from meshes.fallen import as_they_are
 from meshes.hexahedra import as_hexahedra
+from meshes.reading.read import stored_mesh
 from meshes.reading.stored import StoredMesh
 from meshes.reading.text import included
 
@@ -207,6 +208,25 @@ LOW,HIGH,5,1000
 def test_a_mesh_of_calculix_is_known_by_its_content(tmp_path):
     (tmp_path / "all.msh").write_text(decks.abaqus(*square()))
     assert volume_of(tmp_path / "all.msh") == pytest.approx(8640.0)
+
+
+def test_a_name_means_the_set_of_just_its_letters_or_the_only_one_alike(tmp_path):
+    """Gmsh tells CORE from Core; a group that is turned round has a negative number in version 2."""
+    points, cells = square()
+    blocks = [("hexahedron", cells)]
+    marks = {"gmsh:physical": [np.where(points[cells][:, :, 2].mean(axis=1) < 24.0, -1, 2)]}
+    marks["gmsh:geometrical"] = [np.ones(len(cells), int)]
+    names = {"CORE": np.array([1, 3]), "Core": np.array([2, 3])}
+    mesh = meshio.Mesh(points, blocks, cell_data=marks, field_data=names)
+    meshio.write(tmp_path / "c.msh", mesh, file_format="gmsh22", binary=False)
+    stored = stored_mesh(tmp_path / "c.msh")
+    sizes = {name: len(of) for name, of in stored.sets.items()}
+    assert (sizes["CORE"], sizes["Core"]) == (8, 12)
+    with pytest.raises(MeshError, match="has no set of cells 'core', but CORE and Core: name one of them"):
+        read_own(tmp_path / "c.msh", 1e-3, meshes.Stated("whole", sets=("core",)))
+    for name, count in (("CORE", 8), ("Core", 12)):
+        chosen = read_own(tmp_path / "c.msh", 1e-3, meshes.Stated("whole", "-z", sets=(name,)))
+        assert 2e9 * meshes.volume(chosen.half) == pytest.approx(432.0 * count)
 
 
 def test_the_first_gmsh_files_of_version_2_name_groups_without_a_dimension(tmp_path):
