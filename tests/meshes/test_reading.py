@@ -324,6 +324,26 @@ def test_middles_of_edges_shape_the_body(tmp_path, ending):
     assert 2e9 * meshes.volume(body.half) == pytest.approx(13.0 * 12.0 * 60.0, rel=1e-9)
 
 
+@pytest.mark.parametrize("ending", [".vtu", ".vtk"])
+def test_wedges_with_middles_of_edges_are_read_from_vtk(tmp_path, ending):
+    """As above; meshio reads such wedges, but lacks their dimension."""
+    import pyvista
+
+    points, cells = taper(end=1.0, cells=(1, 1, 1))
+    edges = [(0, 1), (1, 2), (2, 0), (3, 4), (4, 5), (5, 3), (0, 3), (1, 4), (2, 5)]
+    places, wedges = list(1e3 * points), []
+    for corners in cells[0][np.array(WEDGES)].tolist():
+        middles = [0.5 * (places[corners[a]] + places[corners[b]]) for a, b in edges]
+        scaled = [place * [7 / 6 if place[2] == 30.0 else 1.0, 1.0, 1.0] for place in middles]
+        wedges.append([*corners, *range(len(places), len(places) + 9)])
+        places += scaled
+    kind = pyvista.CellType.QUADRATIC_WEDGE
+    pyvista.UnstructuredGrid({kind: np.array(wedges)}, np.array(places)).save(tmp_path / f"w{ending}")
+    body = read_own(tmp_path / f"w{ending}", 1e-3, meshes.Stated("half"))
+    assert len(body.half.cells) == 12
+    assert 2e9 * meshes.volume(body.half) == pytest.approx(13.0 * 12.0 * 60.0, rel=1e-9)
+
+
 @pytest.mark.parametrize("kind", ["hexahedron", "tetra", "wedge"])
 def test_nodes_numbered_the_other_way_round_are_put_right_where_all_agree(tmp_path, kind):
     """As in MED, of which Salome numbers hexahedra with the upper face first."""
