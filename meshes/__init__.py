@@ -20,6 +20,7 @@ from meshes.moments import CellMoments, cell_moments
 from meshes.own import TIPS, OwnBody, Stated, own_body, read_own
 from meshes.quality import Quality, edge_lengths, quality, thicknesses, volume
 from meshes.reading.read import extent
+from meshes.reading.stored import sets_named
 from meshes.reading.text import included
 from meshes.refine import refine
 from meshes.rod import RodMesh, rod
@@ -65,6 +66,7 @@ __all__ = [
     "read_own",
     "refine",
     "rod",
+    "sets_named",
     "sphere",
     "thicknesses",
     "thin_skin_rise",

@@ -107,10 +107,10 @@ def as_hexahedra(points: FloatArray, blocks: tuple[tuple[str, IntArray], ...]) -
     Raises
     ------
     MeshError
-        If a cell is a pyramid, or a hexahedron whose nodes fall together is none of these.
+        If a cell is a pyramid, or corners of a cell fall together.
     """
     starts = np.cumsum([0, *(len(cells) for _, cells in blocks)]).tolist()
-    groups = [part for at, block in zip(starts, blocks, strict=False) for part in _groups(block, at)]
+    groups = [_group(block, at) for at, block in zip(starts, blocks, strict=False)]
     told: list[str] = []
     if all(kind is HEXAHEDRON and cells.shape[1] == 8 for kind, cells, _ in groups):
         made = [(kind, cells, numbers) for kind, cells, numbers in groups]
@@ -151,66 +151,22 @@ def _at_odds(cells: IntArray) -> BoolArray:
     return np.asarray((ways[2][ways[1].ravel()] > 1).reshape(-1, 6).any(axis=1))
 
 
-def _groups(block: tuple[str, IntArray], first: int) -> list[tuple[_Kind, IntArray, IntArray]]:
-    """Return the cells of a block with numbers, hexahedra whose nodes fall together as what they are."""
+def _group(block: tuple[str, IntArray], first: int) -> tuple[_Kind, IntArray, IntArray]:
+    """Return kind, cells and numbers of a block; see `meshes.fallen` for hexahedra of another kind."""
     name, cells = block
-    numbers = first + np.arange(len(cells))
     if name.startswith("pyramid"):
-        raise _no_pyramids(len(cells))
-    kind = next(kind for kind in KINDS.values() if name.startswith(kind.name))
-    if kind is not HEXAHEDRON:
-        return [(kind, cells, numbers)]
-    corners = np.sort(cells[:, :8], axis=1)
-    distinct = 1 + (np.diff(corners, axis=1) != 0).sum(axis=1)
-    whole = distinct == 8
-    found = [(HEXAHEDRON, cells[whole], numbers[whole])] if whole.any() else []
-    for count in (4, 6):
-        here = np.flatnonzero(distinct == count)
-        if len(here):
-            kind = TETRA if count == 4 else WEDGE
-            found.append(
-                (kind, np.array([_fallen(cell, kind) for cell in cells[here].tolist()]), numbers[here])
-            )
-    if pyramids := int((distinct == 5).sum()):
-        raise _no_pyramids(pyramids)
-    if other := int((~np.isin(distinct, (4, 6, 8))).sum()):
         raise MeshError(
-            f"holds {counted(other, 'cell')} of eight nodes that fall together, but not to a wedge or a "
-            "tetrahedron. Mesh the body with hexahedra, wedges or tetrahedra alone."
+            f"holds {counted(len(cells), 'pyramid')}, which cannot be split into hexahedra. Mesh the body "
+            "with hexahedra, wedges or tetrahedra alone."
         )
-    return found
-
-
-def _no_pyramids(count: int) -> MeshError:
-    told = counted(count, "pyramid")
-    return MeshError(
-        f"holds {told}, which cannot be split into hexahedra. Mesh the body with hexahedra, wedges or "
-        "tetrahedra alone."
-    )
-
-
-def _fallen(cell: list[int], kind: _Kind) -> list[int]:
-    """Return the corners of a hexahedron whose nodes fall together, then the middles of edges that it has."""
-    corners = list(dict.fromkeys(cell[:8])) if kind is TETRA else _wedge(cell[:8])
-    middles = {
-        frozenset((cell[a], cell[b])): k for (a, b), k in zip(HEXAHEDRON.edges, cell[8:], strict=False)
-    }
-    of_edges = [middles.get(frozenset((corners[a], corners[b])), -1) for a, b in kind.edges]
-    return [*corners, *of_edges] if middles else corners
-
-
-def _wedge(corners: list[int]) -> list[int]:
-    """Return the corners of a wedge that is given as a hexahedron with two edges of no length."""
-    ends = [tuple(dict.fromkeys(corners[k] for k in face)) for face in HEXAHEDRON.faces]
-    ends = [face for face in ends if len(face) == 3]
-    joined = {frozenset((corners[a], corners[b])) for a, b in HEXAHEDRON.edges}
-    if len(ends) != 2 or set(ends[0]) & set(ends[1]):
-        raise MeshError("holds a hexahedron of six nodes that is no wedge. Mesh it with hexahedra or wedges.")
-    low, high = ends
-    facing = [next((b for b in high if frozenset((a, b)) in joined), -1) for a in low]
-    if sorted(facing) != sorted(high):
-        raise MeshError("holds a hexahedron of six nodes that is no wedge. Mesh it with hexahedra or wedges.")
-    return [*low, *facing]
+    kind = next(kind for kind in KINDS.values() if name.startswith(kind.name))
+    fallen = int((np.diff(np.sort(cells[:, : kind.corners], axis=1), axis=1) == 0).any(axis=1).sum())
+    if fallen:
+        raise MeshError(
+            f"holds {counted(fallen, f'cell of type {kind.name}')} whose corners fall together to no wedge "
+            "and no tetrahedron. Mesh the body with hexahedra, wedges or tetrahedra alone."
+        )
+    return kind, cells, first + np.arange(len(cells))
 
 
 def _split(

@@ -5,24 +5,23 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
-import scipy.sparse as sp
 
 from meshes.common import BoolArray, FloatArray, IntArray, MeshError
 from meshes.faces import file_faces, filling, lopsided, named_faces
+from meshes.fallen import as_they_are
 from meshes.gauss import jacobians
 from meshes.halving import across, halved_tetrahedra, straight
 from meshes.hexahedra import as_hexahedra
-from meshes.hexmesh import FACES, SYMMETRY, HexMesh, face_keys, from_cells, half_body_tags
+from meshes.hexmesh import SYMMETRY, HexMesh, from_cells, half_body_tags
 from meshes.masses import LooseMass, loose_masses
 from meshes.moments import cell_moments
 from meshes.oblique import Tip, is_oblique, stood_up
 from meshes.order import in_order
-from meshes.quality import edge_lengths, scaled_jacobians
 from meshes.reading.read import stored_mesh
-from meshes.reading.stored import NODES, StoredMesh, counted
-from meshes.symmetry import NEAR, Part, at_planes, half_of, place_text, size_text
+from meshes.reading.stored import NODES, StoredMesh, counted, sets_named
+from meshes.sound import require_sound
+from meshes.symmetry import NEAR, PARTS, Frame, Part, at_planes, half_of, size_text
 
-SAME = 1e-6  # of the shortest edge: nodes so near to each other are one place
 FARTHEST = 1e30  # of a coordinate, m: its powers that moments need are numbers
 SLENDER = 2.0  # second moment along z over that along x, from which on a body has an axis
 LEAN = 1.0  # deg between the axis of least inertia and z, from which on it is told
@@ -68,6 +67,7 @@ class OwnBody:
     lopsided : names of sets of which one side of y = 0 holds more than the other
     masses : masses without volume that the file holds
     told : sentences about what the file holds and how it was taken
+    assumed : as in `Part`
     """
 
     half: HexMesh
@@ -76,6 +76,7 @@ class OwnBody:
     lopsided: frozenset[str] = frozenset()
     masses: tuple[LooseMass, ...] = ()
     told: tuple[str, ...] = ()
+    assumed: str = ""
 
 
 def read_own(path: str | Path, unit: float = 1.0, stated: Stated | None = None) -> OwnBody:
@@ -95,7 +96,7 @@ def read_own(path: str | Path, unit: float = 1.0, stated: Stated | None = None) 
         If the file cannot be read, holds cells that cannot be taken, or is no such body.
     """
     stated = stated or Stated()
-    stored = stored_mesh(path)
+    stored = as_they_are(stored_mesh(path))
     if len(stored.surfaces.corners):
         _require_numbered(stored.points, stored.surfaces.corners, -1)
     if not stored.blocks:
@@ -113,9 +114,11 @@ def read_own(path: str | Path, unit: float = 1.0, stated: Stated | None = None) 
     used = np.concatenate([cells.ravel() for _, cells in blocks])
     masses = loose_masses(stored.masses, points, used if stated.sets else None)
     stood = tuple[str, ...]()
+    frame = Frame()
     if stated.planes:
-        points, symmetry = at_planes(points, used[used >= 0], stated.planes)
-        stated = replace(stated, symmetry=symmetry)
+        points, shift = at_planes(points, used[used >= 0], stated.planes)
+        stated = replace(stated, symmetry=PARTS[len(stated.planes)])
+        frame = frame if is_oblique(stated.tip) else Frame(shift=shift)
     if is_oblique(stated.tip):
         whole = as_hexahedra(points, blocks)
         points, stated, stood = _stood(whole.points, whole.cells, points, stated)
@@ -126,7 +129,8 @@ def read_own(path: str | Path, unit: float = 1.0, stated: Stated | None = None) 
         stated = replace(stated, symmetry="half", tip="-z" if stated.tip else None)
     names = ", ".join(f'"{name}"' for name in sorted(stored.sets)[:8])
     hint = f" Or name those that are the body: mesh_sets = [...] of {names}." if names else ""
-    body, origin = _own(Part(made.points, made.cells, _corners(made.cells)), stated, hint)
+    part = Part(made.points, made.cells, _corners(made.cells), frame=frame)
+    body, origin = _own(part, stated, hint)
     files = file_faces(stored, chosen)
     of = parent[origin // 8]  # (m, 8), all corners of a cell are of one cell of the file
     sets = {name: np.isin(of[:, 0], cells) for name, cells in stored.sets.items()}
@@ -196,12 +200,14 @@ def _chosen(stored: StoredMesh, sets: tuple[str, ...]) -> BoolArray:
     if not sets:
         return np.ones(count, dtype=bool)
     chosen = np.zeros(count, dtype=bool)
-    by_name = {name.upper(): name for name in stored.sets}
     for name in sets:
-        if name.upper() not in by_name:
+        meant = sets_named(name, stored.sets)
+        if len(meant) > 1:
+            raise MeshError(f"has no set of cells {name!r}, but {' and '.join(meant)}: name one of them.")
+        if not meant:
             known = ", ".join(sorted(stored.sets)[:12]) or "none"
             raise MeshError(f"has no set of cells {name!r}; it has {known}.")
-        chosen[stored.sets[by_name[name.upper()]]] = True
+        chosen[stored.sets[meant[0]]] = True
     return chosen
 
 
@@ -248,17 +254,16 @@ def _own(part: Part, stated: Stated, hint: str) -> tuple[OwnBody, IntArray]:
     points, cells = part.points, part.cells
     _require_numbered(points, cells, 0)
     used, new = np.unique(cells, return_inverse=True)
-    part = Part(points[used], new.reshape(cells.shape), part.origin)
-    mesh = from_cells(part.points, part.cells, half_body_tags)
-    _require_unfolded(mesh)
-    _require_joined(mesh)
-    _require_one(mesh, hint)
-    _require_closed(mesh)
+    part = replace(part, points=points[used], cells=new.reshape(cells.shape))
+    mesh = from_cells(part.points + part.frame.shift, part.cells, half_body_tags)
+    require_sound(mesh, hint)
     if stated.tip:
-        part = replace(part, points=_axes(part.points, stated.tip))
+        assert isinstance(stated.tip, str), "an oblique body stands upright by now"
+        frame = replace(part.frame, axes=TIPS[stated.tip])
+        part = replace(part, points=_axes(part.points, stated.tip), frame=frame)
     elif stated.symmetry is None:
         _require_upright(part, 1.0)  # what mirror images add makes it wider, not longer
-    part = half_of(part, stated.symmetry, bool(stated.planes))
+    part = half_of(part, stated.symmetry, stated.planes)
     if not stated.tip:
         _require_upright(part, 2.0)
     half = from_cells(part.points, part.cells, half_body_tags)
@@ -267,7 +272,7 @@ def _own(part: Part, stated: Stated, hint: str) -> tuple[OwnBody, IntArray]:
     placed, corners = _placed(half)
     doubled = size_text(part, (1,))
     told = (*part.told, *_leaning(placed), f"whole body: {doubled}")
-    return OwnBody(placed, told=told), part.origin.ravel()[corners]
+    return OwnBody(placed, told=told, assumed=part.assumed), part.origin.ravel()[corners]
 
 
 def _require_numbered(points: FloatArray, cells: IntArray, least: int) -> None:
@@ -276,74 +281,6 @@ def _require_numbered(points: FloatArray, cells: IntArray, least: int) -> None:
     if not there or not (np.abs(points[cells]) < FARTHEST).all():
         raise MeshError(
             "has points that are no finite numbers, or cells that name points that are not there."
-        )
-
-
-def _require_unfolded(mesh: HexMesh) -> None:
-    worst = np.minimum(scaled_jacobians(mesh).min(axis=1), np.linalg.det(jacobians(mesh)).min(axis=1))
-    bad = np.flatnonzero(~(worst > 0.0))
-    if not len(bad):
-        return
-    where = place_text(mesh.points[mesh.cells[bad[0]]].mean(axis=0))
-    raise MeshError(
-        f"has {len(bad)} of {len(worst)} cells that are folded or inside out, the first cell {bad[0]} about "
-        f"{where}. A corner or a node on an edge of such a cell lies beyond its other faces. Mend them in "
-        "the mesher: smooth the mesh there, or make it anew with smaller cells or with straight edges."
-    )
-
-
-def _require_joined(mesh: HexMesh) -> None:
-    """Refuse nodes that lie on each other, or in the middle of an edge or face of another cell."""
-    from scipy.spatial import cKDTree  # here: every command imports this room, few read such a mesh
-
-    least = SAME * float(edge_lengths(mesh).min())
-    tree = cKDTree(mesh.points)
-    if pairs := tree.query_pairs(least):
-        a, _ = min(pairs)
-        raise MeshError(
-            f"has {len(pairs)} pairs of nodes in one place, the first at {place_text(mesh.points[a])}: "
-            "the cells there are not joined. Merge equal nodes, in ParaView by Clean to Grid for example."
-        )
-    corners = mesh.points[mesh.faces]
-    middles = np.concatenate(
-        [0.5 * (corners + np.roll(corners, 1, axis=1)).reshape(-1, 3), corners.mean(axis=1)]
-    )
-    near = np.isfinite(tree.query(middles, distance_upper_bound=least)[0])
-    if near.any():
-        raise MeshError(
-            f"has nodes in the middle of an edge or face of another cell, the first at "
-            f"{place_text(middles[near][0])}: hanging nodes are not tied. Use cells that share whole faces."
-        )
-
-
-def _require_one(mesh: HexMesh, hint: str) -> None:
-    """Refuse cells that are not all joined face by face."""
-    keys = face_keys(mesh.cells[:, FACES].reshape(-1, 4))
-    order = np.argsort(keys, kind="stable")
-    inside = np.flatnonzero(np.diff(keys[order]) == 0)
-    pairs = order[inside] // 6, order[inside + 1] // 6
-    joined = sp.coo_matrix((np.ones(len(inside)), pairs), shape=(len(mesh.cells),) * 2)
-    parts, part = sp.csgraph.connected_components(joined, directed=False)
-    if parts > 1:
-        sizes = ", ".join(str(size) for size in np.sort(np.bincount(part))[::-1][:5])
-        raise MeshError(
-            f"is in {parts} parts that share no faces (of {sizes} cells). A projectile is one body: join its "
-            f"parts node by node, or leave the others out.{hint}"
-        )
-
-
-def _require_closed(mesh: HexMesh) -> None:
-    """Refuse a face that three cells share, and an edge at which more than two outer faces meet."""
-    keys = face_keys(mesh.cells[:, FACES].reshape(-1, 4))
-    if (np.unique(keys, return_counts=True)[1] > 2).any():
-        raise MeshError("has a face that three cells share: they lie in each other. Remove doubled cells.")
-    ends = np.sort(np.stack([mesh.faces, np.roll(mesh.faces, -1, axis=1)], axis=-1).reshape(-1, 2), axis=1)
-    edges, count = np.unique(ends, axis=0, return_counts=True)
-    if (count != 2).any():
-        where = place_text(mesh.points[edges[count != 2][0]].mean(axis=0))
-        raise MeshError(
-            f"has an outer surface that is not closed: at the edge about {where} {count[count != 2][0]} "
-            "outer faces meet, not two. Cells that touch at an edge alone must share a face or no node."
         )
 
 

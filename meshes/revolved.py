@@ -6,7 +6,7 @@ from math import ceil
 import numpy as np
 
 from meshes.common import BoolArray, FloatArray, MeshError
-from meshes.section import Section, bored_section, section
+from meshes.section import WIDEST, Section, bored_section, section
 from meshes.shoulders import eased
 from meshes.surface import CORNER, TurnedSurface
 
@@ -111,10 +111,27 @@ class Revolved:
         """Least thickness of the wall along a bore, m; without one, infinite."""
         if not len(self.bore):
             return np.inf
+        inner, z = self._along_bore().T
+        return float((self.radius(z) - inner).min())
+
+    def require_wall(self) -> None:
+        """Refuse a wall along the bore that is thinner than a section can hold (MeshError)."""
+        inner, z = self._along_bore().T
+        # beside the flat faces at both ends
+        outer = self.radius(np.clip(z, 1e-9 * self.length, (1.0 - 1e-9) * self.length))
+        at = int(np.argmax(inner / outer))
+        if inner[at] > (WIDEST + SAME) * outer[at]:
+            raise MeshError(
+                f"a wall of {1.0 - inner[at] / outer[at]:.3g} of the outer radius, {outer[at]:.4g} m, at z = "
+                f"{z[at]:.4g} m is too thin for cells: give {1.0 - WIDEST:.2g} of it or more"
+            )
+
+    def _along_bore(self) -> FloatArray:
+        """Return (k, 2) radius of the bore and height, m, wherever one of both surfaces has a point."""
         first, last = self.bored_from_to
         between = self.line[(self.line[:, 1] > first) & (self.line[:, 1] < last), 1]
-        z = np.concatenate([self.bore[:, 1], between])
-        return float((self.radius(z) - np.interp(z, self.bore[:, 1], self.bore[:, 0])).min())
+        inner = np.interp(between, self.bore[:, 1], self.bore[:, 0])
+        return np.concatenate([self.bore, np.stack([inner, between], axis=1)])
 
     def radius(self, z: FloatArray) -> FloatArray:
         """(n,) outer radius at heights z (n,), m."""
@@ -201,4 +218,6 @@ def revolved(line: FloatArray, bore: FloatArray | None, across: int) -> Revolved
     if bore is None:
         return replace(plain, half=section(across), across=across)
     front = np.interp(max(inner[0, 1], 1e-9 * line[-1, 1]), line[:, 1], line[:, 0])
-    return replace(plain, half=bored_section(across, float(inner[0, 0] / front)), across=across)
+    made = replace(plain, half=bored_section(across, float(inner[0, 0] / front)), across=across)
+    made.require_wall()
+    return made

@@ -1,6 +1,7 @@
 """Which part of a body a mesh is: all of it, its half, quarter or eighth; and its half y >= 0."""
 
-from dataclasses import dataclass, replace
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -19,6 +20,37 @@ SLABS = 20  # over the length, in which sections are looked at
 
 
 @dataclass(frozen=True, slots=True)
+class Frame:
+    """How the axes of a body lie in its file, in which users are told of planes and places.
+
+    Attributes
+    ----------
+    axes : axis of the file, and sign, of x, y and z
+    shift : (3,) float64, m, where the origin lies in the file
+    """
+
+    axes: tuple[tuple[int, float], ...] = ((0, 1.0), (1, 1.0), (2, 1.0))
+    shift: FloatArray = field(default_factory=lambda: np.zeros(3))
+
+    def place(self, point: FloatArray) -> FloatArray:
+        """Return where in the file a point (3,), m, lies."""
+        found = self.shift.copy()
+        for at, (axis, sign) in zip(point, self.axes, strict=True):
+            found[axis] += sign * at
+        return found
+
+    def plane(self, axis: int, at: float = 0.0) -> str:
+        """Return the plane at a place, m, on an axis of the body, such as "x = 3 mm", of the file."""
+        (own, sign), digits = self.axes[axis], 9  # of a metre: less than that is round-off
+        place = 1e3 * round(float(sign * at + self.shift[own]), digits)
+        return f"{'xyz'[own]} = {f'{place:.6g} mm' if place else '0'}"
+
+    def planes(self, axes: Iterable[int]) -> str:
+        """Return the planes through the origin that are square to axes of the body."""
+        return " and ".join(sorted(self.plane(axis) for axis in axes))
+
+
+@dataclass(frozen=True, slots=True)
 class Part:
     """Cells of a body whose tip points to -z.
 
@@ -28,12 +60,16 @@ class Part:
     cells : (m, 8) int64
     origin : (m, 8) int64, for each corner of each cell 8 times the cell as read that it is one of, and which
     told : sentences about what was done
+    frame : how it lies in its file
+    assumed : which of `PARTS` it was taken as though nothing is stated, "" of all of a body
     """
 
     points: FloatArray
     cells: IntArray
     origin: IntArray
     told: tuple[str, ...] = ()
+    frame: Frame = field(default_factory=Frame)
+    assumed: str = ""
 
     @property
     def near(self) -> float:
@@ -45,7 +81,7 @@ class Part:
         return replace(self, told=(*self.told, sentence))
 
 
-def half_of(part: Part, stated: str | None, ends: bool = False) -> Part:
+def half_of(part: Part, stated: str | None, cuts: tuple[tuple[int, float], ...] = ()) -> Part:
     """Return the half y >= 0 of the body that a mesh is a part of.
 
     Parameters
@@ -53,8 +89,9 @@ def half_of(part: Part, stated: str | None, ends: bool = False) -> Part:
     part : Part
     stated : str or None
         One of `PARTS`; None where it is to be found.
-    ends : bool
-        Whether a half or a quarter may have been cut in z = 0, on which most meshes only stand.
+    cuts : pairs of an axis of the file and a place on it, m
+        The planes that were stated in place of a word. Only of such a half or quarter may one be z = 0, on
+        which most meshes only stand.
 
     Raises
     ------
@@ -62,11 +99,11 @@ def half_of(part: Part, stated: str | None, ends: bool = False) -> Part:
         If it is not certain which part it is, or it is not what is stated, or the body is not symmetric.
     """
     part, flat = _snapped(part)
-    planes = _stated(part, flat, stated, ends) if stated else _found(part, flat)
+    planes = _stated(part, flat, stated, cuts) if stated else _found(part, flat)
     if not planes:
         return _cut(part if _crosses(part) else _centred(part))
     name = PARTS[len(planes)]
-    where = " and ".join(f"{'xyz'[axis]} = 0" for axis in sorted(planes))
+    where = part.frame.planes(planes)
     if 2 in planes:
         part = _doubled(part, 2)
     if 1 not in planes and 0 in planes:
@@ -74,13 +111,14 @@ def half_of(part: Part, stated: str | None, ends: bool = False) -> Part:
         sign = 1.0 if part.points[:, 0].max() > 0.0 else -1.0
         x, y, z = part.points.T
         turned = replace(part, points=np.stack([-sign * y, sign * x, z], axis=1))
-        part = turned.tell("it is turned about z by 90 deg, its plane x = 0 to y = 0")
+        part = turned.tell(f"it is turned about its axis by 90 deg, its plane {part.frame.plane(0)} to y = 0")
     elif 0 in planes:
         part = _doubled(part, 0)
     if 0 in planes or 1 in planes:
         half = _on_positive_side(part)
     else:
         half = _cut(part if _crosses(part) else _centred(part))
+    half = replace(half, assumed="" if stated else name)
     return half.tell(
         f"the mesh is taken as a {name} of a body that is symmetric about {where}".replace("a e", "an e")
     )
@@ -88,8 +126,8 @@ def half_of(part: Part, stated: str | None, ends: bool = False) -> Part:
 
 def at_planes(
     points: FloatArray, used: IntArray, planes: tuple[tuple[int, float], ...]
-) -> tuple[FloatArray, str]:
-    """Return points (n, 3) of which stated planes are those through the origin, and which of `PARTS` it is.
+) -> tuple[FloatArray, FloatArray]:
+    """Return points (n, 3) of which stated planes are those through the origin, and by what they moved.
 
     Along the other axes the body, of the points ``used``, stands beside the origin: no face of it is a plane
     of symmetry there.
@@ -98,7 +136,7 @@ def at_planes(
     shift = corners.min(axis=0) - np.ptp(corners, axis=0).max()
     for axis, place in planes:
         shift[axis] = place
-    return points - shift, PARTS[len(planes)]
+    return points - shift, shift
 
 
 def _snapped(part: Part) -> tuple[Part, set[int]]:
@@ -116,24 +154,38 @@ def _snapped(part: Part) -> tuple[Part, set[int]]:
     return replace(part, points=points), flat
 
 
-def _stated(part: Part, flat: set[int], stated: str, ends: bool) -> tuple[int, ...]:
+def _stated(part: Part, flat: set[int], stated: str, cuts: tuple[tuple[int, float], ...]) -> tuple[int, ...]:
     """Return the planes in which a part of the stated kind was cut."""
     count = PARTS.index(stated)
-    may = ORDER if ends or count == 3 else ORDER[:2]
+    may = ORDER if cuts or count == 3 else ORDER[:2]
     there = [axis for axis in may if axis in flat]
     if len(there) < count:
-        none = "none of x = 0, y = 0 and z = 0" if len(may) == 3 else "none of x = 0 and y = 0"
-        planes = " and ".join(f"{'xyz'[axis]} = 0" for axis in there) or none
+        planes = f"flat faces on {part.frame.planes(there)} alone"
+        if not there:
+            planes = "no flat face there" if cuts else f"flat faces on none of {part.frame.planes(may)}"
+        own = ", ".join(f"{'xyz'[axis]} = {1e3 * place:.6g} mm" for axis, place in cuts)
+        word = f'{stated}", which is cut in {count} plane{"s" * (count > 1)} of symmetry'
+        what = f'{own}"' if cuts else word
         raise MeshError(
-            f'is stated as mesh_symmetry = "{stated}", which is cut in {count} '
-            f"plane{'s' * (count > 1)} of symmetry, but it has flat faces on {planes} alone, with all of it "
-            f"on one side. State what it is, or where it was cut: {_example(part)}."
+            f'is stated as mesh_symmetry = "{what}, but it has {planes}, with all of it on one side. State '
+            f"what it is, or where it was cut: {_example(part)}."
         )
     return tuple(there[:count])
 
 
 def _example(part: Part) -> str:
-    return f'mesh_symmetry = "y = {1e3 * float(part.points[:, 1].min()):.6g} mm", for example'
+    """Return the end of the body, along y or x, with the most of its flat faces as the plane of a cut."""
+    owner, local = outer_faces(part.cells)
+    corners = part.points[part.cells[owner[:, None], FACES[local]]]
+    normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
+    most, found = 0.0, (1, float(part.points[:, 1].min()))
+    for axis in ORDER[:2]:
+        for end in (float(part.points[:, axis].min()), float(part.points[:, axis].max())):
+            there = (np.abs(corners[:, :, axis] - end) < part.near).all(axis=1)
+            if (flat := float(np.abs(normal[there, axis]).sum())) > (1.0 + NEAR) * most:
+                most, found = flat, (axis, end)
+    plane = part.frame.plane(*found)
+    return f'mesh_symmetry = "{plane if plane.endswith("mm") else f"{plane} mm"}", for example'
 
 
 def _found(part: Part, flat: set[int]) -> tuple[int, ...]:
@@ -149,11 +201,11 @@ def _found(part: Part, flat: set[int]) -> tuple[int, ...]:
         return ()
     choices = [()] + [there[:k] for k in range(1, len(there) + 1)]
     sizes = [f'"{PARTS[len(planes)]}" (a body of {size_text(part, planes)})' for planes in choices]
-    where = " and ".join(f"{'xyz'[axis]} = 0" for axis in sorted(there))
+    where = part.frame.planes(there)
     if not there:
         raise MeshError(
-            "lies beside y = 0 without a flat face on it: it is not certain what part of the body it is. "
-            f"State mesh_symmetry = {sizes[0]}, or where it was cut: {_example(part)}."
+            f"lies beside {part.frame.plane(1)} without a flat face on it: it is not certain what part of "
+            f"the body it is. State mesh_symmetry = {sizes[0]}, or where it was cut: {_example(part)}."
         )
     raise MeshError(
         f"has flat faces on {where} and lies on one side of them: it is not certain what part of the body it "
@@ -172,7 +224,9 @@ def _centred(part: Part) -> Part:
     middle = 0.5 * float(y.min() + y.max())
     points = part.points - np.array([0.0, middle, 0.0])
     points[np.abs(points[:, 1]) < part.near, 1] = 0.0
-    return replace(part, points=points).tell(f"its plane of symmetry is taken at y = {1e3 * middle:.6g} mm")
+    told = f"its plane of symmetry is taken at {part.frame.plane(1, middle)}"
+    frame = replace(part.frame, shift=part.frame.place(np.array([0.0, middle, 0.0])))
+    return replace(part, points=points, frame=frame).tell(told)
 
 
 def _gauss(part: Part) -> tuple[FloatArray, FloatArray]:
@@ -216,11 +270,11 @@ def _doubled(part: Part, axis: int) -> Part:
     new = np.where(on, np.arange(count), count + np.cumsum(~on) - 1)
     image = points[~on].copy()
     image[:, axis] *= -1.0
-    return Part(
-        np.concatenate([points, image]),
-        np.concatenate([part.cells, new[part.cells][:, TURNED]]),
-        np.concatenate([part.origin, part.origin[:, TURNED]]),
-        part.told,
+    return replace(
+        part,
+        points=np.concatenate([points, image]),
+        cells=np.concatenate([part.cells, new[part.cells][:, TURNED]]),
+        origin=np.concatenate([part.origin, part.origin[:, TURNED]]),
     )
 
 
@@ -228,21 +282,21 @@ def _on_positive_side(part: Part) -> Part:
     """Return a half on y >= 0, mirrored if it was given on the other side."""
     if part.points[:, 1].max() > 0.0:
         return part
-    points, (cells, origin) = part.points * [1.0, -1.0, 1.0] + 0.0, (part.cells, part.origin)
-    return Part(points, cells[:, TURNED], origin[:, TURNED], part.told)
+    points = part.points * [1.0, -1.0, 1.0] + 0.0
+    return replace(part, points=points, cells=part.cells[:, TURNED], origin=part.origin[:, TURNED])
 
 
 def _cut(part: Part) -> Part:
     """Return the half y >= 0 of a whole body."""
-    points, near = part.points, part.near
+    points, near, plane = part.points, part.near, part.frame.plane(1)
     y = points[part.cells][:, :, 1]
     across = np.flatnonzero((y.min(axis=1) < 0.0) & (y.max(axis=1) > 0.0))
     made = halved_layer(points, part.cells)
     if made is None:
-        where = place_text(points[part.cells[across[0]]].mean(axis=0))
+        where = place_text(part.frame.place(points[part.cells[across[0]]].mean(axis=0)))
         raise MeshError(
-            f"has {len(across)} cells across the plane y = 0, the first about {where}. The plane of symmetry "
-            "must lie between cells: give a mesh with faces there, or the half y >= 0."
+            f"has {len(across)} cells across the plane {plane}, the first about {where}. The plane of "
+            "symmetry must lie between cells: give a mesh with faces there, or half of it."
         )
     # refuse a body whose nodes or cells on both sides of y = 0 are not mirror images of each other
     from scipy.spatial import cKDTree  # here: every command imports this room, few read such a mesh
@@ -252,14 +306,14 @@ def _cut(part: Part) -> Part:
         lonely: BoolArray = away > 2.0 * near
         if lonely.any():
             raise MeshError(
-                f"is not symmetric about the plane y = 0: {int(lonely.sum())} of {len(places)} {what}s have "
-                f"no mirror image, the first at {place_text(places[lonely][0])}. The model holds half of a "
-                "symmetric body: mirror the mesh, turn it, or give the half y >= 0."
+                f"is not symmetric about the plane {plane}: {int(lonely.sum())} of {len(places)} {what}s "
+                f"have no mirror image, the first at {place_text(part.frame.place(places[lonely][0]))}. The "
+                "model holds half of a symmetric body: mirror the mesh, turn it, or give half of it."
             )
     places, cells, kept = made
     used, new = np.unique(cells[kept], return_inverse=True)
-    half = Part(places[used], new.reshape(-1, 8), part.origin[kept], part.told)
-    return half.tell(f"{len(across)} cells across the plane y = 0 are cut there") if len(across) else half
+    half = replace(part, points=places[used], cells=new.reshape(-1, 8), origin=part.origin[kept])
+    return half.tell(f"{len(across)} cells across the plane {plane} are cut there") if len(across) else half
 
 
 def size_text(part: Part, planes: tuple[int, ...] = ()) -> str:

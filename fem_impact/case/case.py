@@ -106,6 +106,8 @@ class Case:
         require_skins(self.bodies, fidelity)
         require_closed_form(self.bodies, slots, fidelity)
         limits.require_shallow(self.bodies)
+        if fidelity == "modal" and slots.vibrating:
+            require_mesh(scene.projectile, scene.across)  # its modes are those of a mesh
         if fidelity == "solid":
             followed.require_carried(scene, slots)
             self._require_mesh(slots)
@@ -230,7 +232,12 @@ class Case:
         of_scene = limits.scene_limitations(self.bodies, self.slots.bending is not None)
         meshed = self.fidelity == "solid"
         of_scene += limitations("model", *too_thin(self.bodies, meshed))
-        unstated = limitations("input", *unknowns(self.bodies), limits.unused(self.scene, self.fidelity))
+        unstated = limitations(
+            "input",
+            *unknowns(self.bodies),
+            limits.assumed_part(self.scene.projectile.own_mesh),
+            limits.unused(self.scene, self.fidelity),
+        )
         if not meshed:
             skin = NOT_RIGID if "machined-skin" in self.active else ""
             return self.said((*of_scene, *limitations("model", skin), *unstated))

@@ -89,6 +89,18 @@ def _unstated_slope(impact: Impact) -> str:
     return SLOPE.format(math.degrees(impact.angle), beside)
 
 
+def assumed_part(mesh: OwnMesh | None) -> str:
+    """Return that a mesh counts as a part of a body though nothing says so; nothing where it does not."""
+    part = mesh.body().assumed if mesh is not None else ""
+    if not part:
+        return ""
+    return (
+        f"The mesh is taken as a {part} of the body, as it lies on one side of a plane of symmetry and "
+        f'projectile.mesh_symmetry is not stated. State mesh_symmetry = "{part}", or "whole" if the file '
+        "holds all of the body."
+    )
+
+
 def _masses(mesh: OwnMesh) -> list[str]:
     """Return which masses without volume of the file of a mesh the body lacks."""
     told = [mesh.masses(own)[1] for own in (True, False)]

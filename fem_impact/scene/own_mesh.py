@@ -257,13 +257,17 @@ def _numbered(
     """
     import numpy as np
 
-    (key, what), known = where, {name.upper(): name for name in sets}
+    import meshes
+
+    key, what = where
     region = np.zeros(count, dtype=np.int64)
     for number, name in enumerate(names, 1):
-        if name.upper() not in known:
-            remedy = f"It has {', '.join(sorted(sets)[:12]) or 'none'}."
+        meant = meshes.sets_named(name, sets)
+        if len(meant) != 1:
+            one_of = f"Name one of {' and '.join(meant)}." if meant else ""
+            remedy = one_of or f"It has {', '.join(sorted(sets)[:12]) or 'none'}."
             raise SceneError(f"is no set of {what} of the mesh.", key=f"{key}.{name}", remedy=remedy)
-        stored = known[name.upper()]
+        stored = meant[0]
         if stored in mesh.body().lopsided:
             problem = "lies on one side of the plane of symmetry y = 0 more than on the other."
             remedy = "The model holds half of a symmetric body: name a set that is symmetric."

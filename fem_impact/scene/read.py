@@ -247,6 +247,7 @@ def _of_mesh(table: tables.Table, own: dict[str, Any]) -> ProjectileSpec:
     regions = tuple(Region(name, _region(stated[name], name)) for name in stated)
     faces = tables.within(table, "mesh_surfaces", _faces) if "mesh_surfaces" in table else ()
     material = tables.within(table, "material", library.read_material)
+    own_mesh.face_regions(mesh, tuple(face.name for face in faces))  # refused here, with file and key
     return ProjectileSpec.meshed(mesh, material, own["segments"], regions, faces)
 
 

@@ -18,15 +18,25 @@ WARNED = "what meshio warns of: "
 VALUES = 50  # of a whole number of cells, up to which it counts as a mark of regions
 
 
+def with_all_kinds() -> Any:
+    """Return meshio with the dimension of kinds of cells that it reads, but whose dimension it lacks."""
+    import meshio
+    from meshio._mesh import topological_dimension
+
+    for kind in NODES:
+        topological_dimension.setdefault(kind, 3)
+    return meshio
+
+
 def parsed(path: Path, kind: str) -> tuple[Any, str]:
     """Return meshio's mesh of a file, and what it warns of; not by `meshio.read`, which ends the process.
 
     It writes what it skips of a file to the terminal.
     """
-    import meshio
-
     with redirect_stdout(StringIO()) as out, redirect_stderr(out):
-        return getattr(meshio, kind.removesuffix("-xml")).read(path), " ".join(out.getvalue().split())
+        return getattr(with_all_kinds(), kind.removesuffix("-xml")).read(path), " ".join(
+            out.getvalue().split()
+        )
 
 
 def by_meshio(path: Path, kinds: list[str]) -> StoredMesh:

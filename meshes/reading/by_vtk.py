@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from meshes.common import MeshError
-from meshes.reading.by_meshio import WARNED, as_stored, by_meshio
+from meshes.reading.by_meshio import WARNED, as_stored, by_meshio, with_all_kinds
 from meshes.reading.stored import StoredMesh
 
 SURFACES = (".stl", ".obj", ".ply")
@@ -23,6 +23,7 @@ def by_vtk(path: Path) -> StoredMesh:
     """
     import pyvista
 
+    with_all_kinds()
     with pyvista.vtk_verbosity("off"):  # what is wrong with the cells is told by what follows
         found = pyvista.read(path)
         if isinstance(found, pyvista.MultiBlock):

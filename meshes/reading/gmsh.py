@@ -99,10 +99,11 @@ def _cells_2(lines: list[str], first_version: bool) -> Iterator[tuple[int, list[
     for line in lines[1 : 1 + int(lines[0])]:
         row = [int(part) for part in line.split()]
         if first_version:  # number, type, physical, elementary, count, nodes
-            yield row[1], row[5:], row[3], [row[2]]
+            yield row[1], row[5:], row[3], [abs(row[2])]
         else:
             tags = row[3 : 3 + row[2]]
-            yield row[1], row[3 + row[2] :], (*tags, 0, 0)[1], tags[:1]
+            # a group of a surface that is turned round has a negative number
+            yield row[1], row[3 + row[2] :], (*tags, 0, 0)[1], [abs(tag) for tag in tags[:1]]
 
 
 def _nodes_4(lines: list[str], version: str) -> Iterator[tuple[int, list[float]]]:

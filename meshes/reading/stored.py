@@ -224,6 +224,12 @@ def part_names(part: int | str, title: str) -> list[str]:
     return [f"PART {part}", title] if title else [f"PART {part}"]
 
 
+def sets_named(name: str, known: Iterable[str]) -> list[str]:
+    """Return the known sets that a name may mean: the one of just this name, else all but for case."""
+    alike = sorted(one for one in known if one.upper() == name.upper())
+    return [name] if name in alike else alike
+
+
 def counted(count: int, what: str) -> str:
     """Return "1 cell of type S4R" or "3 cells of type S4R": the first word is the one that is counted."""
     first, _, rest = what.partition(" ")

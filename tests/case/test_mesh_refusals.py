@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from time import process_time
 
 import pytest
 
+from fem_impact.answers.simulate import refused_by
 from fem_impact.case.case import Case
 from fem_impact.case.cells import body_cell
 from fem_impact.case.mesh import _require_mesh
@@ -70,8 +72,13 @@ def test_a_wall_that_is_thin_beside_its_cells_is_refused_with_cells_that_work():
     assert len(mesh(scene(thin, across=across)).cells) > 100
 
 
-def test_the_reduced_model_needs_no_mesh():
-    assert Case.of(scene(CAPPED), "modal").fidelity == "modal"
+def test_the_reduced_model_needs_a_mesh_for_its_modes_alone():
+    """`check` names the fidelities that take a scene: it named modal, whose run refused the shape."""
+    with pytest.raises(SceneError, match="cannot be meshed"):
+        Case.of(scene(CAPPED), "modal")
+    still = replace(scene(CAPPED), effects=("auto", "-vibration"))
+    assert Case.of(still, "modal").fidelity == "modal"
+    assert refused_by(scene(CAPPED), "modal") and not refused_by(scene(CAPPED), "rigid")
 
 
 POINTED = {"material": "brass", "profile": [["0 mm", "0 mm"], ["20 mm", "6 mm"], ["100 mm", "6 mm"]]}

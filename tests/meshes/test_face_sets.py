@@ -365,6 +365,17 @@ def test_faces_of_cells_that_are_cut_keep_their_names(tmp_path):
         assert_bottom_and_side(read_own(tmp_path / "bar.inp", 1e-3, Stated("whole")), moved=moved)
 
 
+@pytest.mark.parametrize(("ending", "nodes", "size"), [(".k", "NODE SET 5", 360.0), (".cdb", "BOTTOM", 72.0)])
+def test_tetrahedra_written_as_hexahedra_are_cut_and_keep_their_faces(tmp_path, ending, nodes, size):
+    """LS-DYNA and Ansys write all solids with eight nodes; a set of nodes lost faces of such cells."""
+    points, cells = bar(counts=(2, 3, 5))
+    tetrahedra = cells[:, TETRAHEDRA].reshape(-1, 4)
+    (tmp_path / f"b{ending}").write_text(TEXTS[ending][0](points, tetrahedra, *quads_of(points, cells)))
+    body = read_own(tmp_path / f"b{ending}", 1e-3, Stated("whole"))
+    assert any("tetrahedra lie across the plane y = 0 and are cut there" in one for one in body.told)
+    assert area(body, nodes)[0] == pytest.approx(size, rel=1e-9)
+
+
 def test_a_set_on_one_side_of_the_plane_alone_is_known_as_lopsided(tmp_path):
     points, cells = bar()
     upper = np.flatnonzero(points[cells][:, :, 1].mean(axis=1) > 0) + 1

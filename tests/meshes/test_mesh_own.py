@@ -79,6 +79,19 @@ def stacked():
     return np.vstack([points, points + np.array([0, 0, 3])]), np.vstack([cells, cells + len(points)])
 
 
+def cracked(width):
+    """A bar whose upper half has nodes of its own, ``width`` edges higher, on a layer but at its rim."""
+    points, cells = taper(end=1.0)
+    inside = np.flatnonzero((points[:, 2] == 30e-3) & (np.abs(points[:, 0]) < 5e-3))
+    new = np.arange(len(points))
+    new[inside] = len(points) + np.arange(len(inside))
+    upper = points[cells][:, :, 2].mean(axis=1) > 30e-3
+    return (
+        np.vstack([points, points[inside] + [0.0, 0.0, width * 3e-3]]),
+        np.where(upper[:, None], new[cells], cells),
+    )
+
+
 def hanging():
     points, cells = box(1, 1, 1, (0, 0, 0), (1, 1, 1))
     more, fine = box(2, 2, 2, (0, 0, 1), (1, 1, 2))
@@ -109,6 +122,7 @@ REFUSED = {
     ),
     "two bodies": (lambda: doubled([0.0, 0.0, 0.1]), r"is in 2 parts .* \(of 80, 80 cells\)"),
     "nodes not merged": (lambda: stacked(), r"has 25 pairs of nodes in one place"),
+    "a crack": (lambda: cracked(1e-4), r"has 9 pairs of nodes in one place, up to 0.0003 mm apart"),
     "hanging nodes": (hanging, "in the middle of an edge or face of another cell"),
     "edge to edge": (edge_to_edge, "not closed: .* 4 outer faces meet"),
     "along x": (

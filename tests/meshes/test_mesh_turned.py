@@ -73,6 +73,19 @@ def test_the_thinnest_wall_may_be_a_quotient_of_stated_radii():
         bored_section(16, 0.951)
 
 
+@pytest.mark.parametrize(("outer", "z"), [([10.0, 10.0, 6.01], 80), ([10.0, 6.01, 10.0], 40)])
+def test_a_wall_that_grows_thin_behind_the_tip_is_refused(outer, z):
+    """The front alone was looked at: a tube of 40 % wall at the tip could end in 0.2 %."""
+    line = np.array([[0.0, 0.0], [outer[0], 0.0], [outer[1], 40.0], [outer[2], 80.0]]) * 1e-3
+    bore = np.array([[6.0, 0.0], [6.0, 80.0]]) * 1e-3
+    with pytest.raises(
+        meshes.MeshError, match=rf"a wall of 0\.00166 of the outer radius.* at z = 0\.0{z // 10} m"
+    ):
+        meshes.turned(line, 8, bore=bore)
+    line[:, 0] = np.maximum(line[:, 0], [0.0, 6.4e-3, 6.4e-3, 6.4e-3])
+    assert len(meshes.turned(line, 8, bore=bore).mesh.cells) > 100
+
+
 def test_a_refined_tip_lies_on_the_exact_surface():
     line = SHAPES["sphere-cone"]
     place = np.array([3e-3 * np.sin(0.7), 0.0, 3e-3 * (1 - np.cos(0.7))])

@@ -10,7 +10,10 @@ from own_bodies import taper
 
 import meshes
 from meshes import MeshError, own_body, read_own
+from meshes.fallen import as_they_are
 from meshes.hexahedra import as_hexahedra
+from meshes.reading.read import stored_mesh
+from meshes.reading.stored import StoredMesh
 from meshes.reading.text import included
 
 TETRAHEDRA = [[0, 1, 2, 6], [0, 2, 3, 6], [0, 3, 7, 6], [0, 7, 4, 6], [0, 4, 5, 6], [0, 5, 1, 6]]
@@ -207,6 +210,25 @@ def test_a_mesh_of_calculix_is_known_by_its_content(tmp_path):
     assert volume_of(tmp_path / "all.msh") == pytest.approx(8640.0)
 
 
+def test_a_name_means_the_set_of_just_its_letters_or_the_only_one_alike(tmp_path):
+    """Gmsh tells CORE from Core; a group that is turned round has a negative number in version 2."""
+    points, cells = square()
+    blocks = [("hexahedron", cells)]
+    marks = {"gmsh:physical": [np.where(points[cells][:, :, 2].mean(axis=1) < 24.0, -1, 2)]}
+    marks["gmsh:geometrical"] = [np.ones(len(cells), int)]
+    names = {"CORE": np.array([1, 3]), "Core": np.array([2, 3])}
+    mesh = meshio.Mesh(points, blocks, cell_data=marks, field_data=names)
+    meshio.write(tmp_path / "c.msh", mesh, file_format="gmsh22", binary=False)
+    stored = stored_mesh(tmp_path / "c.msh")
+    sizes = {name: len(of) for name, of in stored.sets.items()}
+    assert (sizes["CORE"], sizes["Core"]) == (8, 12)
+    with pytest.raises(MeshError, match="has no set of cells 'core', but CORE and Core: name one of them"):
+        read_own(tmp_path / "c.msh", 1e-3, meshes.Stated("whole", sets=("core",)))
+    for name, count in (("CORE", 8), ("Core", 12)):
+        chosen = read_own(tmp_path / "c.msh", 1e-3, meshes.Stated("whole", "-z", sets=(name,)))
+        assert 2e9 * meshes.volume(chosen.half) == pytest.approx(432.0 * count)
+
+
 def test_the_first_gmsh_files_of_version_2_name_groups_without_a_dimension(tmp_path):
     points, cells = square()
     lines = [
@@ -299,6 +321,26 @@ def test_middles_of_edges_shape_the_body(tmp_path, ending):
     body = read_own(path, 1e-3, meshes.Stated("half"))
     assert len(body.half.cells) == 8
     # the facets between 12 mm and 14 mm: the mean width is 13 mm
+    assert 2e9 * meshes.volume(body.half) == pytest.approx(13.0 * 12.0 * 60.0, rel=1e-9)
+
+
+@pytest.mark.parametrize("ending", [".vtu", ".vtk"])
+def test_wedges_with_middles_of_edges_are_read_from_vtk(tmp_path, ending):
+    """As above; meshio reads such wedges, but lacks their dimension."""
+    import pyvista
+
+    points, cells = taper(end=1.0, cells=(1, 1, 1))
+    edges = [(0, 1), (1, 2), (2, 0), (3, 4), (4, 5), (5, 3), (0, 3), (1, 4), (2, 5)]
+    places, wedges = list(1e3 * points), []
+    for corners in cells[0][np.array(WEDGES)].tolist():
+        middles = [0.5 * (places[corners[a]] + places[corners[b]]) for a, b in edges]
+        scaled = [place * [7 / 6 if place[2] == 30.0 else 1.0, 1.0, 1.0] for place in middles]
+        wedges.append([*corners, *range(len(places), len(places) + 9)])
+        places += scaled
+    kind = pyvista.CellType.QUADRATIC_WEDGE
+    pyvista.UnstructuredGrid({kind: np.array(wedges)}, np.array(places)).save(tmp_path / f"w{ending}")
+    body = read_own(tmp_path / f"w{ending}", 1e-3, meshes.Stated("half"))
+    assert len(body.half.cells) == 12
     assert 2e9 * meshes.volume(body.half) == pytest.approx(13.0 * 12.0 * 60.0, rel=1e-9)
 
 
@@ -676,7 +718,8 @@ def test_a_wedge_given_as_a_hexahedron_of_20_nodes_keeps_the_middles_of_its_edge
     points = np.vstack([corners, middles])
     plain = as_hexahedra(points, (("wedge15", np.arange(15)[None]),))
     fallen = [0, 1, 2, 2, 3, 4, 5, 5, 6, 7, 2, 8, 9, 10, 5, 11, 12, 13, 14, 14]
-    found = as_hexahedra(points, (("hexahedron20", np.array([fallen])),))
+    stored = as_they_are(StoredMesh(points, (("hexahedron20", np.array([fallen])),)))
+    found = as_hexahedra(points, stored.blocks)
     places = [np.unique(one.points[one.cells].reshape(-1, 3).round(9), axis=0) for one in (found, plain)]
     assert places[0] == pytest.approx(places[1])
     assert (found.points[:, 0].min(), len(found.cells)) == (-0.3, 6)

@@ -69,7 +69,7 @@ def test_a_half_cut_in_another_plane_is_turned_to_y():
         other = np.stack([sign * points[:, 1], -sign * points[:, 0], points[:, 2]], axis=1)
         found = own_body(other, cells)
         assert same(found.half, own_body(points, cells).half)
-        assert "turned about z by 90 deg" in found.told[0]
+        assert "turned about its axis by 90 deg, its plane x = 0 to y = 0" in found.told[0]
 
 
 @pytest.mark.parametrize(
@@ -101,7 +101,7 @@ def test_what_is_stated_must_fit():
     with pytest.raises(MeshError, match=r'"eighth", which is cut in 3 planes .* on y = 0 and z = 0 alone'):
         own_body(*bar("half"), Stated(symmetry="eighth"))
     with pytest.raises(
-        MeshError, match=r"stated as mesh_symmetry = \"half\".* none of x = 0 and y = 0 alone"
+        MeshError, match=r"stated as mesh_symmetry = \"half\".* none of x = 0 and y = 0, with"
     ):
         own_body(bar("whole")[0] - [0, 0, 0.1], bar("whole")[1], Stated(symmetry="half"))
 
@@ -124,6 +124,40 @@ def test_planes_of_symmetry_may_lie_anywhere(tmp_path, part, planes):
     if part != "eighth":
         with pytest.raises(MeshError, match=r'where it was cut: mesh_symmetry = "y = 3 mm", for example'):
             meshes.read_own(tmp_path / "bar.vtu", 1.0, Stated(part))
+
+
+@pytest.mark.parametrize(
+    ("tip", "own", "stated", "told"),
+    [
+        (
+            None,
+            (0, 1, 2),
+            ((1, 2e-3),),
+            r'"y = 2 mm", but it has no flat face there.*"y = 0 mm", for example',
+        ),
+        ("-y", (1, 2, 0), None, r'lies beside x = 0 without a flat face.*"x = 3 mm", for example'),
+        (
+            "-y",
+            (1, 2, 0),
+            ((1, 3e-3),),
+            r'"y = 3 mm", but it has no flat face there.*"x = 3 mm", for example',
+        ),
+    ],
+)
+def test_refusals_tell_planes_as_they_lie_in_the_file(tmp_path, tip, own, stated, told):
+    """A half whose cut lies at y = 0, or at x = 3 mm of a file in which the tip points to -y."""
+    points, cells = box(4, 3, 8, (-6e-3, 0.0, 0.0), (6e-3, 5e-3, 60e-3))
+    points[:, :2] *= 1.0 - 5.0 * points[:, 2:]
+    decks.write(tmp_path / "bar.vtu", points[:, own] + [3e-3 if tip else 0.0, 0.0, 0.0], cells)
+    with pytest.raises(MeshError, match=told):
+        meshes.read_own(tmp_path / "bar.vtu", 1.0, Stated(tip=tip, planes=stated or ()))
+
+
+def test_the_plane_of_a_body_cut_across_its_axis_is_told_as_it_lies_in_the_file(tmp_path):
+    points, cells = box(4, 4, 8, (-6e-3, -5e-3, 0.0), (6e-3, 5e-3, 60e-3))
+    decks.write(tmp_path / "bar.vtu", points, cells)
+    told = meshes.read_own(tmp_path / "bar.vtu", 1.0, Stated(planes=((2, 0.0),))).told
+    assert told[0] == "its plane of symmetry is taken at y = 0"
 
 
 @pytest.mark.parametrize("tip", sorted(meshes.TIPS))

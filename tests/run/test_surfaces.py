@@ -107,7 +107,8 @@ def test_a_scene_with_faces_is_written_and_read_back(tmp_path):
     assert read_dict(to_dict(stated)) == stated
     assert stated.projectile.faces[0].surface.friction == 0.57
     with pytest.raises(
-        SceneError, match=r"mesh_surfaces\.HEEL: is no set of cells, faces or nodes of the mesh"
+        SceneError,
+        match=r"^scene: projectile\.mesh_surfaces\.HEEL: is no set of cells, faces or nodes of the mesh",
     ):
         Case.of(scene(tmp_path / "bar.inp", {"HEEL": GREASED}), "rigid")
     with pytest.raises(SceneError, match=r"mesh_surfaces\.FOOT\.state: is the state of the scene's surface"):

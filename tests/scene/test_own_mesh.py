@@ -3,6 +3,7 @@
 from dataclasses import replace
 from math import pi, sqrt
 
+import meshio
 import numpy as np
 import pytest
 from own_bodies import box, chamfered, taper, write
@@ -45,6 +46,33 @@ def stated(path, **projectile):
             "impact": {"angle": "30 deg", "v_n": "-1 m/s", "v_t": "0 m/s"},
         }
     )
+
+
+@pytest.mark.parametrize("fidelity", ["rigid", "modal", "solid"])
+def test_a_body_that_is_taken_as_a_half_unasked_is_a_limitation(scene, tmp_path, fidelity):
+    """A flat bar that stands on y = 0 may be a whole body, of half the mass."""
+    told = [one for one in Case(scene, fidelity).limitations if "is taken as a half of the body" in one.text]
+    assert [one.kind for one in told] == ["input"]
+    assert 'State mesh_symmetry = "half", or "whole"' in told[0].text
+    for symmetry in ("half", "whole"):
+        sure = stated(tmp_path / "bar.vtu", mesh_unit="mm", mesh_symmetry=symmetry)
+        assert "is taken as" not in " ".join(texts(Case(sure, fidelity).limitations))
+
+
+def test_sets_that_differ_in_case_are_told_apart(tmp_path):
+    points, cells = taper(end=1.0)
+    marks = np.where(points[cells][:, :, 2].mean(axis=1) > 30e-3, 1, 2)
+    mesh = meshio.Mesh(
+        points,
+        [("hexahedron", cells)],
+        cell_data={"gmsh:physical": [marks], "gmsh:geometrical": [marks]},
+        field_data={"CORE": np.array([1, 3]), "Core": np.array([2, 3])},
+    )
+    meshio.write(tmp_path / "bar.msh", mesh, file_format="gmsh22", binary=False)
+    with pytest.raises(SceneError, match=r"projectile\.mesh_materials\.core: .*Name one of CORE and Core"):
+        stated(tmp_path / "bar.msh", mesh_materials={"core": "lead"})
+    heavy = stated(tmp_path / "bar.msh", mesh_materials={"CORE": "lead"}).projectile.rigid_body
+    assert heavy.z_c > 33e-3 > stated(tmp_path / "bar.msh").projectile.rigid_body.z_c
 
 
 def test_a_mesh_is_shown_as_seen_from_the_scene(scene, tmp_path):

@@ -21,7 +21,7 @@ from fem_impact.evidence.hard_cases.study import (
     model_of,
 )
 from fem_impact.jobs.job import Failure
-from fem_impact.options import RunOptions
+from fem_impact.options import FIDELITIES, RunOptions
 from fem_impact.outcome.groups import texts
 from fem_impact.outcome.record import Outcome
 from fem_impact.scene.shipped import load, replace_all
