@@ -16,6 +16,7 @@ LEVEL = 0.05
 FOLLOWS = (
     ("V_n", {"e", "Omega"}),
     ("V_t", {"e", "mu", "Omega"}),
+    ("V_t", {"V_n", "mu"}),
     ("e_t", {"e", "mu", "Omega"}),
     ("e_t", {"V_t"}),
     ("E_ln_over_E_0", {"e"}),

@@ -47,6 +47,7 @@ WIDTHS = {"solid": COVERAGE, "modal": NormalDist().inv_cdf(0.5 + 0.5 * HELD)}
 KEYS = {q.measured: q.key.name for q in MEASURED if q.measured}
 """Keys of an outcome by the names of measured numbers."""
 FRICTION = "surface.friction"
+RESTING = {"barrier.v_n": "0 m/s", "barrier.v_t": "0 m/s", "impact.omega": "0 rad/s"}
 CORNERS = 256  # of the intervals, tried before any run
 Ends = tuple[Any, Any] | str
 Interval = tuple[str, float, float, str]
@@ -335,9 +336,12 @@ def _about(scene: Scene, key: str, text: str) -> Interval:
 
 
 def _own(scene: Scene, key: str) -> Any:
-    """Return the value that a scene states of a key, as it writes it; empty where it states none."""
+    """Return the value that a scene states of a key, as it writes it; empty where it states none.
+
+    A barrier that is not said to move stands still.
+    """
     value = value_at(to_dict(scene), key)
-    return "" if value is None else value
+    return RESTING.get(key, "") if value is None else value
 
 
 def left_out(scene: Scene, intervals: Sequence[Interval]) -> dict[str, str]:

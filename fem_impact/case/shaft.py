@@ -38,7 +38,7 @@ def shaft_flows(bodies: Bodies) -> str:
     return f"a shaft that would yield along its length (axial stress, estimated: {told})"
 
 
-UPRIGHT = 0.1  # sine of the angle up to which a strike stretches more than it bends
+UPRIGHT = 0.3  # sine of the angle up to which a strike stretches more than it bends
 BENT = 0.0496
 """Energy of the first free bending mode of a round rod over volume times sigma^2 / E, its highest stress."""
 

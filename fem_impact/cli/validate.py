@@ -99,7 +99,8 @@ def _better(found: Validation, fidelity: str, solid: tuple[str, str]) -> list[st
     holds = f"holds {100 * part:.0f} % of u_val squared, mean of the numbers"
     if name != "model":
         return wrapped(f"Measure better: {name}. It {holds}.")
-    refuted = any(one.in_error for one in found.comparisons) or (or_none(found.p) or 1.0) < LEVEL
+    together = not isinstance(found.p, Unknown) and found.p < LEVEL
+    refuted = together or any(one.in_error for one in found.comparisons)
     begin = "T" if refuted else "Little can be refuted: t"
     if fidelity == "modal":
         what = f"{begin}he error told of the reduced model {holds}."

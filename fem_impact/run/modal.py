@@ -67,8 +67,8 @@ def reduce(case: Case, result: ModalResult) -> Outcome:
     """Return the Outcome of a modal impact."""
     barrier, base = case.scene.barrier, (result.V_bn, result.V_bt)
     turns = barrier.inertia is not None
-    omitted, strange = common.flow_omitted(case), _too_light(case) or _unlike_layer(case) or _lossy(case)
-    strange = strange or bends_beyond(case.bodies, float(result.energies.max(initial=0.0)))
+    omitted, strange = common.flow_omitted(case), [_too_light(case), _unlike_layer(case), _lossy(case)]
+    strange.append(bends_beyond(case.bodies, float(result.energies.max(initial=0.0))))
     end = ImpactEnd(
         V_n=result.V_n,
         V_t=result.V_t,
@@ -101,15 +101,15 @@ def reduce(case: Case, result: ModalResult) -> Outcome:
             *_dent(case),
             LAYERED if case.scene.barrier.layers else "",
             omitted,
-            strange,
+            *strange,
             LAID if result.laid else "",
             LEVEL if turns else "",
             tilted if turned > TILT_TOLD else "",
         ),
     )
     said = outcome.validity
-    if omitted or strange:
-        return replace(outcome, validity=replace(said, model_band=Unknown(omitted or strange)))
+    if why := next(filter(None, (omitted, *strange)), ""):
+        return replace(outcome, validity=replace(said, model_band=Unknown(why)))
     place = place_of(case, outcome)
     halves = half_widths(place, outcome, case.contact.approach, common.part_of_last(case))
     waves = _waves(case, result)

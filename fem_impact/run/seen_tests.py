@@ -23,7 +23,7 @@ class SeenTests:
     Attributes
     ----------
     motion : relative to the barrier as it moves before and after the impact, m/s and rad/s
-    mass, k2 : kg, m2, of the body that a massive barrier would have met so
+    mass, k2 : kg, m2, of the equivalent body that strikes a massive barrier
     E_0, E_r : J, energy of the projectile before, and of its rigid motion after the impact, both as seen from
         the barrier before
     turns : whether the barrier turns, so that its velocity at the contact after the impact is not known

@@ -12,6 +12,7 @@ from fem_impact.errors import SceneError, UsageError, did_you_mean
 from fem_impact.scene import fields
 from fem_impact.scene.impact import FIRST, one_way, restated
 from fem_impact.scene.library import CHANGED, material, nearest_scene, own_name, shipped, stated
+from fem_impact.scene.material import JohnsonCookRate, Material, tested_at
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.read import read_dict, read_scene, read_tables, read_toml
 from fem_impact.scene.shapes import BY_LENGTH, NEEDS, REPLACED, SIZES, TIP
@@ -132,9 +133,11 @@ def _changed(scene: Scene, changes: Mapping[str, Any]) -> dict[str, Any]:
         remedy = "Keep one of the two."
         raise SceneError("is taken out again by another change of the same call.", key=undone, remedy=remedy)
     if any(_is_another_impact(scene, key, value) for key, value in changes.items()):
-        measured = data.pop("measured", "")
+        measured = "" if changes.get("measured") else data.pop("measured", "")
         if "title" not in changes:
             data["title"] = _title(data["title"], measured, changes)
+    for body, metal in scene.materials.items():
+        _follow_flow(data, f"{body}.material", metal, changes)
     bodies_changed = {key.partition(".")[0] for key in changes} & {"projectile", "barrier"}
     if bodies_changed and not changes.keys() & {"surface", *(f"surface.{key}" for key in PAIR)}:
         _follow_pair(data["surface"])
@@ -149,6 +152,17 @@ def _changed(scene: Scene, changes: Mapping[str, Any]) -> dict[str, Any]:
     if LENGTH & changes.keys() and "projectile.bore" not in changes:
         _open_at_tail(data["projectile"], scene.projectile)
     return data
+
+
+def _follow_flow(data: dict[str, Any], place: str, metal: Material, changes: Mapping[str, Any]) -> None:
+    """Let the rate of the tests of a metal that states none of its own follow its changed flow curve."""
+    rate, own = value_at(data, f"{place}.rate"), metal.rate
+    changed = (
+        any(key.startswith(f"{place}.flow") for key in changes) and f"{place}.rate.tested" not in changes
+    )
+    if changed and isinstance(rate, dict) and isinstance(own, JohnsonCookRate):
+        if own.tested == tested_at(metal.flow, own.reference):
+            rate.pop("tested", None)
 
 
 def _follow_pair(surface: dict[str, Any]) -> None:

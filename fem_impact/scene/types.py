@@ -20,7 +20,7 @@ from fem_impact.scene import fields
 from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.fields import Fields, Parameter
 from fem_impact.scene.impact import FIRST, WAYS, Following, Impact
-from fem_impact.scene.material import Flow, Material, Surface, TableFlow
+from fem_impact.scene.material import Flow, JohnsonCookFlow, JohnsonCookRate, Material, Surface, TableFlow
 from fem_impact.scene.own_mesh import OwnMesh
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.shapes import HEIGHT, RADIUS, NamedShape, Point, Profile, sizes_of
@@ -369,6 +369,9 @@ def material_table(material: Material) -> dict[str, Any]:
     law = {"law": material.law} if material.law != "tensile" else {}
     rate = material.rate
     rates = {"rate": {"law": rate.law, **_written(rate, fields.RATES[rate.law])}} if rate else {}
+    if isinstance(material.flow, JohnsonCookFlow) and isinstance(rate, JohnsonCookRate):
+        follows = ("tested",) if rate.tested == rate.reference else ()
+        rates["rate"] = {key: value for key, value in rates["rate"].items() if key not in follows}
     flow = {"flow": _flow(material.flow)} if material.flow else {}
     skin = material.skin
     skins = {"skin": {**_written(skin, fields.SKIN), "shape": skin.shape}} if skin else {}

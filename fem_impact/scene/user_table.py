@@ -164,15 +164,17 @@ def _lines(text: str, path: str | Path) -> list[Line]:
 
 
 def _with_points(lines: list[Line], path: str | Path) -> list[Line]:
-    """Return lines whose numbers with a decimal comma have a point.
+    """Return lines whose numbers with a decimal comma have a point; labels of tests may have one as well.
 
     Raises
     ------
     ResultError
         Others have a point: one of the two marks stands between thousands.
     """
+    labels = lines[0][1].index("test") if lines and "test" in lines[0][1] else -1
+    numbers = [(line, cell) for line, cells in lines for at, cell in enumerate(cells) if at != labels]
     comma, point = (
-        next((f"{cell} (line {line})" for line, cells in lines for cell in cells if kind.fullmatch(cell)), "")
+        next((f"{cell} (line {line})" for line, cell in numbers if kind.fullmatch(cell)), "")
         for kind in (DECIMAL, POINT)
     )
     if comma and point:

@@ -130,6 +130,15 @@ def test_johnson_and_cooks_curve_is_that_of_the_reference_rate():
     assert (stated.rate.tested, metal(**LAWS["perfect"], rate=rate).rate.tested) == (0.01, 0.002)
 
 
+def test_the_rate_of_the_tests_follows_a_flow_or_a_reference_that_is_changed():
+    """It was written out as if stated, and stayed .002 beside the curve of a textbook."""
+    flow = {f"projectile.material.flow.{key}": value for key, value in JC.items()}
+    scene = replace_all(load("t5b"), {"projectile.material": "steel-4340", **flow})
+    assert scene.projectile.material.rate.tested == scene.projectile.material.rate.reference == 1.0
+    later = replace_all(scene, {"projectile.material.rate.reference": "10 /s"})
+    assert later.projectile.material.rate.tested == 10.0
+
+
 def test_the_rate_of_the_tests_is_told_where_a_scene_states_none():
     def told(material):
         every = statement_of(Case.of(scene(COPPER | material), "rigid"))["defaults"]

@@ -24,7 +24,7 @@ from fem_impact.answers.verdict.levels import (
     finite_elements,
     with_budget,
 )
-from fem_impact.answers.verdict.limit_verdict import SOLIDS, LimitVerdict, bound_text, in_unit
+from fem_impact.answers.verdict.limit_verdict import SOLIDS, LimitVerdict, bound_text, number_text
 from fem_impact.answers.verdict.vibration import Answer
 from fem_impact.case.case import Case
 from fem_impact.case.limits import not_reduced
@@ -144,7 +144,7 @@ def _question(of: Criterion | str, limit: float | str) -> tuple[Criterion, float
         limit = parse_quantity(limit, criterion.dimension, "limit=")
     limit = parse_change(limit, "limit=")
     if not 0.0 < limit < inf:
-        raise SceneError("must lie above 0.", key="limit=", value=in_unit(criterion, limit))
+        raise SceneError("must lie above 0.", key="limit=", value=number_text(criterion, limit))
     return criterion, limit
 
 
@@ -205,7 +205,7 @@ def _by_solids(
     alike, whole = len({*limits.values()}) == 1, next(iter(limits.values()))
     for place, limit in limits.items():
         where = f" at place {len(solids) + 1} of {len(limits)}" if alike and len(limits) > 1 else ""
-        where = LEAST.format(in_unit(criterion, limit)) if limit != whole else where
+        where = LEAST.format(number_text(criterion, limit)) if limit != whole else where
         before = perf_counter() - begun
         left = max(budget_s - before, 1.0), workers
         try:

@@ -76,7 +76,7 @@ class LimitVerdict:
 
     def __repr__(self) -> str:
         told = "not known" if self.bound is None else f"{bound_text(self.criterion, self.bound)} by {self.by}"
-        limit = in_unit(self.criterion, self.limit)
+        limit = number_text(self.criterion, self.limit)
         return (
             f"LimitVerdict({self.scene.id!r}: {self.criterion.called} below {limit}: {self.answer}, {told})"
         )
@@ -93,7 +93,7 @@ class LimitVerdict:
             if self.bound.beyond:
                 return f"{lies}."
             digits = digits_apart(self.limit, self.bound.high, 3)
-            high = in_unit(self.criterion, self.bound.high, digits, upwards)
+            high = number_text(self.criterion, self.bound.high, digits, upwards)
             return f"{lies}; or a limit above {high}."
         if self.not_known:
             return f"an answer: {self.not_known}"
@@ -119,7 +119,7 @@ class LimitVerdict:
         return self.limit - (self.bound.low if self.bound.answer(self.limit) == "no" else self.bound.high)
 
 
-def in_unit(criterion: Criterion, number: float, digits: int = 3, write: Write = plain) -> str:
+def number_text(criterion: Criterion, number: float, digits: int = 3, write: Write = plain) -> str:
     """Return a number in the unit of its criterion, a temperature in degC, too."""
     celsius = f" = {write(number - CELSIUS, digits)} degC" if criterion.dimension == "temperature" else ""
     return f"{_apart(criterion, number, digits, write)}{celsius}"
@@ -132,13 +132,13 @@ def _apart(criterion: Criterion, number: float, digits: int = 3, write: Write = 
 
 def bound_text(criterion: Criterion, bound: Bound, where: str = "") -> str:
     """Return a number between its least and most, in the unit of its criterion, and where that is."""
-    value, low = in_unit(criterion, bound.value), in_unit(criterion, bound.low)
+    value, low = number_text(criterion, bound.value), number_text(criterion, bound.low)
     if bound.low == bound.ceiling:
         return f"at least {value} ({bound.beyond}){where}"
     if bound.beyond:
         more = " or more" if bound.value == bound.ceiling else ""
         return f"{low} or more, at the best estimate {value}{more} ({bound.beyond}){where}"
-    return f"{value} ({low} to {in_unit(criterion, bound.high)}){where}"
+    return f"{value} ({low} to {number_text(criterion, bound.high)}){where}"
 
 
 def limit_document(v: LimitVerdict, command: str) -> dict[str, Any]:
@@ -146,7 +146,7 @@ def limit_document(v: LimitVerdict, command: str) -> dict[str, Any]:
     of, bound = v.criterion, v.bound
     over = " and ".join(f"{key} from {ends}" for key, ends in v.intervals.items())
     where = f", {over}" if over else ""
-    question = f"Does {of.called} stay below {in_unit(of, v.limit)} in the first impact{where}?"
+    question = f"Does {of.called} stay below {number_text(of, v.limit)} in the first impact{where}?"
     box = [[question, f"{v.answer.upper()}."]]
     if bound is not None:
         at = ", ".join(f"{key} {value}" for key, value in v.worst.items())
@@ -162,7 +162,7 @@ def limit_document(v: LimitVerdict, command: str) -> dict[str, Any]:
     if bound is not None and bound.counts:
         box.append(["It counts", bound.counts])
     if v.reduced and over:
-        least, most = (in_unit(of, number) for number in v.reduced)
+        least, most = (number_text(of, number) for number in v.reduced)
         box.append([f"Of {v.places} places of the reduced model", f"the least has {least}, the most {most}."])
     lacking = [f"The reduced model does not answer everywhere: {v.not_known}"] if v.not_known else []
     lacking += [UNLIKE] if v.by == "the reduced model" and bound is not None and not bound.alike else []

@@ -166,7 +166,8 @@ def _picture(errors: Sequence[JointError]) -> Picture:
         Panel("Together", "D2", "", (together,), (Mark(limit, f"{100 * LEVEL:.0f} %"),), rows=sets),
     )
     caption = (
-        "Errors over their uncertainty, one by one (beyond 2: an error) and together (right of the line)."
+        "Errors over their uncertainty, one by one (beyond about 2: an error) and together (right of the "
+        "line)."
     )
     return Picture("joint", caption, panels, columns=2)
 

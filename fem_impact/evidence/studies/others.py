@@ -133,13 +133,14 @@ def _asked(points: dict[str, Any], request: Request) -> dict[str, Any]:
 class OthersSeries:
     """Comparisons of one series (k of them) and the covariance (k, k) of their errors.
 
-    ``dofs`` are the degrees of freedom of the scatter of each number's tests, infinite where that is known.
+    ``scatters`` are of each number what it is of, whose scatter it shares, and the degrees of freedom of
+    that, infinite where it is known.
     """
 
     name: str
     comparisons: tuple[Comparison, ...]
     C: Array
-    dofs: tuple[float, ...]
+    scatters: tuple[tuple[str, float], ...]
 
     @property
     def together(self) -> tuple[float, float]:
@@ -151,8 +152,11 @@ class OthersSeries:
         E = np.array([comparison.E for comparison in self.comparisons])
         k, distance = len(E), joint(E, self.C)[0]
         parts = np.diag(np.linalg.inv(self.C)) * [one.u_D**2 for one in self.comparisons]
-        dofs = np.array(self.dofs)
-        size = sum(float(parts[dofs == dof].sum()) ** 2 / dof for dof in {*self.dofs})
+        sums = {
+            of: sum(p for p, one in zip(parts, self.scatters, strict=True) if one == of)
+            for of in self.scatters
+        }
+        size = sum(float(total) ** 2 / dof for (_, dof), total in sums.items())
         return distance, float(f.sf(distance / k, k, k**2 / size) if size else chi2.sf(distance, k))
 
 
@@ -161,7 +165,7 @@ def compared_rods(tests: Sequence[Rod]) -> OthersSeries:
 
     The scatter of single tests is that about their own curve over rho v^2.
     """
-    lengths, comparisons, moved, dofs = {}, [], [], []
+    lengths, comparisons, moved, scatters = {}, [], [], []
     for name, column in (("final", 0), ("foot", 1)):
         scatter, dof = _scatter(tests, name)
         for at, rod in enumerate(tests):
@@ -178,10 +182,10 @@ def compared_rods(tests: Sequence[Rod]) -> OthersSeries:
             one = Comparison(rod.series, label, S, measured, u_num, abs(moves), scatter)
             comparisons.append(replace(one, dof=dof * (one.u_val / scatter) ** 4 if scatter else inf))
             moved.append(moves)
-            dofs.append(dof if scatter else inf)
+            scatters.append((part, dof if scatter else inf))
     alone = [comparison.u_num**2 + comparison.u_D**2 for comparison in comparisons]
     C = np.outer(moved, moved) + np.diag(alone)
-    return OthersSeries(tests[0].series, tuple(comparisons), C, tuple(dofs))
+    return OthersSeries(tests[0].series, tuple(comparisons), C, tuple(scatters))
 
 
 def _scatter(tests: Sequence[Rod], name: str) -> tuple[float, int]:
@@ -215,7 +219,7 @@ def compared_spheres(request: Request, results: Results) -> OthersSeries | None:
     if not comparisons:
         return None
     C = np.diag([comparison.u_val**2 for comparison in comparisons])
-    return OthersSeries(KHARAZ, tuple(comparisons), C, (inf,) * len(comparisons))
+    return OthersSeries(KHARAZ, tuple(comparisons), C, (("reading", inf),) * len(comparisons))
 
 
 def conclude(request: Request, results: Results) -> StudyReport:
@@ -271,5 +275,5 @@ def _picture(every_series: Sequence[OthersSeries]) -> Picture:
         series.name: [(at, comparison.E / comparison.u_val) for comparison in series.comparisons]
         for at, series in enumerate(every_series)
     }
-    caption = "Errors over their uncertainty; beyond 2 the model has one."
+    caption = "Errors over their uncertainty; beyond about 2, more where tests are few, the model has one."
     return Picture("others", caption, (error_panel("Errors", tuple(errors), errors),), columns=1)

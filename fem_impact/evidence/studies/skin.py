@@ -155,5 +155,7 @@ def _picture(by_set: Mapping[str, Mapping[str, joint.JointError]]) -> Picture:
             for inputs in (DEFAULT, *INPUTS)
         }
         panels.append(error_panel(name, tuple(by_set), errors))
-    caption = "Errors over their uncertainty with each of the inputs; beyond 2 a number shows an error alone."
+    caption = (
+        "Errors over their uncertainty with each of the inputs; beyond about 2 a number shows an error alone."
+    )
     return Picture("skin", caption, tuple(panels), columns=3)

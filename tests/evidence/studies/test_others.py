@@ -47,7 +47,10 @@ def test_the_scatter_of_two_tests_about_one_parameter_is_hardly_known():
     """Two feet of wilkins-guinan-1973 made p = 6e-17 of a distance that a scatter so badly known allows."""
     ones = tuple(Comparison("s", f"foot {at}", 1.0, 0.0, 0.0, 0.0, 0.1, dof=1.0) for at in range(2))
     badly, well = (
-        others.OthersSeries("s", ones, 0.01 * np.eye(2), (dof, dof)).together for dof in (1.0, np.inf)
+        others.OthersSeries("s", ones, 0.01 * np.eye(2), (("foot", dof),) * 2).together
+        for dof in (1.0, np.inf)
     )
     assert badly == pytest.approx((200.0, f.sf(100.0, 2, 1)))
+    apart = others.OthersSeries("s", ones, 0.01 * np.eye(2), (("foot", 3.0), ("length", 3.0))).together
+    assert apart[1] == pytest.approx(f.sf(100.0, 2, 6))  # two scatters, each known by three
     assert well == pytest.approx((200.0, chi2.sf(200.0, 2)))
