@@ -251,7 +251,7 @@ def solve(
     loses = (
         case.contact.rod_yields or case.contact.barrier_yields or case.contact.f or case.slots.contact_loss
     )
-    step = step if alone or loses else step / FINER
+    step = step if loses or case.scene.impact.most_strikes == 1 else step / FINER
     dt = step * min(case.estimate.duration / STEPS, FASTEST / fastest if fastest else inf)
     latest = case.max_time if case.scene.accuracy.max_time else LATER * case.max_time
     bounds = Bounds(dt, case.one_impact, latest)
