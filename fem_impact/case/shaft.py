@@ -130,8 +130,7 @@ def rings_through(bodies: Bodies) -> str:
     first that deforms its section, and a short body has no stretching mode below it.
     """
     contact, period = bodies.contact, bodies.stretching_period
-    flat = contact.body.face > 0 and contact.nearly_flat(bodies.estimate.depth)
-    if not flat or 2 * pi / period <= section_frequency(contact.rod, contact.body.diameter):
+    if not contact.all_may_touch or 2 * pi / period <= section_frequency(contact.rod, contact.body.diameter):
         return ""
     back = f"there and back: {period * 1e6:.3g} us"
     return f"waves through the thickness of a body that lands on its face ({back})"

@@ -128,8 +128,7 @@ def _with_edges(bodies: Bodies, omega: Array, sites: Sites) -> tuple[Array, Site
     may touch, has a law of its own.
     """
     pair = bodies.contact
-    flat = pair.lands_flat or (pair.body.face > 0 and pair.nearly_flat(pair.estimate.depth))
-    if flat or begins_to_yield(pair):
+    if pair.lands_flat or pair.all_may_touch or begins_to_yield(pair):
         return omega, sites
     metal, size, count = pair.rod, pair.estimate, len(sites.begin) - 1
     highest = min(section_frequency(metal, bodies.rod.diameter), AT_REST / size.duration)

@@ -246,6 +246,11 @@ class ContactPair:
         return float(x) * sin(self.angle) <= FLAT * depth
 
     @property
+    def all_may_touch(self) -> bool:
+        """Whether a face comes down so nearly flat that all of it may touch."""
+        return self.body.face > 0 and self.nearly_flat(self.estimate.depth)
+
+    @property
     def barrier_conforms(self) -> bool:
         """Whether the barrier yields under the whole contact, so that it takes the rod's shape."""
         flows = self.estimate.pressure >= LIMIT_PRESSURE * self.barrier.yield_stress
