@@ -1,4 +1,4 @@
-"""Gradients at the 2 x 2 x 2 Gauss points of the trilinear unit cell [-1, 1]^3 (weights 1)."""
+"""The 2 x 2 x 2 Gauss points of the trilinear unit cell [-1, 1]^3 (weights 1)."""
 
 import numpy as np
 
@@ -26,3 +26,8 @@ def jacobians(mesh: HexMesh) -> FloatArray:
 def jacobians_of(points: FloatArray, cells: IntArray) -> FloatArray:
     """(m, 8, 3, 3) dx_i / dxi_j, m, at the Gauss points of cells (m, 8) of nodes (n, 3), m."""
     return np.asarray(np.einsum("qaj,mai->mqij", GRADIENTS, points[cells], optimize=True))
+
+
+def gauss_points(points: FloatArray, cells: IntArray) -> tuple[FloatArray, FloatArray]:
+    """Volumes (m, 8), m3, that the Gauss points of cells stand for, and their places (m, 8, 3), m."""
+    return np.linalg.det(jacobians_of(points, cells)), np.einsum("qa,mai->mqi", SHAPES, points[cells])

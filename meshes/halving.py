@@ -27,7 +27,7 @@ def halved_layer(points: FloatArray, cells: IntArray) -> tuple[FloatArray, IntAr
     A cell across the plane has one face on its one side and the opposite one on its other side, and is cut
     between them; None where one has not.
     """
-    y, crossing = points[cells][:, :, 1], np.flatnonzero(across(points, cells, 0.0))
+    y, crossing = points[cells][:, :, 1], np.flatnonzero(across(points[:, 1], cells, 0.0))
     found = np.full(len(crossing), -1)
     for axis in range(3):
         low = CORNERS[:, axis] == 0
@@ -86,20 +86,13 @@ def halved_tetrahedra(
     return halves[0]
 
 
-def across(points: FloatArray, cells: IntArray, near: float) -> BoolArray:
-    """Return the mask (m,) of the cells that reach to both sides of y = 0 by more than `near`, m."""
-    y = points[cells][:, :, 1]
-    return np.asarray((y.min(axis=1) < -near) & (y.max(axis=1) > near))
+def across(away: FloatArray, cells: IntArray, near: float) -> BoolArray:
+    """Return the mask (m,) of the cells that reach to both sides of a plane by more than `near`, m.
 
-
-def _half(
-    points: FloatArray, cells: IntArray, near: float
-) -> tuple[FloatArray, dict[str, IntArray], dict[str, IntArray]]:
-    if across(points, cells, near).any():
-        return _upper(points, cells)
-    above = np.flatnonzero(points[cells][:, :, 1].max(axis=1) > near)
-    none = np.zeros((0, 6), np.int64)
-    return points, {"tetra": cells[above], "wedge": none}, {"tetra": above, "wedge": none[:, 0]}
+    ``away`` (n,), m, is how far the nodes lie from it.
+    """
+    ends = away[cells]
+    return np.asarray((ends.min(axis=1) < -near) & (ends.max(axis=1) > near))
 
 
 def straight(cells: IntArray) -> tuple[IntArray, int]:
@@ -116,10 +109,14 @@ def straight(cells: IntArray) -> tuple[IntArray, int]:
     return cells[:, EIGHT].reshape(-1, 4), 8
 
 
-def _upper(
-    points: FloatArray, cells: IntArray
+def _half(
+    points: FloatArray, cells: IntArray, near: float
 ) -> tuple[FloatArray, dict[str, IntArray], dict[str, IntArray]]:
     """Return nodes, cells above the plane, and the tetrahedron in which each lies."""
+    if not across(points[:, 1], cells, near).any():
+        uncut = np.flatnonzero(points[cells][:, :, 1].max(axis=1) > near)
+        none = np.zeros((0, 6), np.int64)
+        return points, {"tetra": cells[uncut], "wedge": none}, {"tetra": uncut, "wedge": none[:, 0]}
     places = _clear(points, cells)
     above = places[cells][:, :, 1] > 0.0
     count = above.sum(axis=1)
@@ -134,11 +131,7 @@ def _upper(
     order = np.argsort(~above, axis=1, kind="stable")  # the corners above the plane first
     a, b, c, d = np.take_along_axis(cells, order, axis=1).T
     one, two, three = (count == k for k in (1, 2, 3))
-    tips = (
-        np.stack([a, cut(a, b), cut(a, c), cut(a, d)], axis=1)[one]
-        if one.any()
-        else np.zeros((0, 4), np.int64)
-    )
+    tips = np.stack([a, cut(a, b), cut(a, c), cut(a, d)], axis=1)[one]
     beams = np.stack([a, cut(a, c), cut(a, d), b, cut(b, c), cut(b, d)], axis=1)[two]
     stumps = np.stack([a, b, c, cut(a, d), cut(b, d), cut(c, d)], axis=1)[three]
     numbers = np.arange(len(cells))

@@ -10,11 +10,9 @@ import numpy as np
 
 from meshes.common import BoolArray, FloatArray, IntArray, MeshError
 from meshes.gauss import jacobians_of
-from meshes.hexmesh import CORNERS, FACES
+from meshes.hexmesh import CORNERS, FACES, TURNED
 from meshes.reading.stored import counted
 from meshes.split import edge_keys
-
-TURNED = [4, 5, 6, 7, 0, 1, 2, 3]  # the corners of a hexahedron that is inside out, put right
 
 
 @dataclass(frozen=True, slots=True)

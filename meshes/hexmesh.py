@@ -25,6 +25,14 @@ FACES: IntArray = np.array(
     [[0, 4, 7, 3], [1, 2, 6, 5], [0, 1, 5, 4], [2, 3, 7, 6], [0, 3, 2, 1], [4, 5, 6, 7]], dtype=np.int64
 )
 
+#: (8, 3) corners reached from each corner along x, y and z.
+NEIGHBOURS: IntArray = (
+    ((CORNERS[:, None] ^ np.eye(3, dtype=np.int64))[:, :, None] == CORNERS).all(axis=-1).argmax(axis=-1)
+)
+
+#: Corners of a cell that is inside out, such as a mirror image, in the order in which it is not.
+TURNED = [4, 5, 6, 7, 0, 1, 2, 3]
+
 SKIN = 0
 SYMMETRY = 1
 OUTER = 2
@@ -101,6 +109,12 @@ def outer_faces(cells: IntArray) -> tuple[IntArray, IntArray]:
     return place // 6, place % 6
 
 
+def outer_quads(cells: IntArray) -> IntArray:
+    """(k, 4) nodes of the faces that only one cell has, as `FACES` turn."""
+    owner, local = outer_faces(cells)
+    return np.asarray(cells[owner[:, None], FACES[local]])
+
+
 def match_faces(mesh: HexMesh) -> npt.NDArray[np.int8]:
     """(m, 6) tag of every face of every cell, -1 inside."""
     keys = face_keys(mesh.cells[:, FACES].reshape(-1, 4))
@@ -140,8 +154,7 @@ def from_cells(points: FloatArray, cells: IntArray, tag: Callable[[FloatArray], 
     """
     if cells.min() < 0 or cells.max() >= len(points):
         raise MeshError(f"cells name node {cells.max()} but there are {len(points)}: check the numbering")
-    owner, local = outer_faces(cells)
-    quads = cells[owner[:, None], FACES[local]]
+    quads = outer_quads(cells)
     tags = np.asarray(tag(points[quads]), dtype=np.int8)
     tie = sp.identity(len(points), format="csr")
     return HexMesh(points, cells, np.zeros(len(cells), np.int8), sp.csr_matrix(tie), quads, tags)

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshes.common import FloatArray, IntArray, MeshError
-from meshes.gauss import SHAPES, jacobians_of
+from meshes.gauss import gauss_points
+from meshes.halving import across
 from meshes.symmetry import NEAR
 
 #: Where a tip points in a file: an axis of it, see `TIPS`, one of `FOUND`, or a direction.
@@ -26,8 +27,8 @@ class _Masses:
 
     @classmethod
     def of(cls, points: FloatArray, cells: IntArray) -> "_Masses":
-        weight = np.abs(np.linalg.det(jacobians_of(points, cells))).ravel()
-        place = np.einsum("qa,mai->mqi", SHAPES, points[cells]).reshape(-1, 3)
+        weight, place = gauss_points(points, cells)
+        weight, place = np.abs(weight).ravel(), place.reshape(-1, 3)  # cells may be inside out
         centre = weight @ place / weight.sum()
         return cls(weight, place - centre, centre)
 
@@ -96,29 +97,25 @@ def stood_up(
         If the direction is none, or the body has no axis of least inertia.
     """
     masses = _Masses.of(points, cells)
-    down = _direction(tip) if isinstance(tip, tuple) else _signed(masses.axis(), tip)
+    if isinstance(tip, tuple):
+        down, found = np.array(tip, dtype=np.float64), ""
+        length = float(np.linalg.norm(down))
+        if not (np.isfinite(length) and length > 0.0):
+            raise MeshError(f"cannot point along {list(tip)}: a direction is three numbers, not all zero.")
+        down = down / length
+    else:  # to falling z, or y or x where the axis is square to z; to rising of "+axis"
+        down, found = masses.axis(), ", the axis of least inertia"
+        last = [part for part in down if abs(part) > ON][-1]
+        down = down * (-np.sign(last) if tip == "-axis" else np.sign(last))
     # the axis of the file that is y, or x where the tip points along y
     turn = _turn(down, np.asarray(np.eye(3)[0 if abs(down[1]) > 1.0 - ON else 1]))
     if whole:
         turn = _turn(down, _normal(points, cells, masses, turn))
-    found = "" if isinstance(tip, tuple) else ", the axis of least inertia"
-    where = f"{_text(down)} of the file{found}"
-    told = f"its tip points along {where}; its plane of symmetry is square to {_text(turn[1])}"
+    told = (
+        f"its tip points along {_text(down)} of the file{found}; its plane of symmetry is square to "
+        f"{_text(turn[1])}"
+    )
     return turn, masses.centre if whole else np.zeros(3), told
-
-
-def _direction(tip: tuple[float, float, float]) -> FloatArray:
-    down = np.array(tip, dtype=np.float64)
-    length = float(np.linalg.norm(down))
-    if not (np.isfinite(length) and length > 0.0):
-        raise MeshError(f"cannot point along {list(tip)}: a direction is three numbers, not all zero.")
-    return np.asarray(down / length)
-
-
-def _signed(axis: FloatArray, tip: str) -> FloatArray:
-    """Return an axis pointing to falling z, or y or x where it is square to z; for "+axis" to rising."""
-    last = [part for part in axis if abs(part) > ON][-1]
-    return np.asarray(axis * (-np.sign(last) if tip == "-axis" else np.sign(last)))
 
 
 def _turn(down: FloatArray, normal: FloatArray) -> FloatArray:
@@ -138,13 +135,18 @@ def _normal(points: FloatArray, cells: IntArray, masses: _Masses, turn: FloatArr
     near = NEAR * float(np.ptp(used @ turn[:2].T, axis=0).max())
     own = masses.principal(turn[0], turn[1])
     few = [0.5 * np.pi, own, own + 0.5 * np.pi]  # from x to the normal; the first is y itself
-    angles = np.array([*few, *_ring(used @ turn.T, near)]) % np.pi
+    x, y, z = (used @ turn.T).T
+    radius, angle = np.hypot(x, y), np.arctan2(y, x)
+    outer = np.flatnonzero(radius > radius.max() - near)
+    first = outer[np.argmin(z[outer])]
+    ring = outer[np.abs(z[outer] - z[first]) < near]
+    angles = np.array([*few, *(0.5 * (angle[ring] + angle[first]) + 0.5 * np.pi)]) % np.pi
     angles = angles[np.argsort(np.abs(angles - 0.5 * np.pi), kind="stable")]
     distinct = angles[np.append(True, np.abs(np.diff(angles)) > ON)]
     mirrored = [one for one in distinct if _is_mirrored(used, _at(turn, one), near)]
     if mirrored:
-        across = [_across(points - masses.centre, cells, _at(turn, one), near) for one in mirrored]
-        return _at(turn, mirrored[int(np.argmin(across))])
+        away = [(points - masses.centre) @ _at(turn, one) for one in mirrored]
+        return _at(turn, mirrored[int(np.argmin([across(one, cells, near).sum() for one in away]))])
     odd = [masses.odd(_at(turn, one), -turn[2]) for one in few]
     return _at(turn, few[0] if odd[0] < ODD else few[int(np.argmin(odd))])
 
@@ -154,27 +156,12 @@ def _at(turn: FloatArray, angle: float) -> FloatArray:
     return np.asarray(np.cos(angle) * turn[0] + np.sin(angle) * turn[1])
 
 
-def _ring(places: FloatArray, near: float) -> FloatArray:
-    """Return the angles, rad from x, of normals of the planes that may mirror the nodes farthest from z."""
-    radius, angle = np.hypot(places[:, 0], places[:, 1]), np.arctan2(places[:, 1], places[:, 0])
-    outer = np.flatnonzero(radius > radius.max() - near)
-    first = outer[np.argmin(places[outer, 2])]
-    level = outer[np.abs(places[outer, 2] - places[first, 2]) < near]
-    return np.asarray(0.5 * (angle[level] + angle[first]) + 0.5 * np.pi)
-
-
 def _is_mirrored(places: FloatArray, normal: FloatArray, near: float) -> bool:
     """Return whether the nodes (n, 3) about the centre are symmetric to the plane with a normal."""
     from scipy.spatial import cKDTree  # here: every command imports this room, few read such a mesh
 
     image = places - 2.0 * (places @ normal)[:, None] * normal
     return bool((cKDTree(places).query(image)[0] < 2.0 * near).all())
-
-
-def _across(places: FloatArray, cells: IntArray, normal: FloatArray, near: float) -> int:
-    """Return how many cells lie on both sides of the plane through the centre."""
-    away = (places @ normal)[cells]
-    return int(((away.min(axis=1) < -near) & (away.max(axis=1) > near)).sum())
 
 
 def _text(direction: FloatArray) -> str:

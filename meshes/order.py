@@ -3,7 +3,7 @@
 import numpy as np
 
 from meshes.common import FloatArray, IntArray
-from meshes.hexmesh import CORNERS
+from meshes.hexmesh import CORNERS, NEIGHBOURS
 
 QUANTUM = 1e-7  # of the largest extent: coordinates that differ by less count as equal
 BESIDE = 0.237  # of it, by which the steps are shifted, so that round numbers do not lie between two of them
@@ -30,12 +30,6 @@ def in_order(points: FloatArray, cells: IntArray) -> tuple[FloatArray, IntArray,
     turned = numbered.ravel()[corners]
     by_nodes = np.lexsort(turned.T[::-1])
     return points[order], turned[by_nodes], corners[by_nodes]
-
-
-# (8, 3) corners reached from each corner along x, y and z
-NEIGHBOURS: IntArray = (
-    ((CORNERS[:, None] ^ np.eye(3, dtype=np.int64))[:, :, None] == CORNERS).all(axis=-1).argmax(axis=-1)
-)
 
 
 def _turns() -> IntArray:

@@ -239,7 +239,7 @@ def _halved(
         if stated.symmetry is None:
             return points, blocks, numbers, ()
         turned = turned - np.array([0.0, 0.5 * (y.min() + y.max()), 0.0])
-    cut = int(across(turned, cells, near).sum())
+    cut = int(across(turned[:, 1], cells, near).sum())
     places, made, of = halved_tetrahedra(turned, cells, near)
     told = (
         f"{cut} of {len(cells)} tetrahedra lie across the plane y = 0 and are cut there"

@@ -6,7 +6,7 @@ import numpy as np
 
 from meshes.common import FloatArray, IntArray, MeshError
 from meshes.gauss import jacobians
-from meshes.hexmesh import CORNERS, EDGES, HexMesh
+from meshes.hexmesh import CORNERS, EDGES, NEIGHBOURS, HexMesh
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,9 +30,7 @@ class Quality:
     aspect: float
 
 
-# (8, 3) corners reached from each corner along x, y, z; (8,) 1 where these edges are right-handed, else -1
-_FLIPPED = CORNERS[:, None] ^ np.eye(3, dtype=np.int64)
-_NEIGHBOURS = (_FLIPPED[:, :, None] == CORNERS).all(axis=-1).argmax(axis=-1)
+# (8,) 1 where the edges from a corner along x, y, z are right-handed, else -1
 _SIGN = np.prod(1 - 2 * CORNERS, axis=1)
 
 
@@ -43,10 +41,9 @@ def scaled_jacobians(mesh: HexMesh) -> FloatArray:
 
 def corner_jacobians(x: FloatArray) -> FloatArray:
     """(m, 8) scaled Jacobians of cells with corners x (m, 8, 3)."""
-    arms = x[:, _NEIGHBOURS] - x[:, :, None, :]
-    with np.errstate(
-        invalid="ignore", divide="ignore"
-    ):  # not a number where two corners are one, which whoever asks refuses
+    arms = x[:, NEIGHBOURS] - x[:, :, None, :]
+    # not a number where two corners are one, which whoever asks refuses
+    with np.errstate(invalid="ignore", divide="ignore"):
         arms /= np.linalg.norm(arms, axis=-1, keepdims=True)
         return np.asarray(_SIGN * np.linalg.det(arms))
 
@@ -83,6 +80,11 @@ def quality(mesh: HexMesh) -> Quality:
     )
 
 
+def least_jacobians(mesh: HexMesh) -> FloatArray:
+    """(m,) least Jacobian at the corners, scaled, and the Gauss points of a cell; not above 0: it is folded."""
+    return np.minimum(scaled_jacobians(mesh).min(axis=1), np.linalg.det(jacobians(mesh)).min(axis=1))
+
+
 def require_positive(mesh: HexMesh) -> None:
     """Refuse a mesh with a cell that is folded at a corner or a Gauss point.
 
@@ -91,7 +93,7 @@ def require_positive(mesh: HexMesh) -> None:
     MeshError
         Naming the worst cell and its place.
     """
-    worst = np.minimum(scaled_jacobians(mesh).min(axis=1), np.linalg.det(jacobians(mesh)).min(axis=1))
+    worst = least_jacobians(mesh)
     cell = int(np.argmin(worst))
     if not worst[cell] > 0.0:
         where = ", ".join(f"{1e3 * x:.3g}" for x in mesh.points[mesh.cells[cell]].mean(axis=0))

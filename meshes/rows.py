@@ -6,7 +6,7 @@ import numpy as np
 
 from meshes.block import drawn_depths
 from meshes.common import BoolArray, FloatArray, IntArray
-from meshes.hexmesh import CORNERS, FACES, SKIN, HexMesh, face_keys, owners
+from meshes.hexmesh import CORNERS, FACES, NEIGHBOURS, SKIN, HexMesh, face_keys, owners
 from meshes.quality import scaled_jacobians
 
 DEEPEST = 8  # rows from the skin, over which those below a few thin ones are stretched
@@ -14,9 +14,6 @@ DEEPEST = 8  # rows from the skin, over which those below a few thin ones are st
 # would lean too far
 FADE, STEEP = 2, 3
 WORST, TRIES = 0.2, 8  # least scaled Jacobian of a cell that is drawn; how often its move is halved for that
-
-# (3, 8) corner of a cell at the other end of the edge along x, y and z
-_ACROSS = ((CORNERS ^ np.eye(3, dtype=np.int64)[:, None])[:, :, None] == CORNERS).all(axis=-1).argmax(axis=-1)
 
 
 def with_thin_rows(mesh: HexMesh, part: BoolArray, cell: float, rows: int) -> HexMesh:
@@ -93,7 +90,7 @@ def _lines(mesh: HexMesh, part: BoolArray, skin: BoolArray, fixed: BoolArray, de
         corner = (mesh.cells[cell][:, None, :] == front[:, :, None]).argmax(axis=2)
         side = CORNERS[corner]
         axis = (np.ptp(side, axis=1) == 0).argmax(axis=1)
-        front = mesh.cells[cell[:, None], _ACROSS[axis[:, None], corner]]
+        front = mesh.cells[cell[:, None], NEIGHBOURS[corner, axis[:, None]]]
         path[row, :, step] = front
         behind = next_to[cell, 2 * axis + 1 - side[np.arange(len(axis)), 0, axis]]
         row, front, cell = row[behind >= 0], front[behind >= 0], behind[behind >= 0]

@@ -4,9 +4,8 @@ import numpy as np
 import scipy.sparse as sp
 
 from meshes.common import MeshError
-from meshes.gauss import jacobians
 from meshes.hexmesh import EDGES, FACES, HexMesh, face_keys
-from meshes.quality import edge_lengths, scaled_jacobians
+from meshes.quality import edge_lengths, least_jacobians
 from meshes.symmetry import place_text
 
 # Of the shortest edge there: nodes so near to each other are one place. No mesher leaves so narrow a gap by
@@ -23,7 +22,7 @@ def require_sound(mesh: HexMesh, hint: str) -> None:
 
 
 def _require_unfolded(mesh: HexMesh) -> None:
-    worst = np.minimum(scaled_jacobians(mesh).min(axis=1), np.linalg.det(jacobians(mesh)).min(axis=1))
+    worst = least_jacobians(mesh)
     bad = np.flatnonzero(~(worst > 0.0))
     if not len(bad):
         return

@@ -6,7 +6,7 @@ import numpy as np
 
 from meshes.block import box_cells
 from meshes.common import FloatArray, IntArray, MeshError
-from meshes.hexmesh import FACES, HexMesh, from_cells, half_body_tags, outer_faces
+from meshes.hexmesh import HexMesh, from_cells, half_body_tags, outer_quads
 from meshes.quality import require_positive
 from meshes.refine import refine
 from meshes.section import core_and_rings
@@ -70,8 +70,7 @@ def _half_ball(core: int, shells: int) -> tuple[FloatArray, IntArray]:
     cube = np.stack(np.meshgrid(half[0], half[1], half[0], indexing="ij"), axis=-1).reshape(-1, 3)
     cells = box_cells(np.array([core, core // 2, core]))
     inside = CORE * ((1.0 - BULGE) * cube + BULGE * _ball(cube))
-    owner, local = outer_faces(cells)
-    quads = cells[owner[:, None], FACES[local]]
+    quads = outer_quads(cells)
     quads = quads[~(cube[quads][:, :, 1] == 0.0).all(axis=1)]
     rim, place = np.unique(quads, return_inverse=True)
     even = np.tan(0.25 * np.pi * cube[rim])  # nodes of the cube's surface at even angles from the centre

@@ -6,14 +6,13 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from meshes.common import BoolArray, FloatArray, IntArray, MeshError
-from meshes.gauss import SHAPES, jacobians_of
-from meshes.halving import halved_layer
-from meshes.hexmesh import FACES, outer_faces
+from meshes.gauss import gauss_points
+from meshes.halving import across, halved_layer
+from meshes.hexmesh import TURNED, outer_quads
 
 PARTS = ("whole", "half", "quarter", "eighth")  # by the number of planes of symmetry in which it was cut
 NEAR = 1e-5  # of the largest diameter: nodes so near to a plane of symmetry lie on it
 ORDER = (1, 0, 2)  # planes y = 0, x = 0, z = 0, as a part is taken to be cut
-TURNED = [4, 5, 6, 7, 0, 1, 2, 3]  # corners of a hexahedron whose mirror image has a positive volume
 ROUND = 0.1  # by how much second moments of a round or square section may differ
 RADIAL = 0.15  # sine between normal of a facet and radius, up to which a body counts as turned about its axis
 SLABS = 20  # over the length, in which sections are looked at
@@ -115,7 +114,10 @@ def half_of(part: Part, stated: str | None, cuts: tuple[tuple[int, float], ...] 
     elif 0 in planes:
         part = _doubled(part, 0)
     if 0 in planes or 1 in planes:
-        half = _on_positive_side(part)
+        half = part
+        if part.points[:, 1].max() <= 0.0:  # given on the other side of its plane
+            points = part.points * [1.0, -1.0, 1.0] + 0.0
+            half = replace(part, points=points, cells=part.cells[:, TURNED], origin=part.origin[:, TURNED])
     else:
         half = _cut(part if _crosses(part) else _centred(part))
     half = replace(half, assumed="" if stated else name)
@@ -142,8 +144,7 @@ def at_planes(
 def _snapped(part: Part) -> tuple[Part, set[int]]:
     """Put nodes near x, y or z = 0 there, where the body lies on one side of it; return these planes."""
     points, near, flat = part.points.copy(), part.near, set[int]()
-    owner, local = outer_faces(part.cells)
-    quads = part.cells[owner[:, None], FACES[local]]
+    quads = outer_quads(part.cells)
     for axis in range(3):
         at = points[:, axis]
         if at.min() < -near and at.max() > near and axis != 1:
@@ -175,8 +176,7 @@ def _stated(part: Part, flat: set[int], stated: str, cuts: tuple[tuple[int, floa
 
 def _example(part: Part) -> str:
     """Return the end of the body, along y or x, with the most of its flat faces as the plane of a cut."""
-    owner, local = outer_faces(part.cells)
-    corners = part.points[part.cells[owner[:, None], FACES[local]]]
+    corners = part.points[outer_quads(part.cells)]
     normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
     most, found = 0.0, (1, float(part.points[:, 1].min()))
     for axis in ORDER[:2]:
@@ -231,8 +231,8 @@ def _centred(part: Part) -> Part:
 
 def _gauss(part: Part) -> tuple[FloatArray, FloatArray]:
     """Return weights (k,), m3, and places (k, 3), m, of the Gauss points of all cells."""
-    weight = np.linalg.det(jacobians_of(part.points, part.cells)).ravel()
-    return weight, np.einsum("qa,mai->mqi", SHAPES, part.points[part.cells]).reshape(-1, 3)
+    weight, place = gauss_points(part.points, part.cells)
+    return weight.ravel(), place.reshape(-1, 3)
 
 
 def _is_turned(part: Part, planes: tuple[int, ...]) -> bool:
@@ -240,8 +240,7 @@ def _is_turned(part: Part, planes: tuple[int, ...]) -> bool:
     weight, place = _gauss(part)
     centre = (weight @ place / weight.sum())[:2]
     centre[[axis for axis in planes if axis < 2]] = 0.0
-    owner, local = outer_faces(part.cells)
-    corners = part.points[part.cells[owner[:, None], FACES[local]]]
+    corners = part.points[outer_quads(part.cells)]
     for axis in planes:
         corners = corners[~(corners[:, :, axis] == 0.0).all(axis=1)]
     normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
@@ -278,24 +277,15 @@ def _doubled(part: Part, axis: int) -> Part:
     )
 
 
-def _on_positive_side(part: Part) -> Part:
-    """Return a half on y >= 0, mirrored if it was given on the other side."""
-    if part.points[:, 1].max() > 0.0:
-        return part
-    points = part.points * [1.0, -1.0, 1.0] + 0.0
-    return replace(part, points=points, cells=part.cells[:, TURNED], origin=part.origin[:, TURNED])
-
-
 def _cut(part: Part) -> Part:
     """Return the half y >= 0 of a whole body."""
     points, near, plane = part.points, part.near, part.frame.plane(1)
-    y = points[part.cells][:, :, 1]
-    across = np.flatnonzero((y.min(axis=1) < 0.0) & (y.max(axis=1) > 0.0))
+    crossing = np.flatnonzero(across(points[:, 1], part.cells, 0.0))
     made = halved_layer(points, part.cells)
     if made is None:
-        where = place_text(part.frame.place(points[part.cells[across[0]]].mean(axis=0)))
+        where = place_text(part.frame.place(points[part.cells[crossing[0]]].mean(axis=0)))
         raise MeshError(
-            f"has {len(across)} cells across the plane {plane}, the first about {where}. The plane of "
+            f"has {len(crossing)} cells across the plane {plane}, the first about {where}. The plane of "
             "symmetry must lie between cells: give a mesh with faces there, or half of it."
         )
     # refuse a body whose nodes or cells on both sides of y = 0 are not mirror images of each other
@@ -313,7 +303,9 @@ def _cut(part: Part) -> Part:
     places, cells, kept = made
     used, new = np.unique(cells[kept], return_inverse=True)
     half = replace(part, points=places[used], cells=new.reshape(-1, 8), origin=part.origin[kept])
-    return half.tell(f"{len(across)} cells across the plane {plane} are cut there") if len(across) else half
+    if not len(crossing):
+        return half
+    return half.tell(f"{len(crossing)} cells across the plane {plane} are cut there")
 
 
 def size_text(part: Part, planes: tuple[int, ...] = ()) -> str:

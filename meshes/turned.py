@@ -11,7 +11,7 @@ import numpy as np
 
 from meshes.common import BoolArray, ClosedEndError, FloatArray, IntArray, MeshError
 from meshes.ends import ShapeEnd, end_of
-from meshes.hexmesh import HexMesh, from_cells, half_body_tags
+from meshes.hexmesh import TURNED, HexMesh, from_cells, half_body_tags
 from meshes.quality import require_positive, scaled_jacobians
 from meshes.refine import reach, refine
 from meshes.revolved import SAME, Revolved, revolved
@@ -91,7 +91,7 @@ def turned(
             more, below = nose_cells(body.half, end.grid, len(points), layer, end.hollow)
             if flipped:
                 more[:, 2] = body.length - more[:, 2]
-                below = below[:, [4, 5, 6, 7, 0, 1, 2, 3]]
+                below = below[:, TURNED]
             points = np.concatenate([points, more])
             parts.append((below, np.full(len(below), len(heights) if flipped else -1)))
     return _finished(body, points, parts, heights, exact, zones, buffer)
