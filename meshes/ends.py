@@ -98,23 +98,6 @@ def end_of(
     return shifted if shifted and builder.score(shifted)[0] >= 0.8 * score else plain
 
 
-def _cuts(line: FloatArray) -> list[int]:
-    """Vertices at which a nose grid may end: steep behind them, never shrinking before them."""
-    step = np.diff(line, axis=0)
-    slope = np.arctan2(step[:, 1], step[:, 0])
-    shrinks = slope > 0.5 * np.pi + 1e-9
-    end = int(np.argmax(shrinks)) if shrinks.any() else len(slope)
-    steep = 1 + np.flatnonzero(slope[1 : end + 1] >= STEEP)
-    steep = steep[line[steep, 1] <= LONGEST * line[steep, 0]]
-    if not len(steep):
-        return []
-    # spread over the turn of the surface and its length
-    turned = slope[np.minimum(steep, len(slope) - 1)] + line[steep, 1] / line[:, 0].max()
-    wanted = np.linspace(turned.min(), turned.max(), CANDIDATES)
-    picked = steep[np.abs(turned[:, None] - wanted).argmin(axis=0)]
-    return [int(cut) for cut in np.unique(np.concatenate([steep[[0, -1]], picked]))]
-
-
 @dataclass(frozen=True, slots=True)
 class _Builder:
     """Builds nose grids of one end."""
@@ -128,8 +111,21 @@ class _Builder:
 
     def best(self) -> tuple[float, int, ShapeEnd | None]:
         """Return the score of the best nose grid, the vertex of the line at which it ends, and the grid."""
-        cuts = [(cut, self.tried(cut)) for cut in _cuts(self.line)]
-        scored = [(self.score(end), cut, end) for cut, end in cuts if end is not None]
+        line, step = self.line, np.diff(self.line, axis=0)
+        slope = np.arctan2(step[:, 1], step[:, 0])
+        shrinks = slope > 0.5 * np.pi + 1e-9
+        last = int(np.argmax(shrinks)) if shrinks.any() else len(slope)
+        # where it may end: steep behind, never shrinking before
+        steep = 1 + np.flatnonzero(slope[1 : last + 1] >= STEEP)
+        steep = steep[line[steep, 1] <= LONGEST * line[steep, 0]]
+        if not len(steep):
+            return 0.0, 0, None
+        # spread over the turn of the surface and its length
+        turned = slope[np.minimum(steep, len(slope) - 1)] + line[steep, 1] / line[:, 0].max()
+        wanted = np.linspace(turned.min(), turned.max(), CANDIDATES)
+        picked = steep[np.abs(turned[:, None] - wanted).argmin(axis=0)]
+        tried = [(cut, self.tried(cut)) for cut in np.unique([steep[0], steep[-1], *picked]).tolist()]
+        scored = [(self.score(end), cut, end) for cut, end in tried if end is not None]
         score, cut, end = max(scored, key=lambda one: one[:2], default=((0.0, 0.0), 0, None))
         return score[0], cut, end
 
@@ -159,19 +155,15 @@ class _Builder:
             return 0.0, 0.0
         return float(self.bore[0, 0]), float(np.interp(start, self.bore[:, 1], self.bore[:, 0]))
 
-    def sections_begin(self, end: ShapeEnd) -> FloatArray:
-        """Return the nodes (n, 3), m, of the section at which an end meets the body."""
-        half, hole = self.half, self.hole(end.start)[1]
-        radius = end.top * half.radius
-        if self.bore is not None:
-            radius = hole + (end.top - hole) * (half.radius - half.bore) / (1.0 - half.bore)
-        return np.column_stack([radius[:, None] * half.direction, np.full(len(radius), end.start)])
-
     def score(self, end: ShapeEnd) -> tuple[float, float]:
         """Return how good the cells of an end are: their shape, up to `FAIR`, then their shortest edge, m."""
-        half = self.half
+        half, hole = self.half, self.hole(end.start)[1]
+        radius = end.top * half.radius  # of the section at which the end meets the body
+        if self.bore is not None:
+            radius = hole + (end.top - hole) * (half.radius - half.bore) / (1.0 - half.bore)
+        layer = np.column_stack([radius[:, None] * half.direction, np.full(len(radius), end.start)])
         nose, cells = nose_cells(half, end.grid, len(half.unit), np.arange(len(half.unit)), end.hollow)
-        corners = np.concatenate([self.sections_begin(end), nose])[cells]
+        corners = np.concatenate([layer, nose])[cells]
         worst = float(corner_jacobians(corners).min())
         edges = np.linalg.norm(corners[:, EDGES[:, 1]] - corners[:, EDGES[:, 0]], axis=-1)
         slim = float((edges.max(axis=1) / edges.min(axis=1)).max())

@@ -8,8 +8,6 @@ from meshes.common import IntArray
 from meshes.hexahedra import HEXAHEDRON, TETRA, WEDGE
 from meshes.reading.stored import NODES, StoredMesh
 
-Cells = dict[str, tuple[list[list[int]], list[int]]]  # by kind: nodes and numbers
-
 
 def as_they_are(stored: StoredMesh) -> StoredMesh:
     """Return a mesh whose hexahedra of four, five or six corners are tetrahedra, pyramids or wedges.
@@ -21,11 +19,17 @@ def as_they_are(stored: StoredMesh) -> StoredMesh:
         own = first + np.arange(len(cells))
         first += len(cells)
         if kind.startswith("hexahedron") and cells.shape[1:] == (NODES[kind],):
-            fallen, found = _fallen(cells, own)
-            whole = ~np.isin(own, fallen)
-            cells, own = cells[whole], own[whole]
+            distinct = 1 + (np.diff(np.sort(cells[:, :8], axis=1), axis=1) != 0).sum(axis=1)
+            whole, found = np.ones(len(cells), dtype=bool), dict[str, tuple[list[list[int]], list[int]]]()
+            for at in np.flatnonzero(np.isin(distinct, (4, 5, 6))).tolist():
+                if made := _made(cells[at].tolist()):
+                    rows, places = found.setdefault(made[0], ([], []))
+                    rows.append(made[1])
+                    places.append(at)
+                    whole[at] = False
             blocks += [(name, np.array(rows, np.int64)) for name, (rows, _) in found.items()]
-            numbers += [np.array(at, np.int64) for _, at in found.values()]
+            numbers += [own[places] for _, places in found.values()]
+            cells, own = cells[whole], own[whole]
         if len(own):
             blocks.append((kind, cells))
             numbers.append(own)
@@ -33,21 +37,6 @@ def as_they_are(stored: StoredMesh) -> StoredMesh:
     new = np.argsort(order)  # where each cell of the file is now
     sets = {name: np.sort(new[cells]) for name, cells in stored.sets.items()}
     return replace(stored, blocks=tuple(blocks), sets=sets)
-
-
-def _fallen(cells: IntArray, numbers: IntArray) -> tuple[list[int], Cells]:
-    """Return which of the hexahedra are cells of another kind, and these cells by kind."""
-    corners = np.sort(cells[:, :8], axis=1)
-    distinct = 1 + (np.diff(corners, axis=1) != 0).sum(axis=1)
-    fallen, found = list[int](), Cells()
-    for at in np.flatnonzero(np.isin(distinct, (4, 5, 6))).tolist():
-        if made := _made(cells[at].tolist()):
-            kind, nodes = made
-            rows, own = found.setdefault(kind, ([], []))
-            rows.append(nodes)
-            own.append(int(numbers[at]))
-            fallen.append(int(numbers[at]))
-    return fallen, found
 
 
 def _made(cell: list[int]) -> tuple[str, list[int]] | None:

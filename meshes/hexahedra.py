@@ -111,7 +111,7 @@ def as_hexahedra(points: FloatArray, blocks: tuple[tuple[str, IntArray], ...]) -
     groups = [_group(block, at) for at, block in zip(starts, blocks, strict=False)]
     told: list[str] = []
     if all(kind is HEXAHEDRON and cells.shape[1] == 8 for kind, cells, _ in groups):
-        made = [(kind, cells, numbers) for kind, cells, numbers in groups]
+        made = groups
     else:
         points, made = _split(points, groups)
         names = sorted({kind.name for kind, _, _ in groups})
@@ -184,19 +184,23 @@ def _split(
             given = own_middles >= 0
             middles[here[given]] = points[own_middles[given]]
     first_edge, first_face = len(points), len(points) + len(edges)
-    faces = _Faces(points, middles)
-    shares = [faces.add(kind, cells, here) for (kind, cells, _), here in zip(groups, at, strict=True)]
-    face_at, face_points = faces.placed()
+    faces = [
+        _faces(points, middles, kind, cells, here) for (kind, cells, _), here in zip(groups, at, strict=True)
+    ]
+    keys, places = (np.concatenate(part) for part in zip(*faces, strict=True))
+    _, first, face_at = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+    face_points = places[first]
+    of_group = np.split(first_face + face_at.reshape(-1), np.cumsum([len(keys) for keys, _ in faces])[:-1])
     first_cell = first_face + len(face_points)
     made, centres, begin = [], [], 0
-    for (kind, cells, numbers), here, (low, high) in zip(groups, at, shares, strict=True):
+    for (kind, cells, numbers), here, face in zip(groups, at, of_group, strict=True):
         corner, edge = MIDDLES[kind.name]
         centre = corner * points[cells[:, : kind.corners]].sum(axis=1)
         centre += np.einsum("e,mei->mi", np.array(edge), middles[here])
         centres.append(centre)
         number = first_cell + begin + np.arange(len(cells))
         begin += len(cells)
-        at_faces = first_face + face_at[low:high].reshape(len(cells), len(kind.faces))
+        at_faces = face.reshape(len(cells), len(kind.faces))
         parts = []
         for k in range(kind.corners):
             (x, y, z), (xy, yz, zx) = kind.around(k)
@@ -210,46 +214,27 @@ def _split(
     return np.concatenate([points, middles, face_points, *centres]), made
 
 
-class _Faces:
-    """The faces of all cells, those that two share once."""
+def _faces(
+    points: FloatArray, middles: FloatArray, kind: _Kind, cells: IntArray, edges: IntArray
+) -> tuple[IntArray, FloatArray]:
+    """Return the corners (k, 4), sorted, of all faces of cells, cell by cell, and their middles (k, 3).
 
-    def __init__(self, points: FloatArray, middles: FloatArray) -> None:
-        self.points, self.middles = points, middles
-        self.keys: list[IntArray] = []
-        self.places: list[FloatArray] = []
-        self.count = 0
-
-    def add(self, kind: _Kind, cells: IntArray, edges: IntArray) -> tuple[int, int]:
-        """Add the faces of cells with their ``edges``; return where they stand among all of them."""
-        keys, places = [], []
-        for face in kind.faces:
-            around = [
-                next(k for k, edge in enumerate(kind.edges) if set(edge) == {a, b})
-                for a, b in zip(face, (*face[1:], face[0]), strict=True)
-            ]
-            corner, edge = FACE_MIDDLES[len(face)]
-            nodes = np.sort(cells[:, list(face)], axis=1)
-            if nodes.shape[1] == 3:
-                nodes = np.concatenate([nodes, np.full((len(nodes), 1), -1)], axis=1)
-            keys.append(nodes)
-            place = corner * self.points[cells[:, list(face)]].sum(axis=1)
-            place += edge * self.middles[edges[:, around]].sum(axis=1)
-            places.append(self._nearest(place, cells, kind))
-        self.keys.append(np.stack(keys, axis=1).reshape(-1, 4))
-        self.places.append(np.stack(places, axis=1).reshape(-1, 3))
-        first, self.count = self.count, self.count + len(self.keys[-1])
-        return first, self.count
-
-    def _nearest(self, place: FloatArray, cells: IntArray, kind: _Kind) -> FloatArray:
-        """Return the file's own middle of each face, where a cell has nodes in its faces, else ``place``."""
-        own = cells[:, kind.corners + len(kind.edges) :]
-        if not own.shape[1]:
-            return place
-        given = self.points[own]
-        near = np.linalg.norm(given - place[:, None], axis=2).argmin(axis=1)
-        return np.asarray(given[np.arange(len(cells)), near])
-
-    def placed(self) -> tuple[IntArray, FloatArray]:
-        """Return for each face added the number of its middle, and the middles (k, 3)."""
-        _, first, at = np.unique(np.concatenate(self.keys), axis=0, return_index=True, return_inverse=True)
-        return at.reshape(-1), np.concatenate(self.places)[first]
+    The middle is the file's own where a cell has nodes in its faces, else that of corners and ``edges``.
+    """
+    keys, places = [], []
+    own = points[cells[:, kind.corners + len(kind.edges) :]]
+    for face in kind.faces:
+        around = [
+            next(k for k, edge in enumerate(kind.edges) if set(edge) == {a, b})
+            for a, b in zip(face, (*face[1:], face[0]), strict=True)
+        ]
+        corner, edge = FACE_MIDDLES[len(face)]
+        nodes = np.sort(cells[:, list(face)], axis=1)
+        keys.append(np.pad(nodes, ((0, 0), (0, 4 - len(face))), constant_values=-1))
+        place = corner * points[cells[:, list(face)]].sum(axis=1)
+        place += edge * middles[edges[:, around]].sum(axis=1)
+        if own.shape[1]:
+            near = np.linalg.norm(own - place[:, None], axis=2).argmin(axis=1)
+            place = own[np.arange(len(cells)), near]
+        places.append(place)
+    return np.stack(keys, axis=1).reshape(-1, 4), np.stack(places, axis=1).reshape(-1, 3)

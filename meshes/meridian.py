@@ -98,19 +98,15 @@ class Meridian:
         )
         if near is None:
             return middle
-        wanted = self.arc_at(near)
+        foot = closest_on(self.line, np.asarray(near, np.float64)[None])
+        # rho + z grows along the line, as the arc does
+        wanted = float(np.interp(foot.sum(), self.line.sum(axis=1), self.arc))
         if np.any(np.abs(self.extended(self.height + cell).corners() - wanted) < 0.5 * cell):
             return middle  # a row of nodes lies on an edge anyway
         beside = wanted + 0.5 * cell * (1.0 if wanted < middle + 0.25 * cell else -1.0)
         if self.at(np.array(beside))[0] < OFF_AXIS * self.radius:
             beside = wanted + cell * (np.ceil((middle - wanted) / cell - 0.5) + 0.5)
         return float(beside if self._turned(FIRST) <= beside <= self._turned(LAST) else middle)
-
-    def arc_at(self, point: FloatArray) -> float:
-        """Arc length of the place closest to a point (rho, z) in m, m."""
-        foot = closest_on(self.line, np.asarray(point, np.float64)[None])
-        # rho + z grows along the line, as the arc does
-        return float(np.interp(foot.sum(), self.line.sum(axis=1), self.arc))
 
     def _turned(self, angle: float) -> float:
         """Arc length at which the line has turned by an angle from the face, m."""

@@ -110,15 +110,18 @@ def read_own(path: str | Path, unit: float = 1.0, stated: Stated | None = None) 
             raise MeshError(f"is damaged: its cells of type {kind} have not {NODES[kind]} nodes each.")
         _require_numbered(stored.points, cells, -1 if NODES[kind] > 8 else 0)
     chosen = _chosen(stored, stated.sets)
-    points, blocks = stored.points * unit, _blocks(stored, chosen)
+    points = stored.points * unit
+    of_blocks = np.split(chosen, np.cumsum([len(cells) for _, cells in stored.blocks])[:-1])
+    taken = ((kind, cells[here]) for (kind, cells), here in zip(stored.blocks, of_blocks, strict=True))
+    blocks = tuple((kind, cells) for kind, cells in taken if len(cells))
     used = np.concatenate([cells.ravel() for _, cells in blocks])
     masses = loose_masses(stored.masses, points, used if stated.sets else None)
-    stood = tuple[str, ...]()
-    frame = Frame()
+    stood, frame = tuple[str, ...](), Frame()
     if stated.planes:
         points, shift = at_planes(points, used[used >= 0], stated.planes)
         stated = replace(stated, symmetry=PARTS[len(stated.planes)])
-        frame = frame if is_oblique(stated.tip) else Frame(shift=shift)
+        if not is_oblique(stated.tip):
+            frame = Frame(shift=shift)
     if is_oblique(stated.tip):
         whole = as_hexahedra(points, blocks)
         points, stated, stood = _stood(whole.points, whole.cells, points, stated)
@@ -133,7 +136,8 @@ def read_own(path: str | Path, unit: float = 1.0, stated: Stated | None = None) 
     body, origin = _own(part, stated, hint)
     files = file_faces(stored, chosen)
     of = parent[origin // 8]  # (m, 8), all corners of a cell are of one cell of the file
-    sets = {name: np.isin(of[:, 0], cells) for name, cells in stored.sets.items()}
+    every = {name: np.isin(of[:, 0], cells) for name, cells in stored.sets.items()}
+    sets = {name: here for name, here in every.items() if here.any()}
     faces = named_faces(body.half, made.points, made.cells.ravel()[origin], of, files)
     left_out = (*stored.surfaces.counts(~files.bounding), *stored.ignored)
     told = (
@@ -145,8 +149,7 @@ def read_own(path: str | Path, unit: float = 1.0, stated: Stated | None = None) 
     )
     dropped = np.setdiff1d(np.flatnonzero(chosen), of)
     uneven = lopsided(stored, files, _axes(made.points, stated.tip), dropped)
-    present = {name: here for name, here in sets.items() if here.any()}
-    return replace(body, sets=present, faces=faces, lopsided=uneven, masses=masses, told=told)
+    return replace(body, sets=sets, faces=faces, lopsided=uneven, masses=masses, told=told)
 
 
 def _corners(cells: IntArray) -> IntArray:
@@ -211,26 +214,16 @@ def _chosen(stored: StoredMesh, sets: tuple[str, ...]) -> BoolArray:
     return chosen
 
 
-def _blocks(stored: StoredMesh, chosen: BoolArray) -> tuple[tuple[str, IntArray], ...]:
-    blocks, first = [], 0
-    for kind, cells in stored.blocks:
-        here = chosen[first : first + len(cells)]
-        first += len(cells)
-        if here.any():
-            blocks.append((kind, cells[here]))
-    return tuple(blocks)
-
-
 def _halved(
     points: FloatArray, blocks: tuple[tuple[str, IntArray], ...], stated: Stated
 ) -> tuple[FloatArray, tuple[tuple[str, IntArray], ...], IntArray, tuple[str, ...]]:
     """Return tetrahedra of a whole body cut in y = 0, or all cells; where each lies; what is told."""
     numbers = np.arange(sum(len(cells) for _, cells in blocks))
+    if any(not kind.startswith("tetra") for kind, _ in blocks) or stated.symmetry not in (None, "whole"):
+        return points, blocks, numbers, ()
     turned = _axes(points, stated.tip)
     used = np.unique(np.concatenate([cells.ravel() for _, cells in blocks]))
     near = NEAR * float(np.ptp(turned[used][:, :2], axis=0).max())
-    if any(not kind.startswith("tetra") for kind, _ in blocks) or stated.symmetry not in (None, "whole"):
-        return points, blocks, numbers, ()
     parts = [straight(cells) for _, cells in blocks]
     cells = np.concatenate([part for part, _ in parts])
     own = np.repeat(numbers, np.concatenate([np.full(len(part) // times, times) for part, times in parts]))
@@ -269,7 +262,13 @@ def _own(part: Part, stated: Stated, hint: str) -> tuple[OwnBody, IntArray]:
     half = from_cells(part.points, part.cells, half_body_tags)
     if not (half.face_tag == SYMMETRY).any():
         raise MeshError("has no face on the plane y = 0, its plane of symmetry. Move it there.")
-    placed, corners = _placed(half)
+    # the tip at z = 0, the centre of the volume at x = 0
+    moments = cell_moments(half)
+    centre = float(moments.x.sum() / moments.volume.sum())
+    moved = abs(centre) > NEAR * float(np.ptp(half.points[:, 0]))
+    shift = np.array([centre if moved else 0.0, 0.0, half.points[:, 2].min()])
+    points, cells, corners = in_order(half.points - shift, half.cells)
+    placed = from_cells(points, cells, half_body_tags)
     doubled = size_text(part, (1,))
     told = (*part.told, *_leaning(placed), f"whole body: {doubled}")
     return OwnBody(placed, told=told, assumed=part.assumed), part.origin.ravel()[corners]
@@ -317,13 +316,3 @@ def _leaning(mesh: HexMesh) -> tuple[str, ...]:
         f"its axis of least inertia leans by {lean:.3g} deg from z towards x; of a whole body mesh_tip = "
         '"-axis" or "+axis" takes that axis',
     )
-
-
-def _placed(mesh: HexMesh) -> tuple[HexMesh, IntArray]:
-    """Return the half, its tip at z = 0, the centre of its volume at x = 0, and whence its corners."""
-    part = cell_moments(mesh)
-    centre = float(part.x.sum() / part.volume.sum())
-    moved = abs(centre) > NEAR * float(np.ptp(mesh.points[:, 0]))
-    shift = np.array([centre if moved else 0.0, 0.0, mesh.points[:, 2].min()])
-    points, cells, corners = in_order(mesh.points - shift, mesh.cells)
-    return from_cells(points, cells, half_body_tags), corners

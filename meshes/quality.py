@@ -81,8 +81,9 @@ def quality(mesh: HexMesh) -> Quality:
 
 
 def least_jacobians(mesh: HexMesh) -> FloatArray:
-    """(m,) least Jacobian at the corners, scaled, and the Gauss points of a cell; not above 0: it is folded."""
-    return np.minimum(scaled_jacobians(mesh).min(axis=1), np.linalg.det(jacobians(mesh)).min(axis=1))
+    """(m,) least Jacobian of a cell, at corners (scaled) and Gauss points; not above 0 where it is folded."""
+    at_corners, inside = scaled_jacobians(mesh), np.linalg.det(jacobians(mesh))
+    return np.asarray(np.minimum(at_corners.min(axis=1), inside.min(axis=1)))
 
 
 def require_positive(mesh: HexMesh) -> None:

@@ -75,7 +75,7 @@ def refine(
         hangs[nodes] = True
     forest.place_all(hangs)
     outer = forest.tags >= 0
-    tie = _tie_matrix(len(forest.points), hanging)
+    tie = _tie_matrix(hangs, hanging)
     faces, tags = forest.cells[:, FACES][outer], forest.tags[outer]
     region = None if mesh.region is None else mesh.region[forest.root]
     return HexMesh(forest.points, forest.cells, forest.level.astype(np.int8), tie, faces, tags, region)
@@ -132,7 +132,7 @@ def _hanging_births(forest: Forest) -> list[tuple[IntArray, IntArray]]:
     return hanging
 
 
-def _tie_matrix(count: int, hanging: list[tuple[IntArray, IntArray]]) -> sp.csr_matrix:
+def _tie_matrix(hangs: BoolArray, hanging: list[tuple[IntArray, IntArray]]) -> sp.csr_matrix:
     """Weights of every node in the free nodes: 1 of itself, or equal shares of the corners it is tied to.
 
     No corner is tied itself: it would lie on a cell two levels coarser than the finest cells around it,
@@ -140,15 +140,12 @@ def _tie_matrix(count: int, hanging: list[tuple[IntArray, IntArray]]) -> sp.csr_
 
     Returns
     -------
-    (count, count) csr_matrix, rows summing to 1
+    (n, n) csr_matrix, rows summing to 1
     """
     rows = [np.repeat(nodes, corners.shape[1]) for nodes, corners in hanging]
     cols = [corners.ravel() for _, corners in hanging]
     weights = [np.full(corners.size, 1.0 / corners.shape[1]) for _, corners in hanging]
-    free = np.ones(count, np.bool_)
-    for nodes, _ in hanging:
-        free[nodes] = False
-    own = np.flatnonzero(free)
+    own = np.flatnonzero(~hangs)
     entries = np.concatenate([np.ones(len(own)), *weights])
     places = (np.concatenate([own, *rows]), np.concatenate([own, *cols]))
-    return sp.csr_matrix(sp.coo_matrix((entries, places), shape=(count, count)))
+    return sp.csr_matrix(sp.coo_matrix((entries, places), shape=(len(hangs), len(hangs))))

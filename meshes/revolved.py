@@ -23,9 +23,13 @@ def without_roundings(line: FloatArray, pitch: float) -> FloatArray:
     """
     new = line
     for _ in range(2):  # the rim of the face at the tip, then that of the tail, both as it were a tip
-        new = _sharp(new, pitch)
-        new = np.stack([new[::-1, 0], new[-1, 1] - new[::-1, 1]], axis=1)
+        new = upside_down(_sharp(new, pitch))
     return line if len(new) == len(line) else new
+
+
+def upside_down(line: FloatArray) -> FloatArray:
+    """Return an outline (k, 2) (rho, z), m, from its tail on."""
+    return np.stack([line[::-1, 0], line[-1, 1] - line[::-1, 1]], axis=1)
 
 
 def _sharp(line: FloatArray, pitch: float) -> FloatArray:

@@ -190,22 +190,15 @@ def nose_cells(
     quads = half.quads[half.bore_quads if hollow else 0 :]
     layers = [_between(below, plug[0], quads[: half.plug_quads - (len(half.quads) - len(quads))])]
     layers += [_between(body[k], body[k + 1], quads) for k in range(rows)]
-    return _revolved(half, grid), np.concatenate(layers)
+    around, at_rim = half.direction[:inner], half.direction[inner:]
+    blocks = [_turn(row, around) for row in (grid.face, *grid.plug[:-1])]
+    blocks += [_turn(np.broadcast_to(place, (rim, 2)), at_rim) for place in grid.side[1:-1]]
+    return np.concatenate(blocks), np.concatenate(layers)
 
 
 def _between(low: IntArray, high: IntArray, quads: IntArray) -> IntArray:
     """(k, 8) cells between two layers of the same section."""
     return np.concatenate([low[quads], high[quads]], axis=1)
-
-
-def _revolved(half: Section, grid: NoseMesh) -> FloatArray:
-    """(n, 3) nodes of the nose without its last row: face, plug rows, side rows."""
-    inner = half.plug_nodes
-    around, rim = half.direction[:inner], half.direction[inner:]
-    blocks = [_turn(grid.face, around)]
-    blocks += [_turn(row, around) for row in grid.plug[:-1]]
-    blocks += [_turn(np.broadcast_to(place, (len(rim), 2)), rim) for place in grid.side[1:-1]]
-    return np.concatenate(blocks)
 
 
 def _turn(meridian: FloatArray, direction: FloatArray) -> FloatArray:

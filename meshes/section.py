@@ -90,7 +90,11 @@ def section(across: int) -> Section:
     """
     core, rings = core_and_rings(across)
     plug = max(PLUG, 1.0 - 2.0 / across)  # in fine sections the outer ring is one cell deep
-    unit = np.concatenate([_core(core), _rings(core, rings, plug)])
+    start, circle = _core(core), _circle(core)
+    rim = start[_rim(core)]
+    weight = np.arange(1, rings)[:, None, None] / (rings - 1)
+    rows = [*(rim + weight * (plug * circle - rim)), circle]  # the last two are circles
+    unit = np.concatenate([start, *rows])
     quads = _quads(core, rings)
     outer = 2 * core
     inner = 1.0 - (1.0 - CORE / plug) / (rings - 1)
@@ -160,15 +164,6 @@ def _rim(n: int) -> IntArray:
     top = half * row + np.arange(n, -1, -1)
     left = np.arange(half - 1, -1, -1) * row
     return np.concatenate([right, top, left])
-
-
-def _rings(n: int, rings: int, plug: float) -> FloatArray:
-    """(rings (2 n + 1), 2) ring nodes, each ring from +x to -x; the last two are circles."""
-    circle = _circle(n)
-    start = _core(n)[_rim(n)]
-    weight = np.arange(1, rings) / (rings - 1)
-    inner = start + weight[:, None, None] * (plug * circle - start)
-    return np.asarray(np.concatenate([inner, circle[None]]).reshape(-1, 2))
 
 
 def _quads(n: int, rings: int) -> IntArray:

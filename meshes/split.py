@@ -101,21 +101,6 @@ class Birth:
             return np.asarray(2.0 * mid - corner)
         return np.asarray(3.0 * points[self.centres].mean(axis=1) - 3.0 * mid + corner)
 
-    def flat(self, points: FloatArray) -> FloatArray:
-        """(k, 3) means of the corners."""
-        return np.asarray(points[self.corners].mean(axis=1))
-
-
-def place(
-    points: FloatArray, birth: Birth, hanging: BoolArray, on_skin: BoolArray, snap: Snap | None
-) -> None:
-    """Place new nodes: hanging ones on the coarse face, free ones of the skin on the exact surface."""
-    nodes = birth.nodes
-    points[nodes] = np.where(hanging[nodes, None], birth.flat(points), birth.middle(points))
-    moves = on_skin[nodes] & ~hanging[nodes]
-    if snap is not None and moves.any():
-        points[nodes[moves]] = snap(points[nodes[moves]], points[birth.corners[moves]])
-
 
 @dataclass(slots=True)
 class Forest:
@@ -142,12 +127,6 @@ class Forest:
         level, root = mesh.level.astype(np.int64), np.arange(len(mesh.cells))
         return cls(mesh.points.copy(), mesh.cells, level, tags, frozen, root, snap)
 
-    def on_skin(self) -> BoolArray:
-        """(n,) True for nodes of SKIN faces of the leaves."""
-        mask = np.zeros(len(self.points), np.bool_)
-        mask[self.cells[:, FACES][self.tags == SKIN]] = True
-        return mask
-
     def known_mids(self) -> IntArray:
         """(m, 18) nodes in the middle of each leaf's 12 edges and 6 faces, -1 where there is none yet."""
         mids = self.edges.find(edge_keys(self.cells[:, EDGES]))
@@ -161,8 +140,11 @@ class Forest:
             return
         parents = self.cells[marked]
         first_birth = len(self.births)
-        mids = self._edge_nodes(parents)
-        centres = self._face_nodes(parents, mids)
+        pairs, faces = parents[:, EDGES].reshape(-1, 2), parents[:, FACES].reshape(-1, 4)
+        none = np.empty((len(pairs), 0), np.int64)
+        mids = self._middles(self.edges, edge_keys(pairs), pairs, none).reshape(-1, 12)
+        around = mids[:, FACE_EDGES].reshape(-1, 4)
+        centres = self._middles(self.quads, face_keys(faces), faces, around).reshape(-1, 6)
         birth = Birth(len(self.points), parents, mids, centres)
         self._grow(birth)
         nodes = np.concatenate([parents, mids, centres, birth.nodes[:, None]], axis=1)  # (k, 27)
@@ -175,28 +157,25 @@ class Forest:
         self.place_all(np.zeros(len(self.points), np.bool_), first_birth)
 
     def place_all(self, hanging: BoolArray, first: int = 0) -> None:
-        """Place the nodes of all births from `first` on, in their order."""
-        skin = self.on_skin()
+        """Place the nodes of all births from `first` on, in their order.
+
+        Hanging ones lie on the coarse face, free ones of the skin on the exact surface.
+        """
+        points, skin = self.points, np.zeros(len(self.points), np.bool_)
+        skin[self.cells[:, FACES][self.tags == SKIN]] = True
         for birth in self.births[first:]:
-            place(self.points, birth, hanging, skin, self.snap)
+            nodes = birth.nodes
+            flat = points[birth.corners].mean(axis=1)
+            points[nodes] = np.where(hanging[nodes, None], flat, birth.middle(points))
+            moves = skin[nodes] & ~hanging[nodes]
+            if self.snap is not None and moves.any():
+                points[nodes[moves]] = self.snap(points[nodes[moves]], points[birth.corners[moves]])
 
-    def _edge_nodes(self, parents: IntArray) -> IntArray:
-        pairs = parents[:, EDGES].reshape(-1, 2)
-        keys = edge_keys(pairs)
-        start = len(self.points)
-        first = self.edges.add(keys, start)
-        none = np.empty((len(first), 0), np.int64)
-        self._grow(Birth(start, pairs[first], none, none))
-        return self.edges.find(keys).reshape(-1, 12)
-
-    def _face_nodes(self, parents: IntArray, mids: IntArray) -> IntArray:
-        faces = parents[:, FACES].reshape(-1, 4)
-        keys = face_keys(faces)
-        start = len(self.points)
-        first = self.quads.add(keys, start)
-        around = mids[:, FACE_EDGES].reshape(-1, 4)[first]
-        self._grow(Birth(start, faces[first], around, np.empty((len(first), 0), np.int64)))
-        return self.quads.find(keys).reshape(-1, 6)
+    def _middles(self, known: KeyMap, keys: IntArray, corners: IntArray, mids: IntArray) -> IntArray:
+        """(k,) nodes in the middle of edges or faces of those keys, made where they are not known."""
+        first = known.add(keys, len(self.points))
+        self._grow(Birth(len(self.points), corners[first], mids[first], np.empty((len(first), 0), np.int64)))
+        return known.find(keys)
 
     def _grow(self, birth: Birth) -> None:
         self.births.append(birth)

@@ -14,7 +14,7 @@ from meshes.ends import ShapeEnd, end_of
 from meshes.hexmesh import TURNED, HexMesh, from_cells, half_body_tags
 from meshes.quality import require_positive, scaled_jacobians
 from meshes.refine import reach, refine
-from meshes.revolved import SAME, Revolved, revolved
+from meshes.revolved import SAME, Revolved, revolved, upside_down
 from meshes.rod import RodMesh, nose_cells
 from meshes.shoulders import STEEPEST
 from meshes.surface import CORNER, TurnedSurface, closest_on
@@ -69,8 +69,7 @@ def turned(
     tip = None if body.is_stack else _tip(body, near, len(zones))
     tail = None
     if body.line[-1, 0] <= 0.0:
-        upside_down = np.stack([body.line[::-1, 0], body.line[-1, 1] - body.line[::-1, 1]], axis=1)
-        tail = end_of(upside_down, body.half, across, closed=body.length - body.bored_from_to[1])
+        tail = end_of(upside_down(body.line), body.half, across, closed=body.length - body.bored_from_to[1])
     start = tip.start if tip else 0.0
     low, high = _reached(body, start, zones, buffer)
     heights = _heights(body, start, body.length - (tail.start if tail else 0.0), planes, high)
@@ -192,7 +191,8 @@ def _sections(
     share = np.where(
         half.radius <= circle, inside * split[:, None], split[:, None] + beyond * (outer - split)[:, None]
     )
-    round_here = np.any([(heights >= low) & (heights <= high) for low, high in exact[1:2]], axis=0)
+    low, high = exact[1]
+    round_here = (heights >= low) & (heights <= high)
     share = share * np.where(round_here, 1.0, half.swell)[:, None]
     flat = share[:, :, None] * half.direction
     height = np.broadcast_to(heights[:, None, None], (len(heights), len(half.unit), 1))

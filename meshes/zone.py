@@ -6,6 +6,8 @@ import numpy as np
 
 from meshes.common import FloatArray, MeshError
 
+_CORNERS = np.indices((2, 2, 2)).reshape(3, -1).T  # (8, 3) sides, low (0) or high (1), of a box
+
 
 @dataclass(frozen=True, slots=True)
 class Zone:
@@ -67,8 +69,7 @@ class Zone:
 
     def corners(self) -> FloatArray:
         """(8, 3) corners of the box, m."""
-        pick = np.array([[i, j, k] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
-        return self.centre + np.where(pick == 0, self.low, self.high) @ self.axes
+        return self.centre + np.where(_CORNERS == 0, self.low, self.high) @ self.axes
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,5 +124,4 @@ class Cloud:
         """(8, 3) corners of the box around the cloud, m."""
         low = (self.points - self.radii[:, None]).min(axis=0)
         high = (self.points + self.radii[:, None]).max(axis=0)
-        pick = np.array([[i, j, k] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
-        return np.asarray(np.where(pick == 0, low, high))
+        return np.asarray(np.where(_CORNERS == 0, low, high))

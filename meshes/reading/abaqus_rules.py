@@ -69,10 +69,8 @@ def _copied_nodes(options: Mapping[str, str], lines: Lines, part: AbaqusPart) ->
     if "SHIFT" not in options:
         raise MeshError("copies nodes by *NCOPY without SHIFT, which is not read. Write the deck with them.")
     old = _set(part.node_sets, options.get("OLD SET", ""), "*NCOPY")
-    shift, places = (
-        _whole([options["CHANGE NUMBER"]], 0, "*NCOPY", 0),
-        np.array([part.nodes[one] for one in old]),
-    )
+    shift = _whole([options["CHANGE NUMBER"]], 0, "*NCOPY", 0)
+    places = np.array([part.nodes[one] for one in old])
     turned = any(number_of(text, "*NCOPY") for text in lines[1][6:7]) if len(lines) > 1 else False
     for time in range(1, _whole([options.get("MULTIPLE", "")], 0, "*NCOPY", 1) + 1):
         places = moved(places, lines[: 1 + turned], "*NCOPY")

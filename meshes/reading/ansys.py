@@ -69,7 +69,7 @@ def ansys(path: Path) -> StoredMesh:
             _cells(lines, archive, "SOLID" in line.upper())
         elif name == "CMBLOCK":
             of = archive.components if words[2].upper().startswith("ELEM") else archive.node_sets
-            of[words[1].upper()] = _ranges(list(_integers(lines, whole_number(words[3], "CMBLOCK"))))
+            of[words[1].upper()] = _members(lines, whole_number(words[3], "CMBLOCK"))
         elif name in MAKERS:
             raise MeshError(
                 f"makes nodes or cells by the command {name}. Write it by CDWRITE,DB with blocks."
@@ -138,21 +138,16 @@ def _cells(lines: Iterator[str], archive: _Archive, solid: bool) -> None:
     raise MeshError("ends within an EBLOCK: it is cut off. Write it again.")
 
 
-def _integers(lines: Iterator[str], count: int) -> Iterator[int]:
+def _members(lines: Iterator[str], left: int) -> list[int]:
+    """Read a list of so many numbers, of which one below 0 ends a range that the one before it begins."""
     _, width, _ = _widths(next(lines, ""))
-    left = count
-    while left > 0:
-        line = next(lines, "")
-        for k in range(0, min(len(line.rstrip()), left * width), width):
-            yield whole_number(line[k : k + width], "CMBLOCK")
-        left -= max(len(line.rstrip()) // width, 1)
-
-
-def _ranges(members: list[int]) -> list[int]:
-    """Return all numbers of a list, of which one below 0 ends a range that the one before it begins."""
     found: list[int] = []
-    for one in members:
-        found += numbers_between(found[-1] + 1, -one, 1, "CMBLOCK") if one < 0 and found else [one]
+    while left > 0:
+        line = next(lines, "").rstrip()
+        for k in range(0, min(len(line), left * width), width):
+            one = whole_number(line[k : k + width], "CMBLOCK")
+            found += numbers_between(found[-1] + 1, -one, 1, "CMBLOCK") if one < 0 and found else [one]
+        left -= max(len(line) // width, 1)
     return found
 
 
@@ -186,14 +181,9 @@ def _stored(archive: _Archive) -> StoredMesh:
 
 def _kind(kind: int, count: int) -> str | None:
     """Return the kind of volume cells of a type of element, None where it is no solid."""
-    if kind in TETRA10 and count == 10:
-        return "tetra10"
-    if kind in TETRA4 and count == 4:
-        return "tetra"
-    if kind in SOLIDS | TETRA4:
-        kinds = {8: "hexahedron", 20: "hexahedron20", 4: "tetra", 10: "tetra10"}
-        if count in kinds:
-            return kinds[count]
-    if kind in SOLIDS | TETRA4 | TETRA10:
+    if kind not in SOLIDS | TETRA4 | TETRA10:
+        return None
+    kinds = {8: "hexahedron", 20: "hexahedron20", 4: "tetra", 10: "tetra10"}
+    if count not in kinds or (kind in TETRA10 and count != 10):
         raise MeshError(f"has a solid of type {kind} with {count} nodes, which is not read.")
-    return None
+    return kinds[count]

@@ -34,9 +34,8 @@ def parsed(path: Path, kind: str) -> tuple[Any, str]:
     It writes what it skips of a file to the terminal.
     """
     with redirect_stdout(StringIO()) as out, redirect_stderr(out):
-        return getattr(with_all_kinds(), kind.removesuffix("-xml")).read(path), " ".join(
-            out.getvalue().split()
-        )
+        mesh = getattr(with_all_kinds(), kind.removesuffix("-xml")).read(path)
+    return mesh, " ".join(out.getvalue().split())
 
 
 def by_meshio(path: Path, kinds: list[str]) -> StoredMesh:
@@ -115,18 +114,14 @@ def _sets(mesh: Any, at: list[IntArray]) -> dict[str, IntArray]:
         for places, chosen in zip(at, members, strict=False):
             if chosen is not None and len(places):
                 sets.setdefault(name, []).append(places[np.asarray(chosen, np.int64)])
+    tags = getattr(mesh, "cell_tags", None) or {}  # the groups of MED that a family of cells belongs to
     for key, values in mesh.cell_data.items():
         for places, marks in zip(at, values, strict=False):
             marks = np.asarray(marks)
             if not len(places) or marks.ndim != 1 or marks.dtype.kind not in "iu":
                 continue
             for mark in np.unique(marks)[: VALUES + 1]:
-                for one in {f"{key.rpartition(':')[2]} {mark}", *mesh_tags(mesh, key, int(mark))}:
+                groups = tags.get(int(mark), ()) if key == "cell_tags" else ()
+                for one in {f"{key.rpartition(':')[2]} {mark}", *groups}:
                     sets.setdefault(one, []).append(places[marks == mark])
     return {name: np.unique(np.concatenate(parts)) for name, parts in sets.items()}
-
-
-def mesh_tags(mesh: Any, key: str, mark: int) -> list[str]:
-    """Return the groups of MED that a family of cells belongs to."""
-    tags = getattr(mesh, "cell_tags", None)
-    return list(tags.get(mark, [])) if tags and key == "cell_tags" else []

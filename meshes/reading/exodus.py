@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from meshes.common import IntArray, MeshError
-from meshes.reading.stored import NODES, Elements, PointMass, StoredMesh, counted
+from meshes.reading.stored import ENDS_APART, NODES, Elements, PointMass, StoredMesh, counted
 
 KEPT = ("coord", "connect", "eb_", "ss_", "ns_", "elem_ss", "side_ss", "node_ns")
 HDF5 = b"\x89HDF"
@@ -20,12 +20,6 @@ SIDES = {
     "hexahedron": ((0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (0, 4, 7, 3), (0, 3, 2, 1), (4, 5, 6, 7)),
     "tetra": ((0, 1, 3), (1, 2, 3), (0, 3, 2), (0, 2, 1)),
     "wedge": ((0, 1, 4, 3), (1, 2, 5, 4), (0, 3, 5, 2), (0, 2, 1), (3, 4, 5)),
-}
-# the middles of edges between both ends come before those of the upper end
-REORDERED = {
-    "hexahedron20": (*range(12), *range(16, 20), *range(12, 16)),
-    "hexahedron27": (*range(12), *range(16, 20), *range(12, 16), *range(20, 27)),
-    "wedge15": (*range(9), 12, 13, 14, 9, 10, 11),
 }
 
 
@@ -59,7 +53,7 @@ def exodus(path: Path) -> StoredMesh:
             told, cells = _kind(kind, cells.shape[1]), np.asarray(cells, np.int64) - 1
             every.append((told, cells))
             if told:
-                blocks.append((told, cells[:, REORDERED.get(told, range(cells.shape[1]))]))
+                blocks.append((told, cells[:, ENDS_APART.get(told, range(cells.shape[1]))]))
                 here = np.arange(first, first + len(cells))
                 sets |= dict.fromkeys(_names(kept, "eb", k, "BLOCK"), here)
                 first += len(cells)

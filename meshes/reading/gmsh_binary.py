@@ -1,7 +1,7 @@
 """Binary files of Gmsh of the versions 2 and 4.1, as the lines of their text files."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -54,19 +54,18 @@ def sections_of(data: bytes) -> dict[str, list[str]]:
     found = {"MeshFormat": [f"{version} 0 8"]}
     for name in ("PhysicalNames", "Entities", "Nodes", "Elements"):
         match = re.search(rb"\$%b\r?\n" % name.encode(), data)
-        if match:
-            body = data[match.end() : data.find(f"$End{name}".encode(), match.end())]
-            found[name] = list(_lines(name, version, body))
+        if not match:
+            continue
+        body = data[match.end() : data.find(f"$End{name}".encode(), match.end())]
+        if name == "PhysicalNames":
+            lines: Iterable[str] = filter(None, decoded(body).split("\n"))
+        elif version == "4.1":
+            lines = {"Entities": _entities, "Nodes": _nodes, "Elements": _elements}[name](_Stream(body))
+        else:
+            count, _, rest = body.partition(b"\n")
+            lines = {"Nodes": _nodes_2, "Elements": _elements_2}[name](_Stream(rest), int(count))
+        found[name] = list(lines)
     return found
-
-
-def _lines(name: str, version: str, body: bytes) -> Iterator[str]:
-    if name == "PhysicalNames":
-        return filter(None, decoded(body).split("\n"))
-    if version == "4.1":
-        return {"Entities": _entities, "Nodes": _nodes, "Elements": _elements}[name](_Stream(body))
-    count, _, rest = body.partition(b"\n")
-    return {"Nodes": _nodes_2, "Elements": _elements_2}[name](_Stream(rest), int(count))
 
 
 def _text(*parts: npt.NDArray[np.generic]) -> str:

@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 
 from meshes.common import MeshError
-from meshes.reading.stored import Elements, PointMass, StoredMesh, keep
+from meshes.reading.stored import ENDS_APART, Elements, PointMass, StoredMesh, keep
 from meshes.reading.text import lines_of, place_of, whole_number
 
 KINDS = {4: "tetra", 5: "pyramid", 6: "wedge", 8: "hexahedron", 10: "tetra10", 15: "wedge15"}
@@ -21,9 +21,7 @@ SURFACES = (
     "QUADRI",
     "TRIANGLE",
 )
-# the middles of edges around an end run the other way, and those between the ends come before the upper end
-REORDERED = {"hexahedron20": (*range(12), *range(16, 20), *range(12, 16))}
-REORDERED["hexahedron27"] = (*REORDERED["hexahedron20"], *range(20, 27))
+REORDERED = {kind: ENDS_APART[kind] for kind in ("hexahedron20", "hexahedron27")}
 
 
 def kratos(path: Path) -> StoredMesh:

@@ -191,9 +191,8 @@ def _take_set(name: str, lines: list[str], width: int, found: Elements) -> None:
 
 def _solids(name: str, lines: list[str], width: int) -> Iterator[tuple[int, list[int]]]:
     """Yield part and nodes of each solid, on one line of ten numbers, or on two."""
-    option = (
-        name.removeprefix("ELEMENT_SOLID").removeprefix("ELEMENT_TSHELL").strip("_").removesuffix("_TITLE")
-    )
+    bare = name.removeprefix("ELEMENT_SOLID").removeprefix("ELEMENT_TSHELL")
+    option = bare.strip("_").removesuffix("_TITLE")
     if option not in ("", "TITLE", *LINES_MORE):
         raise MeshError(f"holds cells of *{name}, which is not read. Write them as *ELEMENT_SOLID.")
     more, at = LINES_MORE.get(option, 0), 0

@@ -8,11 +8,10 @@ from pathlib import Path
 import numpy as np
 
 from meshes.common import FloatArray, MeshError
-from meshes.reading.stored import Elements, PointMass, StoredMesh, keep
+from meshes.reading.stored import ENDS_APART, Elements, PointMass, StoredMesh, keep
 from meshes.reading.text import lines_of, number_of, place_of, whole_number
 
-# kind of a cell by its card, and how many nodes of its kind with middles of edges, whose order is VTK's but
-# for the edges between the two ends, which come before those of the upper end
+# kind of a cell by its card, and how many nodes of its kind with middles of edges
 SOLIDS = {
     "CHEXA": (8, "hexahedron", 20, "hexahedron20"),
     "CPENTA": (6, "wedge", 15, "wedge15"),
@@ -22,10 +21,6 @@ SOLIDS = {
 }
 MESH = ("GRID", *SOLIDS)
 OTHER_SOLIDS = ("CHEX", "CIHEX", "CPEN", "CWEDGE", "CTET", "CPYR")
-REORDERED = {
-    "hexahedron20": (*range(12), *range(16, 20), *range(12, 16)),
-    "wedge15": (*range(9), 12, 13, 14, 9, 10, 11),
-}
 # places of the grid and of the mass among the fields of a card; None: on another card, or in a matrix
 MASSES: dict[str, tuple[int | None, int | None]] = {
     "CONM2": (1, 3),
@@ -227,4 +222,4 @@ def _add(name: str, fields: list[str], found: Elements) -> None:
         found.solid(kind, nodes[:corners], what, *names)
         return
     nodes += [0] * (all_nodes - len(nodes))
-    found.solid(fine, [nodes[k] for k in REORDERED.get(fine, range(all_nodes))], what, *names)
+    found.solid(fine, [nodes[k] for k in ENDS_APART.get(fine, range(all_nodes))], what, *names)

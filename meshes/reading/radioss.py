@@ -5,13 +5,11 @@ from math import nan
 from pathlib import Path
 
 from meshes.common import MeshError
-from meshes.reading.stored import Elements, PointMass, StoredMesh, part_names
+from meshes.reading.stored import ENDS_APART, Elements, PointMass, StoredMesh, part_names
 from meshes.reading.text import fixed_fields, lines_of, number_of, place_of, sections, whole_number
 
 SOLIDS = {"BRICK": 8, "TETRA4": 4, "PENTA6": 6, "TETRA10": 10, "BRIC20": 20}
 KINDS = {8: "hexahedron", 4: "tetra", 6: "wedge", 10: "tetra10", 20: "hexahedron20"}
-# /BRIC20 numbers the edges between both ends before those of the upper end
-REORDERED = {20: (*range(12), *range(16, 20), *range(12, 16))}
 FLAT = {"SHELL": 4, "SH3N": 3}
 OTHERS = ("TRUSS", "BEAM", "SPRING", "QUAD", "TRIA", "SPHCEL", "XELEM")
 # kinds of /ADMAS of which each line states a mass to add: to a group of nodes, to parts, to a node
@@ -104,7 +102,7 @@ def _solids(kind: str, lines: list[str]) -> Iterator[list[int]]:
         numbers += _numbers(line, kind)
         if len(numbers) > count:
             nodes = numbers[1 : count + 1]
-            yield [nodes[k] for k in REORDERED.get(count, range(count))]
+            yield [nodes[k] for k in ENDS_APART.get(KINDS[count], range(count))]
             numbers = []
     if numbers:
         raise MeshError(f"ends within a cell of /{kind}.")

@@ -22,8 +22,13 @@ NODES = {
     "hexahedron20": 20,
     "hexahedron27": 27,
 }
-
-
+#: Of formats that number the middles of edges between both ends of a cell before those of its upper end, the
+#: places of its nodes in VTK's order.
+ENDS_APART = {
+    "hexahedron20": (*range(12), *range(16, 20), *range(12, 16)),
+    "hexahedron27": (*range(12), *range(16, 20), *range(12, 16), *range(20, 27)),
+    "wedge15": (*range(9), 12, 13, 14, 9, 10, 11),
+}
 #: Corners of a face or a cell of a surface by the number of its nodes.
 FACE_CORNERS = {3: 3, 6: 3, 7: 3, 4: 4, 8: 4, 9: 4}
 
