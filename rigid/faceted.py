@@ -58,7 +58,18 @@ class Faceted:
         if not (self.parts[:, 2] > 0).all() or not np.isfinite(self.parts).all():
             raise ShapeError("each part of a body needs a mass above 0, and finite moments")
         object.__setattr__(self, "_outline", hull(self.points[:, [0, 2]], LEVEL * self.length))
-        object.__setattr__(self, "_half_widths", self._widths())
+        # heights, and the half width along x there, m, of the edges of facets that cross them
+        z = np.linspace(0.0, self.length, HEIGHTS)
+        (x, _, low), (u, _, high) = np.moveaxis(self.points[_edges(self.facets)], (2, 3), (0, 1))
+        width, slack = np.zeros(HEIGHTS), LEVEL * self.length
+        for k, height in enumerate(z):
+            crossed = (np.minimum(low, high) - slack <= height) & (height <= np.maximum(low, high) + slack)
+            a, b, rise = x[crossed], u[crossed], (high - low)[crossed]
+            level = np.abs(rise) <= slack
+            share = np.clip((height - low[crossed]) / np.where(level, 1.0, rise), 0.0, 1.0)
+            wide = np.where(level, np.maximum(np.abs(a), np.abs(b)), np.abs(a + share * (b - a)))
+            width[k] = wide.max(initial=0.0)
+        object.__setattr__(self, "_half_widths", (z, width))
 
     @property
     def length(self) -> float:
@@ -173,7 +184,7 @@ class Faceted:
 
     def _cut(self, over: Floats) -> Floats:
         """Return the lines (m, 2, 3), m, in which a plane cuts facets; its nodes are ``over`` it, (k,) m."""
-        ends = np.stack([self.facets, np.roll(self.facets, -1, axis=1)], axis=-1)
+        ends = _edges(self.facets)
         heights = over[ends]
         crosses = (heights.min(axis=2) < 0.0) & (heights.max(axis=2) >= 0.0)
         cut = crosses.sum(axis=1) == 2  # a plane cuts a facet along a line between two of its edges
@@ -192,7 +203,7 @@ class Faceted:
         length = float(np.hypot(*way))
         x, z = ((self.points[:, [0, 2]] - start) @ np.array([way, [-way[1], way[0]]]).T / length).T
         flat = self.facets[(np.abs(z) < LEVEL * self.length)[self.facets].all(axis=1)]
-        edges = np.stack([flat, np.roll(flat, -1, axis=1)], axis=-1).reshape(-1, 2)
+        edges = _edges(flat).reshape(-1, 2)
         places = np.clip(share, LEVEL, 1.0 - LEVEL) * length
         return _inside(x[edges], self.points[edges, 1], places)
 
@@ -249,7 +260,7 @@ class Faceted:
 
     def within(self, x: Floats, z: Floats) -> NDArray[np.bool_]:
         """Whether points (x, z), m, lie inside the body where the plane of motion cuts it (even-odd rule)."""
-        ends = np.stack([self.facets, np.roll(self.facets, -1, axis=1)], axis=-1).reshape(-1, 2)
+        ends = _edges(self.facets).reshape(-1, 2)
         cut = (np.abs(self.points[ends, 1]) <= LEVEL * self.length).all(axis=1)
         (a, low), (b, high) = np.moveaxis(self.points[ends[cut]][:, :, [0, 2]], 0, -1)
         x, z = np.asarray(x)[..., None], np.asarray(z)[..., None]
@@ -290,20 +301,10 @@ class Faceted:
         foremost = ahead >= ahead.max(axis=-1)[..., None] - LEVEL * self.length
         return np.asarray(np.argmin(np.where(foremost, z, np.inf), axis=-1))
 
-    def _widths(self) -> tuple[Floats, Floats]:
-        """Return heights and the half width along x there, m, of the edges of facets that cross them."""
-        z = np.linspace(0.0, self.length, HEIGHTS)
-        ends = np.stack([self.facets, np.roll(self.facets, -1, axis=1)], axis=-1).reshape(-1, 2)
-        (x, _, low), (u, _, high) = np.moveaxis(self.points[ends], (1, 2), (0, 1))
-        width, slack = np.zeros(HEIGHTS), LEVEL * self.length
-        for k, height in enumerate(z):
-            crossed = (np.minimum(low, high) - slack <= height) & (height <= np.maximum(low, high) + slack)
-            a, b, rise = x[crossed], u[crossed], (high - low)[crossed]
-            level = np.abs(rise) <= slack
-            share = np.clip((height - low[crossed]) / np.where(level, 1.0, rise), 0.0, 1.0)
-            wide = np.where(level, np.maximum(np.abs(a), np.abs(b)), np.abs(a + share * (b - a)))
-            width[k] = wide.max(initial=0.0)
-        return z, width
+
+def _edges(facets: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return the nodes (m, 4, 2) at the ends of each edge of facets (m, 4)."""
+    return np.stack([facets, np.roll(facets, -1, axis=1)], axis=-1)
 
 
 def _inside(t: Floats, y: Floats, places: Floats) -> Floats:

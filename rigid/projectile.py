@@ -1,7 +1,6 @@
 """The projectile: a turned rod, its mass properties and where it touches an inclined barrier."""
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -193,28 +192,21 @@ def _outline(rod: Projectile) -> Floats:
 def _moments(rod: Projectile) -> tuple[float, float, float]:
     """Return mass (kg), distance of the mass centre from the tip (m), squared radius of gyration (m2).
 
-    The solid of revolution is integrated by discs dm = density pi rho^2 dz.
-
-    A disc has the moment rho^2/4 dm about its diameter. Gauss points are exact for the straight pieces
-    and reach round-off on the arc.
+    The solid of revolution is integrated by discs dm = density pi rho^2 dz, of the moment rho^2/4 dm about a
+    diameter. Gauss points are exact for the straight pieces and reach round-off on the arc.
     """
-    z, rho2, dz = (np.concatenate(part) for part in zip(*_pieces(rod), strict=True))
+    x, weight = np.polynomial.legendre.leggauss(24)
+    unit, weight = 0.5 * (x + 1), 0.5 * weight
+    tip = rod.nose
+    sin, cos = np.sin(tip.sweep * unit), np.cos(tip.sweep * unit)
+    start, z_start = tip.arc_end
+    cone, body = tip.z_side - z_start, rod.length - tip.z_side
+    # of arc, cone and cylinder
+    z = np.concatenate([tip.r * (1 - cos), z_start + cone * unit, tip.z_side + body * unit])
+    rho_arc, rho_cone = tip.face + tip.r * sin, start + (tip.radius - start) * unit
+    rho2 = np.concatenate([rho_arc**2, rho_cone**2, np.full_like(unit, tip.radius**2)])
+    dz = np.concatenate([tip.r * sin * tip.sweep * weight, cone * weight, body * weight])
     dm = rod.density * np.pi * rho2 * dz
     mass = float(dm.sum())
     z_c = float(dm @ z) / mass
     return mass, z_c, float(dm @ (rho2 / 4 + (z - z_c) ** 2)) / mass
-
-
-def _pieces(rod: Projectile) -> Iterator[tuple[Floats, Floats, Floats]]:
-    """Yield z (m), rho^2 (m2) and weight dz (m) at the Gauss points of arc, cone and cylinder, (24,) each."""
-    x, weight = np.polynomial.legendre.leggauss(24)
-    unit, weight = 0.5 * (x + 1), 0.5 * weight
-    tip = rod.nose
-    theta = tip.sweep * unit
-    rho = tip.face + tip.r * np.sin(theta)
-    yield tip.r * (1 - np.cos(theta)), rho**2, tip.r * np.sin(theta) * tip.sweep * weight
-    start, z_start = tip.arc_end
-    height = tip.z_side - z_start
-    yield z_start + height * unit, (start + (tip.radius - start) * unit) ** 2, height * weight
-    body = rod.length - tip.z_side
-    yield tip.z_side + body * unit, np.full_like(unit, tip.radius**2), body * weight

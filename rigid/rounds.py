@@ -179,13 +179,11 @@ def _merged(rounds: list[Round], same: float) -> list[Round]:
             groups[-1].append(one)
         else:
             groups.append([one])
-    return [_circle(group) for group in groups]
-
-
-def _circle(group: list[Round]) -> Round:
-    """Return the arc of neighbours on one circle; one that goes all round passes through its vertices."""
-    x, z, radius = (float(np.mean([one[k] for one in group])) for k in range(3))
-    low, high = group[0].low, group[-1].high
-    if high - low > TURN - ROUND_OFF:
-        radius /= math.cos(0.5 * TURN / len(group))
-    return Round(x, z, radius, low, high, group[0].curve)
+    found = []
+    for group in groups:
+        x, z, radius = (float(np.mean([one[k] for one in group])) for k in range(3))
+        low, high = group[0].low, group[-1].high
+        if high - low > TURN - ROUND_OFF:  # one that goes all round passes through its vertices
+            radius /= math.cos(0.5 * TURN / len(group))
+        found.append(Round(x, z, radius, low, high, group[0].curve))
+    return found

@@ -53,8 +53,19 @@ class Turned:
         if np.any(np.diff(self.outline[self.outline[:, 1] <= 0.0, 0]) < 0):
             raise ShapeError("the profile's radius shrinks at z = 0, where its flat face ends")
         if self.bore is not None:
-            object.__setattr__(self, "bore", _vertices(self.bore, "bore"))
-            self._check_wall()
+            bore = _vertices(self.bore, "bore")
+            object.__setattr__(self, "bore", bore)
+            if bore[-1, 1] > self.length:
+                end, length = bore[-1, 1] * 1e3, self.length * 1e3
+                raise TooLongError(f"the bore ends at {end:.3g} mm, beyond the tail at {length:.3g} mm")
+            z = np.unique(np.concatenate([bore[:, 1], self.outline[:, 1]]))
+            z = (z[:-1, None] + np.diff(z)[:, None] * _WITHIN).ravel()  # both are straight between these
+            inner, outer = self.inner_radius(z), self.radius(z)
+            thin = np.flatnonzero(inner >= outer)
+            if len(thin):
+                # to .1 um: the place lies a little beside a vertex
+                place, r, R = (f"{round(1e3 * x[thin[0]], 4):.3g} mm" for x in (z, inner, outer))
+                raise ShapeError(f"the bore of radius {r} at {place} leaves no wall under radius {R}")
         ends = [0.0, *(end for end, _ in self.density)]
         if not all(a < b for a, b in pairwise(ends)):
             raise ShapeError(f"segments must end one behind the other, got ends at {ends[1:]} m")
@@ -64,21 +75,6 @@ class Turned:
             raise ShapeError(f"densities must be positive and finite, got {self.density}")
         mass, _, z_c, k2 = self.moments_behind(0.0)
         object.__setattr__(self, "_moments", (mass, z_c, k2))
-
-    def _check_wall(self) -> None:
-        """Refuse a bore that leaves the body or its wall."""
-        bore = np.asarray(self.bore)
-        if bore[-1, 1] > self.length:
-            end, length = bore[-1, 1] * 1e3, self.length * 1e3
-            raise TooLongError(f"the bore ends at {end:.3g} mm, beyond the tail at {length:.3g} mm")
-        z = np.unique(np.concatenate([bore[:, 1], self.outline[:, 1]]))
-        z = (z[:-1, None] + np.diff(z)[:, None] * _WITHIN).ravel()  # both are straight between these heights
-        inner, outer = self.inner_radius(z), self.radius(z)
-        thin = np.flatnonzero(inner >= outer)
-        if len(thin):
-            # to .1 um: the place lies a little beside a vertex
-            place, r, R = (f"{round(1e3 * x[thin[0]], 4):.3g} mm" for x in (z, inner, outer))
-            raise ShapeError(f"the bore of radius {r} at {place} leaves no wall under radius {R}")
 
     @property
     def length(self) -> float:

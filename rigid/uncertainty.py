@@ -147,36 +147,27 @@ def first_order(
     dict of str to Estimate
         For e, mu and e_m.
     """
-    errors = errors or Errors()
-    rows, names = stack_tests(motion), _names(motion)
-    mean = dict(zip(names, rows.mean(axis=1), strict=True))
-    at = {k: np.asarray(v, dtype=np.float64) for k, v in {**mean, "d_c": d_c, "d_d": d_d}.items()}
-    values = coefficients(**at, k2=k2)._asdict()
-    slopes = sensitivities(lambda **x: coefficients(**x, k2=k2)._asdict(), at)
-    return {
-        name: _estimate(float(value), slopes[name], dict(zip(names, rows, strict=True)), errors)
-        for name, value in values.items()
-    }
-
-
-def _estimate(
-    value: float, slope: Mapping[str, Floats], tests: Mapping[str, Floats], errors: Errors
-) -> Estimate:
-    """Estimate with the root sum of squares of the three sources."""
     from scipy.special import stdtrit  # here, as a run of the solver needs the rest of this package only
 
-    rows = np.stack([*tests.values()])
+    errors = errors or Errors()
+    rows, names = stack_tests(motion), _names(motion)
     n = rows.shape[1]
-    g = np.array([slope[name] for name in tests])
-    arms = np.array([slope[name] for name in ARMS])
-    parts = {
-        "scatter": float(np.sqrt(max(g @ np.cov(rows) @ g, 0.0) / n)),
-        "contact": errors.contact_sd * float(np.hypot(*arms)),
-        "tracking": errors.tracking_sd * float(np.linalg.norm(g * rows.mean(axis=1))),
-    }
-    fixed = float(np.hypot(parts["contact"], parts["tracking"]))
-    half = float(np.hypot(stdtrit(n - 1, 0.975) * parts["scatter"], 1.96 * fixed))
-    return Estimate(value, float(np.hypot(parts["scatter"], fixed)), value - half, value + half, parts)
+    mean = dict(zip(names, rows.mean(axis=1), strict=True))
+    at = {k: np.asarray(v, dtype=np.float64) for k, v in {**mean, "d_c": d_c, "d_d": d_d}.items()}
+    values = {name: float(value) for name, value in coefficients(**at, k2=k2)._asdict().items()}
+    slopes = sensitivities(lambda **x: coefficients(**x, k2=k2)._asdict(), at)
+    estimates = {}
+    for name, value in values.items():
+        g = np.array([slopes[name][by] for by in names])
+        scatter = float(np.sqrt(max(g @ np.cov(rows) @ g, 0.0) / n))
+        contact = errors.contact_sd * float(np.hypot(*(slopes[name][arm] for arm in ARMS)))
+        tracking = errors.tracking_sd * float(np.linalg.norm(g * rows.mean(axis=1)))
+        fixed = float(np.hypot(contact, tracking))
+        half = float(np.hypot(stdtrit(n - 1, 0.975) * scatter, 1.96 * fixed))
+        parts = {"scatter": scatter, "contact": contact, "tracking": tracking}
+        sd = float(np.hypot(scatter, fixed))
+        estimates[name] = Estimate(value, sd, value - half, value + half, parts)
+    return estimates
 
 
 SOURCES = ("scatter", "contact", "tracking")

@@ -45,13 +45,13 @@ def at_angle(alpha: ArrayLike) -> AtAngle:
     >>> f"{at_angle(np.radians(41.0)).e:.3f}"
     '0.335'
     """
-    x = np.asarray(alpha, dtype=np.float64)
-    angles = np.array([s.alpha for s in angle_sets()])
+    x, sets = np.asarray(alpha, dtype=np.float64), angle_sets()
+    angles = np.array([s.alpha for s in sets])
     outside = ~((x >= angles[0]) & (x <= angles[-1]))
     refuse(outside, "the short rod was measured from 17 to 60 degrees, not at {value} rad", x, DataError)
-    statistics = [s.statistics() for s in angle_sets()]
+    statistics = [s.statistics() for s in sets]
     means = [[of_set[name].mean for of_set in statistics] for name in ("e", "mu", "e_m")]
-    arms = [[float(s.arms[i]) for s in angle_sets()] for i in (0, 1)]
+    arms = [[float(s.arms[i]) for s in sets] for i in (0, 1)]
     return AtAngle(*(np.interp(x, angles, column)[()] for column in (*means, *arms)))
 
 
@@ -111,16 +111,14 @@ def drawn_losses(alpha: ArrayLike, samples: int = 1000, seed: int = 0) -> Predic
     >>> [f"{p:.2f}" for p in np.percentile(total, [2.5, 97.5])]
     ['0.90', '0.94']
     """
-    x, rng = np.asarray(alpha, dtype=np.float64), np.random.default_rng(seed)
-    columns = []
-    for measured in angle_sets():
-        recomputed = measured.recomputed()
-        rows = np.stack([recomputed[name] for name in Coefficients._fields])
-        columns.append(drawn_means(rows, samples, rng))
+    x, sets, rng = np.asarray(alpha, dtype=np.float64), angle_sets(), np.random.default_rng(seed)
+    tests = [s.recomputed() for s in sets]
+    rows = [np.stack([of_set[name] for name in Coefficients._fields]) for of_set in tests]
+    columns = [drawn_means(one, samples, rng) for one in rows]
     means = np.stack(columns, axis=-1)  # of e, mu and e_m, (3, samples, 5)
-    angles = np.array([s.alpha for s in angle_sets()])
+    angles = np.array([s.alpha for s in sets])
     weights = np.stack([np.interp(x, angles, unit) for unit in np.eye(len(angles))])  # of each set, (5, n)
     given: dict[str, Any] = {name: means[i] @ weights for i, name in enumerate(Coefficients._fields)}
     arms = at_angle(x)
-    body: dict[str, Any] = {"d_c": arms.d_c, "d_d": arms.d_d, "k2": angle_sets()[0].k2, "mass": 2.0}
+    body: dict[str, Any] = {"d_c": arms.d_c, "d_d": arms.d_d, "k2": sets[0].k2, "mass": 2.0}
     return predicted_losses(-np.cos(x), -np.sin(x), **given, **body)

@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from importlib.resources import files
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -96,19 +97,15 @@ class MeasuredSet:
 
     def covariance(self, names: Sequence[str]) -> Floats:
         """Covariance (k, k) of the means of named quantities, with what all tests share: tracking."""
-        return self.scatter(names) + self._by_tracking(names)
-
-    def scatter(self, names: Sequence[str]) -> Floats:
-        """Part (k, k) of it by which single tests differ."""
-        return covariance_of_means(self.recomputed(), names)
-
-    def _by_tracking(self, names: Sequence[str]) -> Floats:
-        """Part (k, k) of it by the error of tracked velocities, the same in all tests of a set."""
         at = {name: np.asarray(np.mean(self.motion[name])) for name in MOTION}
         slopes = sensitivities(lambda **v: {**v, **derived_columns(v, **self.body, mass=self.mass)}, at)
         J = np.array([[float(slopes[name][by]) for by in MOTION] for name in names])
         sd = Errors().tracking_sd * np.array([float(at[by]) for by in MOTION])
-        return np.asarray((J * sd) @ (J * sd).T)
+        return self.scatter(names) + (J * sd) @ (J * sd).T
+
+    def scatter(self, names: Sequence[str]) -> Floats:
+        """Part (k, k) of it by which single tests differ."""
+        return covariance_of_means(self.recomputed(), names)
 
 
 def derived_columns(
@@ -126,16 +123,6 @@ def derived_columns(
     shares = losses(**motion, **body, mass=mass).fractions()._asdict()
     energies = {f"{name}_over_E_0": share for name, share in shares.items() if name != "E_0"}
     return {**coefficients(**motion, **body)._asdict(), **energies}
-
-
-def _motion(entry: Mapping[str, Any], rows: Mapping[str, Floats]) -> dict[str, Floats]:
-    """Measured velocities, or those that the printed coefficients give (Eq 9, 10 and 12)."""
-    if "v_n" not in entry:
-        return {name: rows[name] for name in MOTION}
-    given = {name: entry[name] for name in ("d_c", "d_d", "k2")}
-    after = solve(entry["v_n"], entry["v_t"], e=rows["e"], mu=rows["mu"], e_m=rows["e_m"], **given)
-    before = {name: np.full(rows["e"].shape, entry[name]) for name in ("v_n", "v_t")}
-    return {**before, **after._asdict()}
 
 
 @cache
@@ -167,6 +154,14 @@ def measured_set(id: str) -> MeasuredSet:
         raise DataError(f"no measured set {id!r}; there are {', '.join(set_ids())}")
     entry = _entries()[id]
     rows = table(entry["table"], entry["select"])
+    reconstructed = "v_n" in entry
+    if reconstructed:  # from the printed coefficients, by Eq 9, 10 and 12
+        given = {name: entry[name] for name in ("v_n", "v_t", "d_c", "d_d", "k2")}
+        after = solve(**given, e=rows["e"], mu=rows["mu"], e_m=rows["e_m"])
+        before = {name: np.full(rows["e"].shape, entry[name]) for name in ("v_n", "v_t")}
+        motion = {**before, **after._asdict()}
+    else:
+        motion = {name: rows[name] for name in MOTION}
     kept = ("table", "surface", "length", "tip", "tip_radius", "mass", "k2", "select")
     return MeasuredSet(
         id=id,
@@ -174,8 +169,8 @@ def measured_set(id: str) -> MeasuredSet:
         diameter=DIAMETER,
         arms=Arms(entry["d_c"], entry["d_d"]),
         printed=rows,
-        motion=_motion(entry, rows),
-        reconstructed="v_n" in entry,
+        motion=motion,
+        reconstructed=reconstructed,
         **{name: entry[name] for name in kept},
     )
 
@@ -239,13 +234,28 @@ def audit() -> tuple[AuditRecord, ...]:
     >>> len(records), [r.row for r in records if r.column == "mu" and not r.agrees]
     (918, ['16', '25'])
     """
-    sets = [s for s in measured_sets() if not s.reconstructed]
-    return tuple(record for s in sets for part in (_columns(s), _totals(s)) for record in part)
+    records = []
+    for s in measured_sets():
+        if s.reconstructed:
+            continue
+        tests = [f"{test:.0f}" for test in s.printed["test"]]
+        for column, values, tolerance in _columns(s):
+            rows = zip(tests, s.printed[column], values, tolerance, strict=True)
+            records += [_record(s, row, column, *numbers) for row, *numbers in rows]
+    return tuple(records)
 
 
 def audit_statistics() -> tuple[AuditRecord, ...]:
     """Recompute the printed mean and SD lines of all tables from the printed rows."""
-    return tuple(record for s in measured_sets() for record in _statistics(s))
+    records = []
+    for s, which in product(measured_sets(), ("mean", "sd")):
+        printed = printed_statistics(s.table, which, s.select)
+        for column in (name for name in printed if name != "alpha_deg"):
+            value = getattr(statistic(s.printed[column]), which)
+            last = statistic_decimals(s.table, which, column, s.select)
+            tolerance = 0.5001 * 10.0**-last + _half_units(s, column).max()
+            records.append(_record(s, which, column, printed[column][0], value, tolerance))
+    return tuple(records)
 
 
 def column_arms(set_id: str) -> Mapping[str, float]:
@@ -270,8 +280,8 @@ def recompute(*, mass: ArrayLike, **given: ArrayLike) -> dict[str, Floats]:
     return {**markers, **coefficients(**given)._asdict(), **losses(**given, mass=mass)._asdict()}
 
 
-def _columns(s: MeasuredSet) -> Iterator[AuditRecord]:
-    """Audit the columns that follow from the velocities."""
+def _columns(s: MeasuredSet) -> Iterator[tuple[str, Floats, Floats]]:
+    """Yield each column that follows from the printed numbers, worked out anew, and its tolerance, (n,)."""
     for column in COLUMNS:
         # the inputs of every row, (n,) each, and half a unit of their last digit
         d_c = column_arms(s.id).get(column, s.arms.d_c)
@@ -284,38 +294,15 @@ def _columns(s: MeasuredSet) -> Iterator[AuditRecord]:
         half |= {name: np.full(shape, CONSTANTS[name] * scale[name]) for name in constants}
         slopes = sensitivities(recompute, at)[column]
         tolerance = _half_units(s, column) + sum(np.abs(slopes[k]) * half[k] for k in at)
-        yield from _records(s, column, recompute(**at)[column], tolerance)
-
-
-def _totals(s: MeasuredSet) -> Iterator[AuditRecord]:
-    """Audit E_total as the sum of the three energies printed before it."""
-    parts = ("E_lt", "E_ln", "E_r")
-    total = sum(s.printed[name] for name in parts)
-    tolerance = sum(_half_units(s, name) for name in (*parts, "E_total"))
-    yield from _records(s, "E_total", np.asarray(total), np.asarray(tolerance))
+        yield column, recompute(**at)[column], tolerance
+    parts = ("E_lt", "E_ln", "E_r")  # of which the total is the sum
+    rounded = sum(_half_units(s, name) for name in (*parts, "E_total"))
+    yield "E_total", np.asarray(sum(s.printed[name] for name in parts)), np.asarray(rounded)
 
 
 def _half_units(s: MeasuredSet, column: str) -> Floats:
     """Half a unit in the last printed digit of each row, (n,); 2e-4 of it more, for binary fractions."""
     return 0.5001 * 10.0 ** -np.array(decimals(s.table, column, s.select), dtype=np.float64)
-
-
-def _records(s: MeasuredSet, column: str, recomputed: Floats, tolerance: Floats) -> Iterator[AuditRecord]:
-    """Pair the printed rows with the recomputed values."""
-    tests = (f"{test:.0f}" for test in s.printed["test"])
-    for row, printed, value, half in zip(tests, s.printed[column], recomputed, tolerance, strict=True):
-        yield _record(s, row, column, printed, value, half)
-
-
-def _statistics(s: MeasuredSet) -> Iterator[AuditRecord]:
-    """Audit the mean and SD lines below a set's rows."""
-    for which in ("mean", "sd"):
-        printed = printed_statistics(s.table, which, s.select)
-        for column in (name for name in printed if name != "alpha_deg"):
-            value = getattr(statistic(s.printed[column]), which)
-            last = statistic_decimals(s.table, which, column, s.select)
-            tolerance = 0.5001 * 10.0**-last + _half_units(s, column).max()
-            yield _record(s, which, column, printed[column][0], value, tolerance)
 
 
 def _record(

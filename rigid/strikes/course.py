@@ -19,7 +19,7 @@ from dataclasses import dataclass, field
 from ..path.resolve import sliding_path
 from ..rounds import TURN
 from .flight import FlightState, next_touch
-from .held import Ending, Held, Pull, hold
+from .held import Ending, Pull, hold
 from .outline import LEVEL_ANGLE, Outline
 from .record import Approach, Finish, Phase, Sequence, Strike
 
@@ -149,8 +149,7 @@ class _Course:
     @property
     def _moving(self) -> float:
         """Kinetic energy now, per unit mass, m2/s2."""
-        state = self.state
-        return 0.5 * (state.V_n**2 + state.V_t**2 + self.pull.k2 * state.Omega**2)
+        return self.state.moving(self.pull.k2)
 
     def fly(self) -> int | None:
         """Fly to the next touch and strike."""
@@ -183,7 +182,9 @@ class _Course:
             return None
         held = hold(self.outline.corners[corner], self.state, self.pull, LONGEST * self.unit, self.slips)
         self.slips = held.ending is Ending.SLIPPED
-        self._enter(held)
+        if len(held.states) > 1:
+            self.phases.append(Phase(False, held.states, held.impulse, held.heat))
+            self.state = held.states[-1]
         if held.ending is Ending.LIFTED:
             turning = 1.0 / abs(self.state.Omega) if self.state.Omega else math.inf
             soon = UNSTICK * min(self.unit, turning)
@@ -216,13 +217,7 @@ class _Course:
     def _energy(self, state: FlightState) -> float:
         """Return kinetic and potential energy, per unit mass, m2/s2."""
         pull = self.pull
-        moving = 0.5 * (state.V_n**2 + state.V_t**2 + pull.k2 * state.Omega**2)
-        return moving + pull.g_n * state.height + pull.g_t * state.along
-
-    def _enter(self, held: Held) -> None:
-        if len(held.states) > 1:
-            self.phases.append(Phase(False, held.states, held.impulse, held.heat))
-            self.state = held.states[-1]
+        return state.moving(pull.k2) + pull.g_n * state.height + pull.g_t * state.along
 
     def _approach(self, corner: int) -> Approach:
         """Return the approach of a corner, or of the level line from it."""
@@ -316,20 +311,14 @@ class _Course:
             return other[0]
         gain = a_t - pull.g_t
         if state.V_t * gain < 0.0 and abs(state.V_t) < FOREVER * abs(gain):
-            self._slid(-state.V_t / gain, gain, a_t)
-            self.state = self.state._replace(V_t=0.0)
+            dt = -state.V_t / gain  # it slides so long
+            way = dt * (state.V_t + 0.5 * dt * gain)
+            after = state._replace(time=state.time + dt, along=state.along + way, V_t=state.V_t + dt * gain)
+            self.phases.append(Phase(False, (state, after), (dt * pull.g_n, dt * a_t, 0.0), -a_t * way))
+            self.state = after._replace(V_t=0.0)
             return self._slide(foot, other)
         self.finish = Finish.SLIDES if state.V_t or gain else Finish.RESTS
         return None
-
-    def _slid(self, dt: float, gain: float, a_t: float) -> None:
-        """Enter a slide on both feet that lasts ``dt``, s, at an acceleration ``gain``, m/s2."""
-        state, pull = self.state, self.pull
-        way = dt * (state.V_t + 0.5 * dt * gain)
-        after = state._replace(time=state.time + dt, along=state.along + way, V_t=state.V_t + dt * gain)
-        impulse = (dt * pull.g_n, dt * a_t, 0.0)
-        self.phases.append(Phase(False, (state, after), impulse, -a_t * way))
-        self.state = after
 
     def _roll_over(self, corner: int) -> int | None:
         """Pass on from a corner that the body has turned over: roll on to the next, or strike with it."""

@@ -33,6 +33,10 @@ class FlightState(NamedTuple):
     V_t: float
     Omega: float
 
+    def moving(self, k2: float) -> float:
+        """Return the kinetic energy per unit mass, m2/s2, of a body of squared radius of gyration k2, m2."""
+        return 0.5 * (self.V_n**2 + self.V_t**2 + k2 * self.Omega**2)
+
     def flown(self, dt: float, g_n: float, g_t: float) -> "FlightState":
         """Return the state after a flight of ``dt``, s, under accelerations g_n, g_t, m/s2, out of -n, -t."""
         return FlightState(
@@ -117,7 +121,9 @@ def _turns(
         base += TURN
     bound = base + (one.high - one.low) if spin > 0.0 else base
     widest, turn = outline.widest, TURN / abs(spin)
-    above = _low_again(state, g_n, widest)
+    over, above = state.V_n**2 - 2.0 * g_n * (widest - state.height), (math.inf, math.inf)
+    if g_n > 0.0 and over > 0.0:  # the mass centre is higher than that between two times
+        above = (state.V_n - math.sqrt(over)) / g_n, (state.V_n + math.sqrt(over)) / g_n
     while start < end:
         if above[0] < start < above[1]:  # whole turns are too high to touch
             skipped = max(0, int((min(above[1], end) - start) / turn) - 1)
@@ -129,14 +135,6 @@ def _turns(
             yield start, stop, number
         start, number = stop, outline.beside(number, step)
         bound += step * (outline.corners[number].high - outline.corners[number].low)
-
-
-def _low_again(state: FlightState, g_n: float, widest: float) -> tuple[float, float]:
-    """Return the times, s, between which the mass centre is higher than ``widest``, m; inf if it never is."""
-    over = state.V_n**2 - 2.0 * g_n * (widest - state.height)
-    if g_n <= 0.0 or over <= 0.0:
-        return math.inf, math.inf
-    return (state.V_n - math.sqrt(over)) / g_n, (state.V_n + math.sqrt(over)) / g_n
 
 
 def _first_root(one: Round, state: FlightState, g_n: float, start: float, stop: float) -> float | None:
