@@ -73,9 +73,7 @@ def with_thin_skin(mesh: HexMesh, cell: float, rows: int) -> HexMesh:
     HexMesh
         The bottom of the block rises by `thin_skin_rise` cells.
     """
-    points = mesh.points.copy()
-    points[:, 2] = -drawn_depths(-points[:, 2], cell, rows)
-    return replace(mesh, points=np.asarray(mesh.tie @ points))
+    return _moved(mesh, 2, -drawn_depths(-mesh.points[:, 2], cell, rows))
 
 
 def drawn_depths(depths: FloatArray, cell: float, rows: int) -> FloatArray:
@@ -95,9 +93,7 @@ def with_rows_at(mesh: HexMesh, rows: FloatArray, depths: FloatArray) -> HexMesh
     rows, depths : (k,) float64, m
         Depths of rows of unsplit cells, growing from 0 at the top to the bottom, and where they are to lie.
     """
-    points = mesh.points.copy()
-    points[:, 2] = -np.interp(-points[:, 2], rows, depths)
-    return replace(mesh, points=np.asarray(mesh.tie @ points))
+    return _moved(mesh, 2, -np.interp(-mesh.points[:, 2], rows, depths))
 
 
 def with_columns_at(mesh: HexMesh, columns: FloatArray, places: FloatArray) -> HexMesh:
@@ -110,8 +106,13 @@ def with_columns_at(mesh: HexMesh, columns: FloatArray, places: FloatArray) -> H
     columns, places : (k,) float64, m
         Growing places along t, and where they are to lie.
     """
+    return _moved(mesh, 0, np.interp(mesh.points[:, 0], columns, places))
+
+
+def _moved(mesh: HexMesh, axis: int, places: FloatArray) -> HexMesh:
+    """Return a mesh whose nodes lie at other places (n,), m, on an axis; those that are tied follow."""
     points = mesh.points.copy()
-    points[:, 0] = np.interp(points[:, 0], columns, places)
+    points[:, axis] = places
     return replace(mesh, points=np.asarray(mesh.tie @ points))
 
 

@@ -121,17 +121,19 @@ def as_hexahedra(points: FloatArray, blocks: tuple[tuple[str, IntArray], ...]) -
             f"{sum(len(cells) for _, cells, _ in made)} hexahedra"
         )
     cells, parent = (np.concatenate([part[k] for part in made]) for k in (1, 2))
-    of = np.concatenate([np.full(len(part), list(KINDS.values()).index(kind)) for kind, part, _ in made])
+    kinds = list(KINDS.values())
+    of = np.repeat([kinds.index(kind) for kind, _, _ in made], [len(part) for _, part, _ in made])
     outside_in = (np.linalg.det(jacobians_of(points, cells)) < 0.0).all(axis=1)
     parts, bad = (np.bincount(parent[here], minlength=parent.max() + 1) for here in (..., outside_in))
     turned = (parts == bad)[parent]  # a cell of the file whose parts are all inside out is numbered so
     cells[turned] = cells[turned][:, TURNED]
-    wrong = turned & _at_odds(cells) & (of == list(KINDS.values()).index(HEXAHEDRON))
+    wrong = turned & _at_odds(cells) & (of == kinds.index(HEXAHEDRON))
     cells[wrong] = cells[wrong][:, TURNED]  # it lies in its neighbours: refused as folded
-    for number, kind in enumerate(KINDS.values()):
-        own = np.bincount(parent[(of == number) & turned & ~wrong]) > 0
+    turned &= ~wrong
+    for number, kind in enumerate(kinds):
+        own = np.bincount(parent[(of == number) & turned]) > 0
         if own.any():
-            every = ((turned & ~wrong) == (of == number))[of == number].all()
+            every = turned[of == number].all()
             whole = f"each {kind.name}" if every else counted(int(own.sum()), kind.name)
             told.append(f"the order of the nodes of {whole} is turned round")
     return Hexahedra(points, cells, parent, tuple(told))

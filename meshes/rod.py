@@ -127,7 +127,10 @@ def rod(
         )
     count = max(1, round((length - start) / wanted))
     slab = (length - start) / count
-    points, cells = _body(half, shape.radius, start, slab, count)
+    flat = half.swell * shape.radius * half.unit  # of the exact area of the circle
+    heights = np.asarray(start + slab * np.arange(count + 1), np.float64)
+    points = stacked(np.broadcast_to(flat, (count + 1, *flat.shape)), heights)
+    cells = (half.slab + len(flat) * np.arange(count)[:, None, None]).reshape(-1, 8)
     body_cells = np.arange(len(cells)).reshape(count, -1).T
     body_nodes = np.arange(len(points)).reshape(count + 1, -1).T
     if nose:
@@ -158,16 +161,10 @@ def _body_start(
     return max([start, *tops])
 
 
-def _body(half: Section, radius: float, start: float, slab: float, count: int) -> tuple[FloatArray, IntArray]:
-    """Points and cells of the slices, layer after layer; the section has the exact area of the circle."""
-    z = start + slab * np.arange(count + 1)
-    flat = half.swell * radius * half.unit
-    layers = np.broadcast_to(flat, (count + 1, *flat.shape))
-    height = np.broadcast_to(z[:, None, None], (count + 1, len(flat), 1))
-    points = np.concatenate([layers, height], axis=2).reshape(-1, 3)
-    slab_cells = np.concatenate([half.quads, half.quads + len(flat)], axis=1)
-    cells = slab_cells[None] + len(flat) * np.arange(count)[:, None, None]
-    return points, cells.reshape(-1, 8)
+def stacked(flat: FloatArray, heights: FloatArray) -> FloatArray:
+    """(k n, 3) nodes, layer after layer, of sections (k, n, 2) at heights (k,)."""
+    height = np.broadcast_to(heights[:, None, None], (*flat.shape[:2], 1))
+    return np.concatenate([flat, height], axis=2).reshape(-1, 3)
 
 
 def nose_cells(

@@ -48,7 +48,11 @@ def with_thin_rows(mesh: HexMesh, part: BoolArray, cell: float, rows: int) -> He
     move = np.zeros_like(mesh.points)
     for there, drawn in np.unique(np.stack([count, thin.astype(np.int64)], axis=1), axis=0).tolist():
         nodes = lines[(count == there) & (thin == drawn), : there + 1]
-        np.add.at(move, nodes, share[nodes[:, 0], None, None] * _along(mesh.points[nodes], drawn))
+        now, place = mesh.points[nodes], drawn_rows(there, drawn)
+        low = np.minimum(place.astype(np.int64), there - 1)
+        beyond = (place - low)[:, None]
+        new = (1.0 - beyond) * now[:, low] + beyond * now[:, low + 1]
+        np.add.at(move, nodes, share[nodes[:, 0], None, None] * (new - now))
     least = np.minimum(WORST, scaled_jacobians(mesh).min(axis=1))
     for _ in range(TRIES):
         moved = replace(mesh, points=np.asarray(mesh.tie @ (mesh.points + move)))
@@ -70,14 +74,6 @@ def drawn_rows(count: int, thin: int) -> FloatArray:
     """
     top = drawn_depths(np.arange(thin + 1.0), 1.0, thin)
     return np.concatenate([top[:-1], np.linspace(top[-1], count, count - thin + 1)])
-
-
-def _along(ends: FloatArray, thin: int) -> FloatArray:
-    """(k, n, 3) moves, m, of the nodes of lines, now at ``ends`` (k, n, 3), m, with so many thin rows."""
-    place = drawn_rows(ends.shape[1] - 1, thin)
-    low = np.minimum(place.astype(np.int64), ends.shape[1] - 2)
-    beyond = (place - low)[:, None]
-    return np.asarray((1.0 - beyond) * ends[:, low] + beyond * ends[:, low + 1] - ends)
 
 
 def _lines(mesh: HexMesh, part: BoolArray, skin: BoolArray, fixed: BoolArray, deepest: int) -> IntArray:

@@ -55,6 +55,11 @@ class Section:
         return float(np.sqrt(0.5 * np.pi / area))
 
     @property
+    def slab(self) -> IntArray:
+        """(k, 8) cells between the nodes of the section, numbered from 0, and those of the next layer."""
+        return np.concatenate([self.quads, self.quads + len(self.unit)], axis=1)
+
+    @property
     def radius(self) -> FloatArray:
         """(n,) distance from the axis; exact on the two circles."""
         return np.asarray(np.hypot(self.unit[:, 0], self.unit[:, 1]))

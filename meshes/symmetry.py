@@ -100,7 +100,7 @@ def half_of(part: Part, stated: str | None, cuts: tuple[tuple[int, float], ...] 
     part, flat = _snapped(part)
     planes = _stated(part, flat, stated, cuts) if stated else _found(part, flat)
     if not planes:
-        return _cut(part if _crosses(part) else _centred(part))
+        return _cut(part)
     name = PARTS[len(planes)]
     where = part.frame.planes(planes)
     if 2 in planes:
@@ -119,7 +119,7 @@ def half_of(part: Part, stated: str | None, cuts: tuple[tuple[int, float], ...] 
             points = part.points * [1.0, -1.0, 1.0] + 0.0
             half = replace(part, points=points, cells=part.cells[:, TURNED], origin=part.origin[:, TURNED])
     else:
-        half = _cut(part if _crosses(part) else _centred(part))
+        half = _cut(part)
     half = replace(half, assumed="" if stated else name)
     return half.tell(
         f"the mesh is taken as a {name} of a body that is symmetric about {where}".replace("a e", "an e")
@@ -278,7 +278,8 @@ def _doubled(part: Part, axis: int) -> Part:
 
 
 def _cut(part: Part) -> Part:
-    """Return the half y >= 0 of a whole body."""
+    """Return the half y >= 0 of a whole body; one that lies beside y = 0 is centred there first."""
+    part = part if _crosses(part) else _centred(part)
     points, near, plane = part.points, part.near, part.frame.plane(1)
     crossing = np.flatnonzero(across(points[:, 1], part.cells, 0.0))
     made = halved_layer(points, part.cells)

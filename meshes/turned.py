@@ -15,7 +15,7 @@ from meshes.hexmesh import TURNED, HexMesh, from_cells, half_body_tags
 from meshes.quality import require_positive, scaled_jacobians
 from meshes.refine import reach, refine
 from meshes.revolved import SAME, Revolved, revolved, upside_down
-from meshes.rod import RodMesh, nose_cells
+from meshes.rod import RodMesh, nose_cells, stacked
 from meshes.shoulders import STEEPEST
 from meshes.surface import CORNER, TurnedSurface, closest_on
 from meshes.zone import Cloud, Zone
@@ -194,10 +194,8 @@ def _sections(
     low, high = exact[1]
     round_here = (heights >= low) & (heights <= high)
     share = share * np.where(round_here, 1.0, half.swell)[:, None]
-    flat = share[:, :, None] * half.direction
-    height = np.broadcast_to(heights[:, None, None], (len(heights), len(half.unit), 1))
-    points = np.concatenate([flat, height], axis=2).reshape(-1, 3)
-    slab = np.concatenate([half.quads, half.quads + len(half.unit)], axis=1)
+    points = stacked(share[:, :, None] * half.direction, heights)
+    slab = half.slab
     bored = body.bored(heights[:-1], heights[1:])
     cells = [
         (slab[half.bore_quads :] if hollow else slab) + len(half.unit) * k for k, hollow in enumerate(bored)

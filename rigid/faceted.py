@@ -8,10 +8,10 @@ from numpy.typing import NDArray
 
 from .arms import Arms, point_arms
 from .chord import mirrored_chord
-from .inputs import ArrayLike, Floats, ShapeError, floats
+from .inputs import ArrayLike, Floats, ShapeError
 from .rounds import Round, cut, hull, rounds_of, steps_of
 from .slenderness import slenderness
-from .touch import Touch, level_part, on_side, require_inclination
+from .touch import Touch, inclinations, level_part, on_side
 from .turned import CORNER
 
 LEVEL = 1e-6
@@ -131,8 +131,7 @@ class Faceted:
         Of a part that is equally low it is the end on the side that comes down first, nearest the tip: see
         `touch`.
         """
-        (alpha,) = floats(alpha)
-        require_inclination(alpha)
+        alpha = inclinations(alpha)
         place = self._outline[self._lowest(alpha)]
         return place[..., 0][()], place[..., 1][()]
 

@@ -8,12 +8,12 @@ import numpy as np
 
 from .arms import Arms, corner_arms, point_arms
 from .chord import both_sides, mirrored_chord
-from .inputs import ArrayLike, Floats, ShapeError, floats
+from .inputs import ArrayLike, Floats, ShapeError
 from .nose import SHAPES, Nose
 from .rounds import Round, around
 from .shapes import of_nose
 from .slenderness import slenderness
-from .touch import LEVEL, Touch, level_part, on_side, require_inclination
+from .touch import LEVEL, Touch, inclinations, level_part, on_side
 from .turned import Turned
 
 
@@ -121,8 +121,7 @@ class Projectile:
         Of a face or a side that is equally low all along it is one end, the limit of a small tilt: see
         `touch`.
         """
-        (alpha,) = floats(alpha)
-        require_inclination(alpha)
+        alpha = inclinations(alpha)
         rho, z = self.nose.lowest(np.abs(alpha))
         return on_side(rho, alpha), z
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .inputs import Floats, refuse
+from .inputs import ArrayLike, Floats, floats, refuse
 
 LEVEL = 1e-9
 """Share of the length within which places of a body that is stated by its sizes count as equally low."""
@@ -19,10 +19,12 @@ class Touch(NamedTuple):
     length: float
 
 
-def require_inclination(alpha: Floats) -> None:
-    """Refuse inclinations, rad, beyond a right angle to either side (ImpactError)."""
+def inclinations(alpha: ArrayLike) -> Floats:
+    """Return inclinations, rad, as an array; refuse any beyond a right angle to either side (ImpactError)."""
+    (alpha,) = floats(alpha)
     outside = ~(np.abs(alpha) <= 0.5 * np.pi)
     refuse(outside, "the inclination must lie in -pi/2 <= alpha <= pi/2 rad, got {value}", alpha)
+    return alpha
 
 
 def on_side(rho: Floats, alpha: Floats) -> Floats:

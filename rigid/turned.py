@@ -8,10 +8,10 @@ import numpy as np
 
 from .arms import Arms, point_arms
 from .chord import both_sides, mirrored_chord
-from .inputs import ArrayLike, Floats, ShapeError, TooLongError, floats
+from .inputs import ArrayLike, Floats, ShapeError, TooLongError
 from .rounds import LONG, Round, cut, hull, is_step, rounds_of
 from .slenderness import slenderness
-from .touch import LEVEL, Touch, level_part, on_side, require_inclination
+from .touch import LEVEL, Touch, inclinations, level_part, on_side
 
 CORNER = math.radians(12.0)
 """A turn of the profile above this, rad, is an edge of the body, not a step of a smooth curve."""
@@ -163,8 +163,7 @@ class Turned:
         It is a vertex of the outline's convex hull; on a smooth curve, the point of the circle of curvature
         there whose normal is that of the barrier. Of a part that is equally low it is one end: see `touch`.
         """
-        (alpha,) = floats(alpha)
-        require_inclination(alpha)
+        alpha = inclinations(alpha)
         place, (low, high) = self._touching(alpha), self._normals()
         middle, half = 0.5 * (low + high)[place], 0.5 * (high - low)[place]
         turned = middle + np.clip(np.abs(alpha) - middle, -half, half)

@@ -41,7 +41,10 @@ def _row(options: Mapping[str, str], lines: Lines, part: AbaqusPart) -> None:
     for line in lines:
         first, last, step = (_whole(line, k, "*NGEN", default) for k, default in enumerate((0, 0, 1)))
         numbers = numbers_between(first, last, step, "*NGEN")
-        ends = np.array([_node(part, one, "*NGEN") for one in (first, last)])
+        for one in (first, last):
+            if one not in part.nodes:
+                raise MeshError(f"makes nodes by *NGEN from the node {one}, which is not there.")
+        ends = np.array([part.nodes[first], part.nodes[last]])
         for place, number in enumerate(numbers):
             share = place / max(len(numbers) - 1, 1)
             if number not in (first, last):
@@ -121,12 +124,6 @@ def _copy(part: AbaqusPart, cell: int, number: int, nodes: int, what: str) -> in
 
 def _whole(line: list[str], at: int, what: str, default: int) -> int:
     return whole_number(line[at], what) if line[at : at + 1] not in ([], [""]) else default
-
-
-def _node(part: AbaqusPart, number: int, what: str) -> tuple[float, ...]:
-    if number not in part.nodes:
-        raise MeshError(f"makes nodes by {what} from the node {number}, which is not there.")
-    return part.nodes[number]
 
 
 def _set(sets: Mapping[str, list[int]], name: str, what: str) -> list[int]:

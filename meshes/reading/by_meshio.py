@@ -1,5 +1,6 @@
 """Formats that meshio reads right: VTK, MED, Medit, XDMF and others."""
 
+from collections import Counter
 from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import replace
 from io import StringIO
@@ -70,29 +71,27 @@ def as_stored(mesh: Any) -> StoredMesh:
     MeshError
         If it holds volume cells that are not read.
     """
-    blocks, ignored = [], []
+    blocks, left_out = [], Counter[str]()
     at, faces_at = list[IntArray](), list[IntArray]()  # numbers of the cells, or of the faces, of each block
     first, found = 0, Elements()
     for block in mesh.cells:
         kind, cells = block.type, np.asarray(block.data)
         if kind == "voxel":
             kind, cells = "hexahedron", cells[:, VOXEL]
-        is_flat, begin = kind.startswith(FLAT), len(found.faces)
+        begin, first_face = first, len(found.faces)
         if kind.startswith(FACES):
             for nodes in cells.tolist():
                 found.add_face(kind, nodes)
-        faces_at.append(np.arange(begin, len(found.faces)))
-        if is_flat or kind.startswith(FACES):
-            ignored += [(kind, len(cells))] if is_flat else []
-            at.append(np.zeros(0, np.int64))
-            continue
-        if kind not in NODES:
+        elif kind.startswith(FLAT):
+            left_out[kind] += len(cells)
+        elif kind in NODES:
+            blocks.append((kind, cells.astype(np.int64)))
+            first += len(cells)
+        else:
             raise MeshError(f"holds {counted(len(cells), f'cell of type {kind}')}, which are not read.")
-        blocks.append((kind, cells.astype(np.int64)))
-        at.append(np.arange(first, first + len(cells)))
-        first += len(cells)
-    counts = {kind: sum(count for one, count in ignored if one == kind) for kind, _ in ignored}
-    told = tuple(counted(count, f"cell of type {kind}") for kind, count in counts.items())
+        at.append(np.arange(begin, first))
+        faces_at.append(np.arange(first_face, len(found.faces)))
+    told = tuple(counted(count, f"cell of type {kind}") for kind, count in left_out.items())
     points = np.asarray(mesh.points, np.float64)
     # the named sets of nodes, of MED its groups of nodes
     sets = {name: np.asarray(nodes, np.int64) for name, nodes in mesh.point_sets.items()}

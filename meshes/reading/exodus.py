@@ -10,6 +10,7 @@ from meshes.common import IntArray, MeshError
 from meshes.reading.stored import ENDS_APART, NODES, Elements, PointMass, StoredMesh, counted
 
 KEPT = ("coord", "connect", "eb_", "ss_", "ns_", "elem_ss", "side_ss", "node_ns")
+COUNT = "num_el_in_blk"
 HDF5 = b"\x89HDF"
 CLASSIC = b"CDF\x01", b"CDF\x02"
 NAMES = {"HEX": "hexahedron", "TET": "tetra", "WED": "wedge", "PYR": "pyramid"}  # by their first letters
@@ -47,7 +48,7 @@ def exodus(path: Path) -> StoredMesh:
     sets: dict[str, IntArray] = {}
     every: list[tuple[str | None, IntArray]] = []  # kind and nodes of the cells of each block, of any kind
     first, k = 0, 1
-    while f"connect{k}" in kept or f"num_el_in_blk{k}" in kept:
+    while f"connect{k}" in kept or f"{COUNT}{k}" in kept:
         if f"connect{k}" in kept:
             cells, kind = kept[f"connect{k}"], _text(kept.get(f"connect{k}:elem_type", b""))
             told, cells = _kind(kind, cells.shape[1]), np.asarray(cells, np.int64) - 1
@@ -100,44 +101,35 @@ def _numbered(kept: Mapping[str, Any], stem: str) -> list[int]:
 
 def _variables(path: Path) -> Mapping[str, Any]:
     """Return the arrays of a file by name, and the type of each block's elements."""
-    with path.open("rb") as file:
-        start = file.read(4)
+    kept: dict[str, Any] = {}
+    with path.open("rb") as header:
+        start = header.read(4)
     if start == HDF5:
-        return _of_hdf5(path)
-    if start in CLASSIC:
-        return _of_classic(path)
-    raise MeshError(
-        f"begins with {start!r}: it is no Exodus file of netCDF classic, of 64-bit offsets or netCDF-4. "
-        "Convert it by nccopy -k nc4."
-    )
+        import h5py
 
+        with h5py.File(path) as file:
+            for name, array in file.items():
+                if name.startswith(KEPT):
+                    kept[name] = array[()]
+                    if "elem_type" in array.attrs:
+                        kept[f"{name}:elem_type"] = array.attrs["elem_type"]
+                elif name.startswith(COUNT):
+                    kept[name] = len(array)
+    elif start in CLASSIC:
+        from scipy.io import netcdf_file
 
-def _of_hdf5(path: Path) -> dict[str, Any]:
-    import h5py
-
-    kept: dict[str, Any] = {}
-    with h5py.File(path) as file:
-        for name, array in file.items():
-            if name.startswith(KEPT):
-                kept[name] = array[()]
-                if "elem_type" in array.attrs:
-                    kept[f"{name}:elem_type"] = array.attrs["elem_type"]
-            elif name.startswith("num_el_in_blk"):
-                kept[name] = len(array)
-    return kept
-
-
-def _of_classic(path: Path) -> dict[str, Any]:
-    from scipy.io import netcdf_file
-
-    kept: dict[str, Any] = {}
-    with netcdf_file(path, mmap=False) as file:
-        for name, array in file.variables.items():
-            if name.startswith(KEPT):
-                kept[name] = array.data.copy()
-                if hasattr(array, "elem_type"):
-                    kept[f"{name}:elem_type"] = array.elem_type
-        kept |= {name: size for name, size in file.dimensions.items() if name.startswith("num_el_in_blk")}
+        with netcdf_file(path, mmap=False) as file:
+            for name, array in file.variables.items():
+                if name.startswith(KEPT):
+                    kept[name] = array.data.copy()
+                    if hasattr(array, "elem_type"):
+                        kept[f"{name}:elem_type"] = array.elem_type
+            kept |= {name: size for name, size in file.dimensions.items() if name.startswith(COUNT)}
+    else:
+        raise MeshError(
+            f"begins with {start!r}: it is no Exodus file of netCDF classic, of 64-bit offsets or netCDF-4. "
+            "Convert it by nccopy -k nc4."
+        )
     return kept
 
 

@@ -147,8 +147,8 @@ class Elements:
                 raise MeshError(f"has {what} that names the node {node}, which is not there.")
         self.add(kind, tuple(self.at(nodes)), *names)
 
-    def add(self, kind: str, nodes: tuple[int, ...], *names: str) -> int:
-        """Add a cell that is in sets of those names; return its place.
+    def add(self, kind: str, nodes: tuple[int, ...], *names: str) -> None:
+        """Add a cell, by the places of its nodes, that is in sets of those names.
 
         Raises
         ------
@@ -157,12 +157,10 @@ class Elements:
         """
         if len(nodes) != NODES[kind]:
             raise MeshError(f"has a cell of type {kind} with {len(nodes)} nodes instead of {NODES[kind]}.")
-        place = len(self.kinds)
+        for name in names:
+            self.sets.setdefault(name, []).append(len(self.cells))
         self.kinds.append(kind)
         self.cells.append(nodes)
-        for name in names:
-            self.sets.setdefault(name, []).append(place)
-        return place
 
     def add_face(self, kind: str, nodes: Sequence[int], *names: str) -> None:
         """Add a cell of a ``kind`` that may be one of a surface, or a face (""), in sets of those names.

@@ -49,9 +49,9 @@ def universal(path: Path) -> StoredMesh:
                 found.node(int(label), place_of(texts, label))
                 local |= system not in ("0", "1")
         elif number == 2412:
-            _cells(lines, cells)
+            _cells(iter(lines), cells)
         elif number in (2467, 2477, 2452, 2435):
-            _groups(lines, groups)
+            _groups(iter(lines), groups)
     if local:
         raise MeshError("gives nodes in local systems of coordinates. Write it in the global one.")
     for number, (kind, nodes) in cells.items():
@@ -83,30 +83,29 @@ def _sets(every: list[str]) -> Iterator[tuple[int, list[str]]]:
         lines, open_ = [], not open_
 
 
-def _cells(lines: list[str], cells: dict[int, tuple[int, list[int]]]) -> None:
-    at = 0
-    while at < len(lines):
-        head = [int(part) for part in lines[at].split()]
-        at += 1 + (head[1] in LINES)
-        nodes: list[int] = []
-        while len(nodes) < head[5] and at < len(lines):
-            nodes += [int(part) for part in lines[at].split()]
-            at += 1
+def _numbers(lines: Iterator[str], count: int) -> list[int]:
+    """Return the whole numbers of the next lines, so many or a line more; fewer where these end."""
+    found: list[int] = []
+    while len(found) < count and (line := next(lines, None)) is not None:
+        found += [int(part) for part in line.split()]
+    return found
+
+
+def _cells(lines: Iterator[str], cells: dict[int, tuple[int, list[int]]]) -> None:
+    for line in lines:
+        head = [int(part) for part in line.split()]
+        if head[1] in LINES:
+            next(lines, None)
+        nodes = _numbers(lines, head[5])
         if len(nodes) != head[5]:
             raise MeshError(f"has a cell {head[0]} with {len(nodes)} nodes instead of {head[5]}.")
         keep(cells, head[0], (head[1], nodes), "cells")
 
 
-def _groups(lines: list[str], groups: dict[int, dict[int, list[str]]]) -> None:
+def _groups(lines: Iterator[str], groups: dict[int, dict[int, list[str]]]) -> None:
     """Add the names of groups by node or element."""
-    at = 0
-    while at + 1 < len(lines):
-        count, name = int(lines[at].split()[7]), lines[at + 1].strip()
-        at += 2
-        numbers: list[int] = []
-        while len(numbers) < 4 * count and at < len(lines):
-            numbers += [int(part) for part in lines[at].split()]
-            at += 1
+    for head, name in zip(lines, lines, strict=False):
+        numbers = _numbers(lines, 4 * int(head.split()[7]))
         for kind, number in zip(numbers[::4], numbers[1::4], strict=False):
             if kind in groups:
-                groups[kind].setdefault(number, []).append(name)
+                groups[kind].setdefault(number, []).append(name.strip())
