@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from ..inputs import ArrayLike, Floats, ImpactError, floats, refuse
 from ..massive import Motion, approach_velocity
-from .segments import Segments, segments
+from .segments import Segments, compliances, segments
 
 
 class End(IntEnum):
@@ -207,7 +207,7 @@ def path_over_speed(
     '0.30'
     """
     u, w = start = float(approach_velocity(*floats(v_n, d_c, omega))), v_t - d_d * omega
-    n_n, n_t, t_t = 1.0 + d_c**2 / k2, -d_c * d_d / k2, 1.0 + d_d**2 / k2
+    n_n, n_t, t_t = compliances(d_c, d_d, k2)
     hold = -n_t / t_t
     speeds, factors = (np.asarray(row, dtype=np.float64) for row in over)
 

@@ -9,11 +9,13 @@ can hold if abs(s_0) <= f. Sliding ends in sticking or in reverse sliding, and n
 """
 
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 
 from ..inputs import Floats
 
+T = TypeVar("T", float, Floats)
 NEVER = 1e12
 """Sliding that needs more than this times the approach velocity as impulse is taken never to stop."""
 
@@ -88,9 +90,14 @@ class Segments:
         return np.where(early, p_c + from_p_c, split + from_kink)
 
 
+def compliances(d_c: T, d_d: T, k2: T) -> tuple[T, T, T]:
+    """Return d v_cn/dp, d v_ct/dp = d v_cn/dq and d v_ct/dq, with q the tangential impulse per unit mass."""
+    return 1.0 + d_c**2 / k2, -d_c * d_d / k2, 1.0 + d_d**2 / k2
+
+
 def segments(u: Floats, w: Floats, f: Floats, *, d_c: Floats, d_d: Floats, k2: Floats) -> Segments:
     """Two pieces from the contact point's velocities u, w (m/s) and the friction f."""
-    n_n, n_t, t_t = 1.0 + d_c**2 / k2, -d_c * d_d / k2, 1.0 + d_d**2 / k2
+    n_n, n_t, t_t = compliances(d_c, d_d, k2)
     slide, hold = -f * np.sign(w), np.clip(-n_t / t_t, -f, f)
     t_slide = t_t * slide + n_t
     t_after = np.where(np.abs(n_t / t_t) <= f, 0.0, t_t * hold + n_t)

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..inputs import Floats
+from ..path.segments import compliances
 from ..rounds import Round
 from .flight import FlightState
 from .outline import LEVEL_ANGLE
@@ -104,7 +105,7 @@ def _forces(one: Round, pull: Pull, sliding: float, alpha: float, spin: float) -
     else:
         # 1 + d_c^2/k2   -d_c d_d/k2    a_n   push
         # -d_c d_d/k2    1 + d_d^2/k2   a_t   g_t - d_c spin^2
-        n_n, n_t, t_t = 1.0 + d_c**2 / k2, -d_c * d_d / k2, 1.0 + d_d**2 / k2
+        n_n, n_t, t_t = compliances(d_c, d_d, k2)
         drag = pull.g_t - d_c * spin**2
         det = n_n * t_t - n_t**2
         a_n, a_t = (push * t_t - n_t * drag) / det, (n_n * drag - n_t * push) / det
