@@ -2,14 +2,12 @@
 
 import math
 import re
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from importlib.resources import files
 from typing import Any, Literal
 
 from fem_impact.errors import SceneError
-from fem_impact.scene.units import DIMENSIONS, format_quantity, parse_number, parse_quantity
+from fem_impact.scene.units import DIMENSIONS, data_tables, format_quantity, parse_number, parse_quantity
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,17 +86,16 @@ class Parameter:
         if self.even and number % 2:
             raise SceneError(f"({self.meaning}) must be an even number.", key=self.key, value=value)
         if not self.allows(number):
-            shown = value if self.whole else Shown(self._refused(number))
+            shown = value
+            if not self.whole:  # in three digits, or as many as leave it outside the bounds
+                text, _, unit = str(self.write(number)).partition(" ")
+                scale = number / float(text) if number else 1.0
+                shorter = (f"{float(text):.{digits}g}" for digits in range(3, 17))
+                outside = next((s for s in shorter if not self.allows(float(s) * scale)), text)
+                shown = Shown(f"{outside} {unit}".rstrip())
             problem = f"({self.meaning}) must be {self.bounds}."
             raise SceneError(problem, key=self.key, value=shown, remedy=self.remedy)
         return int(number) if self.whole else number + 0.0
-
-    def _refused(self, number: float) -> str:
-        """Return a value outside the bounds in three digits, or as many as leave it outside."""
-        text, _, unit = str(self.write(number)).partition(" ")
-        scale = number / float(text) if number else 1.0
-        shorter = (f"{float(text):.{digits}g}" for digits in range(3, 17))
-        return f"{next((s for s in shorter if not self.allows(float(s) * scale)), text)} {unit}".rstrip()
 
     def read(self, value: float | str) -> float:
         """Return a checked value in SI from a number in SI, or from text with or without a unit."""
@@ -121,7 +118,7 @@ class Shown:
         return self.text
 
 
-_STATED = tomllib.loads(files("fem_impact.scene").joinpath("data/numbers.toml").read_text(encoding="utf-8"))
+_STATED = data_tables("numbers.toml")
 
 
 def _numbers(tables: Mapping[str, Any]) -> tuple[Parameter, ...]:
@@ -131,14 +128,15 @@ def _numbers(tables: Mapping[str, Any]) -> tuple[Parameter, ...]:
 PROJECTILE, TUBE, POINT, SHAPE, MATERIAL, SKIN = (
     _numbers(_STATED[section]) for section in ("projectile", "tube", "point", "shape", "material", "skin")
 )
-SURFACE, SLIDING, TOP, BARRIER, LAYER, ACCURACY, SAVE, HEATING, STRIKES = (
-    _numbers(_STATED[section])
-    for section in (
-        *("surface", "sliding", "top", "barrier", "layer", "accuracy", "save", "heating", "strikes"),
-    )
+SURFACE, SLIDING, TOP, BARRIER, LAYER = (
+    _numbers(_STATED[section]) for section in ("surface", "sliding", "top", "barrier", "layer")
+)
+ACCURACY, SAVE, HEATING, STRIKES = (
+    _numbers(_STATED[section]) for section in ("accuracy", "save", "heating", "strikes")
 )
 ANGLE, V_N, V_T, OMEGA, HEIGHT, SLOPE, SPEED = _numbers(_STATED["impact"])
 IMPACT = (ANGLE, V_N, V_T, OMEGA)  # as seen from the barrier
+WAYS_OF_IMPACT = (*IMPACT, SLOPE, HEIGHT, SPEED)  # as a scene states it in one way or another
 MOTION = (ANGLE, replace(V_N, low=-500.0, high=500.0, remedy=""), V_T, OMEGA)
 TIP_SIZE = ACCURACY[0]
 LEVELS, MOST_LEVELS = (int(_STATED["accuracy"]["levels"][key]) for key in ("default", "high"))

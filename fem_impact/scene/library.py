@@ -1,10 +1,8 @@
 """What is shipped: materials, surfaces, scenes with sources; and a material from the table that states it."""
 
-import tomllib
-from collections.abc import Collection, Iterable
+from collections.abc import Iterable
 from dataclasses import replace
 from functools import cache
-from importlib.resources import files
 from typing import Any
 
 from fem_impact.errors import SceneError, did_you_mean
@@ -27,7 +25,7 @@ from fem_impact.scene.material import (
 from fem_impact.scene.sliding import SlidingLaw, law_of
 from fem_impact.scene.tables import Table, check_keys, needed, numbers_of, values_of, within
 from fem_impact.scene.types import MEASURED_SETS
-from fem_impact.scene.units import parse_quantity
+from fem_impact.scene.units import data_tables, parse_quantity
 
 NO_VALUES = ("law", "family")
 
@@ -49,7 +47,7 @@ def material_of(name: Any, table: Table, others: Iterable[str] = ()) -> Material
     readers = {
         "flow": lambda flow: _flow(flow, stated["E"]),
         "rate": lambda rate: _rate(rate, stated.get("flow")),
-        "skin": _skin,
+        "skin": lambda skin: SkinSpec(**values_of(skin, fields.SKIN, ("shape",))),
     }
     for key, read in readers.items():
         if key in table:
@@ -82,10 +80,6 @@ def _rate(table: Table, flow: Flow | None) -> Rate:
     return RATES[law](**numbers)
 
 
-def _skin(table: Table) -> SkinSpec:
-    return SkinSpec(**values_of(table, fields.SKIN, ("shape",)))
-
-
 def _flow(table: Table, E: float) -> Flow:
     law = fields.check_choice(needed(table, "law"), tuple(FLOWS), "law")
     if law != TableFlow.law:
@@ -100,22 +94,21 @@ BESIDE = ("melting", "intervals", "sources", "aliases", "about")
 """Keys of a shipped material that are no values of it."""
 MISSPELT, NEAR = 0.9, 0.75
 """Likeness of a name to a shipped material's from which it is taken for that, misspelt, and is proposed."""
-_DATA = files("fem_impact.scene").joinpath("data")
 
 
 def shipped() -> tuple[str, ...]:
     """Return the ids of the shipped scenes: the measured sets in the paper's order, then the others."""
-    return (*MEASURED_SETS, *_table("scenes.toml")["others"])
+    return (*MEASURED_SETS, *data_tables("scenes.toml")["others"])
 
 
 def stated(name: str) -> dict[str, Any]:
     """Return the tables of a shipped scene as its file states them."""
-    return _table(f"scenes/{name}.toml")
+    return data_tables(f"scenes/{name}.toml")
 
 
 def other_tip(measured: str) -> dict[str, Any]:
     """Return tip and tip_radius with which the rows of a measured set may also be read, empty if none."""
-    return dict(_table("scenes.toml")["other_tips"].get(measured, {}))
+    return dict(data_tables("scenes.toml")["other_tips"].get(measured, {}))
 
 
 ALL_MATERIALS = "All: `fem-impact scenes --materials`; or give a table of values."
@@ -123,41 +116,40 @@ ALL_MATERIALS = "All: `fem-impact scenes --materials`; or give a table of values
 
 def materials() -> dict[str, Material]:
     """Return the shipped materials by name, SI units."""
-    return {name: _material(name) for name in _table("materials.toml")}
+    return {name: _material(name) for name in _material_tables()}
 
 
 def material(name: str) -> Material:
     """Return one shipped material by its name or an alias of it, or refuse the name with a suggestion."""
-    known, plain = materials(), _plain(name)
-    for group in _table("not_modelled.toml").values():
+    plain = _plain(name)
+    for group in data_tables("not_modelled.toml").values():
         if plain in map(_plain, group["names"]):
             raise SceneError(group["reason"], value=name, remedy=group["remedy"])
     own = own_name(name)
     if not own:
-        remedy = _nearest_material(name, known)
-        raise SceneError("is not a shipped material.", value=name, remedy=remedy)
-    return known[own]
+        raise SceneError("is not a shipped material.", value=name, remedy=_nearest_material(name))
+    return _material(own)
 
 
 def own_name(name: str) -> str:
     """Return the name of the shipped material that a name or an alias stands for, empty if there is none."""
     plain = _plain(name)
-    return next((one for one in materials() if plain in map(_plain, (one, *aliases_of(one)))), "")
+    return next((one for one in _material_tables() if plain in map(_plain, (one, *aliases_of(one)))), "")
 
 
 def aliases_of(name: str) -> tuple[str, ...]:
     """Return other names of a shipped material, of standards and of trade."""
-    return tuple(_table("materials.toml")[name].get("aliases", ()))
+    return tuple(_material_tables()[name].get("aliases", ()))
 
 
 def about(name: str) -> str:
     """Return which product a shipped material is, its state and temperature; empty if it is not told."""
-    return str(_table("materials.toml")[name].get("about", ""))
+    return str(_material_tables()[name].get("about", ""))
 
 
 def sources_of(name: str) -> dict[str, str]:
     """Return where each value of a shipped material comes from."""
-    return dict(_table("materials.toml")[name].get("sources", {}))
+    return dict(_material_tables()[name].get("sources", {}))
 
 
 def _plain(name: str) -> str:
@@ -186,7 +178,7 @@ def read_material(table: Table | str) -> Material:
     return made
 
 
-def _nearest_material(name: str, known: Collection[str]) -> str:
+def _nearest_material(name: str) -> str:
     """Return the shipped materials that a name is a part of, in either spelling, or that have a grade of it.
 
     So are those of the family that a word of the name tells. Where there are none, the nearest name.
@@ -194,11 +186,11 @@ def _nearest_material(name: str, known: Collection[str]) -> str:
     part = name.lower().replace("aluminum", "aluminium")
     grades = {word for word in part.split("-") if word[-1:].isdigit()}
     family = family_by_words(part)
-    of = _table("materials.toml")
+    known = _material_tables()
     found = [
         one
-        for one in known
-        if part in one or grades & set(one.split("-")) or (family and family == of[one].get("family"))
+        for one, table in known.items()
+        if part in one or grades & set(one.split("-")) or (family and family == table.get("family"))
     ]
     from difflib import get_close_matches
 
@@ -217,21 +209,20 @@ def family_of(metal: Material) -> str:
     It is empty where none is known.
     """
     name = metal.name.removesuffix(CHANGED)
-    shipped_family = _table("materials.toml").get(name, {}).get("family", "")
+    shipped_family = _material_tables().get(name, {}).get("family", "")
     return metal.family or str(shipped_family) or family_by_words(name)
 
 
 def friction_pairs() -> list[dict[str, Any]]:
     """Return the table of dry pairs: their families, ends of the interval of f, and where they were read."""
-    return list(_table("friction_pairs.toml")["pair"])
+    return list(data_tables("friction_pairs.toml")["pair"])
 
 
 def sliding_laws() -> dict[str, SlidingLaw]:
     """Return the laws of friction over speed by name: shipped ones, and those that other packages add."""
-    shipped_laws = _table("sliding_laws.toml")
     laws = {
         name: law_of({k: v for k, v in table.items() if k != "about"}, name)
-        for name, table in shipped_laws.items()
+        for name, table in data_tables("sliding_laws.toml").items()
     }
     for name, law in added("friction_laws", laws).items():
         if not isinstance(law, SlidingLaw):
@@ -252,7 +243,10 @@ def sliding_law(name: str) -> SlidingLaw:
 def surfaces() -> dict[str, Surface]:
     """Return the shipped surface states by name, each with its interval of f and its source."""
     keys = ("friction", "friction_low", "friction_high", "source")
-    return {name: Surface(name, **{k: t[k] for k in keys}) for name, t in _table("surfaces.toml").items()}  # type: ignore[arg-type]
+    return {
+        name: Surface(name, **{key: table[key] for key in keys})  # type: ignore[arg-type]
+        for name, table in data_tables("surfaces.toml").items()
+    }
 
 
 def surface(state: str) -> Surface:
@@ -266,7 +260,7 @@ def surface(state: str) -> Surface:
 
 def source_of(name: str, key: str) -> str:
     """Return where a value of a shipped material comes from."""
-    return str(_table("materials.toml").get(name, {}).get("sources", {}).get(key, "stated in the scene"))
+    return str(_material_tables().get(name, {}).get("sources", {}).get(key, "stated in the scene"))
 
 
 def melting_of(name: str) -> float | None:
@@ -274,7 +268,7 @@ def melting_of(name: str) -> float | None:
 
     It stands beside the material and is no value of it: a changed strength leaves it as it is.
     """
-    stated = _table("materials.toml").get(name.removesuffix(CHANGED), {}).get("melting")
+    stated = _material_tables().get(name.removesuffix(CHANGED), {}).get("melting")
     return None if stated is None else parse_quantity(stated, "temperature", "melting")
 
 
@@ -285,7 +279,7 @@ def intervals_of(name: str) -> dict[str, tuple[float, float]]:
     def number(key: str, end: Any) -> float:
         return parse_quantity(end, dimensions[key], key) if isinstance(end, str) else float(end)
 
-    table = _table("materials.toml").get(name, {}).get("intervals", {})
+    table = _material_tables().get(name, {}).get("intervals", {})
     return {key: (number(key, low), number(key, high)) for key, (low, high) in table.items()}
 
 
@@ -315,7 +309,7 @@ def nearest_scene(name: str) -> str:
 @cache
 def _material(name: str) -> Material:
     """Return a material of the table, read once."""
-    return material_of(name, _values(_table("materials.toml")[name]))
+    return material_of(name, _values(_material_tables()[name]))
 
 
 def _values(table: dict[str, Any]) -> dict[str, Any]:
@@ -324,17 +318,13 @@ def _values(table: dict[str, Any]) -> dict[str, Any]:
 
 
 @cache
-def _table(name: str) -> dict[str, Any]:
-    table = tomllib.loads(_DATA.joinpath(*name.split("/")).read_text(encoding="utf-8"))
-    return table | _added_materials(table) if name == "materials.toml" else table
-
-
-def _added_materials(ours: dict[str, Any]) -> dict[str, Any]:
-    """Return the tables of materials that other packages add, each checked."""
+def _material_tables() -> dict[str, Any]:
+    """Return the tables of the shipped materials, and those that other packages add, each checked."""
+    ours = data_tables("materials.toml")
     tables = added("materials", ours)
     for name, table in tables.items():
         try:
             material_of(name, _values(table))
         except (SceneError, TypeError, ValueError, AttributeError) as error:
             raise wrong(name, "materials", f"is no table of a material ({error}).") from None
-    return tables
+    return ours | tables

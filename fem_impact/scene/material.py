@@ -1,9 +1,7 @@
 """What a body is made of: family, constants, strengths, flow curve, law of the rate; its surface's state."""
 
 import re
-import tomllib
 from dataclasses import dataclass
-from importlib.resources import files
 from itertools import pairwise
 from math import inf, sqrt
 from typing import ClassVar, Literal, NamedTuple, get_args
@@ -11,6 +9,7 @@ from typing import ClassVar, Literal, NamedTuple, get_args
 from fem_impact.errors import SceneError
 from fem_impact.scene import fields
 from fem_impact.scene.sliding import SlidingLaw
+from fem_impact.scene.units import data_tables
 
 Kind = Literal["metal", "brittle", "ground", "plastic", "rubber", "wood"]
 
@@ -23,10 +22,9 @@ class Family(NamedTuple):
     words: tuple[str, ...]
 
 
-_STATED = files("fem_impact.scene").joinpath("data/families.toml").read_text(encoding="utf-8")
 FAMILIES: dict[str, Family] = {
     name: Family(one["kind"], tuple(one["wider"]), tuple(one["words"]))
-    for name, one in tomllib.loads(_STATED).items()
+    for name, one in data_tables("families.toml").items()
 }
 
 
@@ -327,7 +325,7 @@ def _check_strengths(metal: Material) -> None:
 
 
 def _check_law(metal: Material) -> None:
-    """Refuse a flow stress that is stated twice, or without the numbers that it needs."""
+    """Refuse a flow stress or a skin that is stated twice, or without the numbers that it needs."""
     if metal.law == "hardness" and (metal.hardness is None or not metal.yields):
         missing = "yield_stress" if metal.hardness else "hardness"
         raise SceneError(f"needs {missing}.", key="law", value=metal.law, remedy=f"Give {missing}.")
@@ -351,17 +349,12 @@ def _check_law(metal: Material) -> None:
     if isinstance(flow, JohnsonCookFlow) and flow.m is not None and metal.heat_capacity is None:
         remedy = "Give it, or leave out m, melting, reference and heat_share."
         raise SceneError("is missing for the heat of the flow.", key="heat_capacity", remedy=remedy)
-    _check_skin(metal)
-
-
-def _check_skin(metal: Material) -> None:
-    """Refuse a skin whose depth follows from a hardness that is not stated, or that the bulk has."""
-    if metal.skin is None or metal.skin.load is None:
-        return
-    if metal.hardness is None:
+    # the depth of a skin follows from a hardness that must be stated, and not be that of the bulk
+    by_hardness = metal.skin is not None and metal.skin.load is not None
+    if by_hardness and metal.hardness is None:
         remedy = "Give it, or skin.depth in place of skin.load."
         raise SceneError("is missing beside skin.load.", key="hardness", remedy=remedy)
-    if metal.law == "hardness":
+    if by_hardness and metal.law == "hardness":
         remedy = 'Write law = "tensile", or give skin.depth.'
         problem = "gives the bulk the hardness that the skin is to explain."
         raise SceneError(problem, key="law", value=metal.law, remedy=remedy)

@@ -5,7 +5,7 @@ import re
 import tomllib
 from dataclasses import dataclass
 from decimal import Decimal
-from functools import lru_cache
+from functools import cache, lru_cache
 from importlib.resources import files
 from typing import Any
 
@@ -66,10 +66,16 @@ class Dimension:
         return ", ".join(u.symbol for u in self.units)
 
 
-_STATED = files("fem_impact.scene").joinpath("data/units.toml").read_text(encoding="utf-8")
+@cache
+def data_tables(name: str) -> dict[str, Any]:
+    """Return a TOML file of the folder ``data``."""
+    text = files("fem_impact.scene").joinpath("data", *name.split("/")).read_text(encoding="utf-8")
+    return tomllib.loads(text)
+
+
 DIMENSIONS: dict[str, Dimension] = {
     name: Dimension(name, **{**stated, "units": tuple(Unit(*unit) for unit in stated["units"])})
-    for name, stated in tomllib.loads(_STATED).items()
+    for name, stated in data_tables("units.toml").items()
 }
 
 
@@ -190,16 +196,11 @@ def format_quantity(value: float, dimension: str, symbol: str = "") -> str:
     """
     dim = DIMENSIONS[dimension]
     unit = dim.unit(symbol or dim.written) or dim.units[0]
-    decimal = Decimal(repr(value)).scaleb(-unit.power).normalize()
-    text = _digits(decimal) if unit.factor == 1.0 else _scaled(value, unit)
-    return f"{text} {unit.symbol}" if text else f"{value!r} {dim.units[0].symbol}"
-
-
-def _scaled(value: float, unit: Unit) -> str:
-    """Return the shortest text that reads back exactly, or nothing when there is none."""
+    if unit.factor == 1.0:
+        return f"{_digits(Decimal(repr(value)).scaleb(-unit.power).normalize())} {unit.symbol}"
     texts = (f"{value / unit.factor:.{digits}g}" for digits in range(1, 18))
     exact = next((text for text in texts if unit.to_si(text) == value), "")
-    return _digits(Decimal(exact)) if exact else ""
+    return f"{_digits(Decimal(exact))} {unit.symbol}" if exact else f"{value!r} {dim.units[0].symbol}"
 
 
 def _digits(number: Decimal) -> str:

@@ -23,6 +23,7 @@ from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load, replace, replace_all
 from fem_impact.scene.surface_table import known_pair, pair_surface
 from fem_impact.scene.types import to_dict
+from fem_impact.scene.units import data_tables
 
 T5B = load("t5b")
 BESIDE = {"about", "aliases", "family", "intervals", "sources", "melting"}
@@ -30,7 +31,7 @@ BESIDE = {"about", "aliases", "family", "intervals", "sources", "melting"}
 
 def stated(name):
     """The table of a shipped material as its file states it."""
-    return library._table("materials.toml")[name]
+    return data_tables("materials.toml")[name]
 
 
 @pytest.mark.parametrize(
@@ -57,9 +58,7 @@ def test_a_material_is_found_by_its_standard_number_and_by_other_names(name, own
 def test_no_name_stands_for_two_materials():
     names = [library._plain(one) for name in materials() for one in (name, *aliases_of(name))]
     assert len(names) == len(set(names))
-    refused = {
-        library._plain(one) for of in library._table("not_modelled.toml").values() for one in of["names"]
-    }
+    refused = {library._plain(one) for of in data_tables("not_modelled.toml").values() for one in of["names"]}
     assert not refused & set(names)
 
 
