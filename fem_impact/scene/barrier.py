@@ -52,9 +52,30 @@ class Barrier:
         fields.check_choice(self.boundary, get_args(fields.Boundary), "boundary")
         fields.check_choice(self.support, get_args(fields.Support), "support")
         fields.check_numbers(self, fields.BARRIER)
-        _check_support(self)
-        _check_turning(self)
-        # refuse layers on a barrier that bends or is free to move
+        # a barrier that is stated in two ways
+        if self.bends and self.thickness is None:
+            raise SceneError("is missing: how much a plate bends depends on it.", key="thickness")
+        if self.bends and self.mass is not None:
+            remedy = 'Leave out the mass, or support = "infinite".'
+            problem = "is that of a free body, but an infinite plate has none."
+            raise SceneError(problem, key="mass", remedy=remedy)
+        if self.span is not None and not self.bends:
+            remedy = 'Leave it out, or add support = "infinite" and a thickness.'
+            raise SceneError("means nothing for a barrier that does not bend.", key="span", remedy=remedy)
+        if self.boundary == "fixed" and (self.bends or self.mass is not None):
+            remedy = 'Leave out boundary = "fixed", or the mass and the support.'
+            raise SceneError("holds the barrier, which is stated to give way.", key="boundary", remedy=remedy)
+        # one that turns of which something is missing, and the place of a centre without a turn
+        if self.inertia is None and (self.centre_depth is not None or self.centre_offset != 0.0):
+            key = "centre_offset" if self.centre_depth is None else "centre_depth"
+            remedy = "Add its mass and inertia, or leave this out."
+            raise SceneError("means nothing for a barrier that does not turn.", key=key, remedy=remedy)
+        if self.inertia is not None and self.mass is None:
+            raise SceneError("is that of a free barrier: state its mass, too.", key="inertia")
+        if self.inertia is not None and self.centre_depth is None:
+            problem = "is missing: friction turns the barrier by it. State how deep its mass centre lies."
+            raise SceneError(problem, key="centre_depth")
+        # layers on one that bends or is free to move
         if self.layers and self.bends:
             remedy = 'Leave out the layers, or support = "infinite".'
             problem = "lie on a plate that bends, whose impedance is known for one material alone."
@@ -79,32 +100,3 @@ class Barrier:
     def bends(self) -> bool:
         """Whether it is a plate whose bending waves run away."""
         return self.support == "infinite"
-
-
-def _check_turning(barrier: Barrier) -> None:
-    """Refuse a barrier that turns of which something is missing, and the place of a centre without a turn."""
-    placed = barrier.centre_depth is not None or barrier.centre_offset != 0.0
-    if barrier.inertia is None and placed:
-        key = "centre_offset" if barrier.centre_depth is None else "centre_depth"
-        remedy = "Add its mass and inertia, or leave this out."
-        raise SceneError("means nothing for a barrier that does not turn.", key=key, remedy=remedy)
-    if barrier.inertia is not None and barrier.mass is None:
-        raise SceneError("is that of a free barrier: state its mass, too.", key="inertia")
-    if barrier.inertia is not None and barrier.centre_depth is None:
-        problem = "is missing: friction turns the barrier by it. State how deep its mass centre lies."
-        raise SceneError(problem, key="centre_depth")
-
-
-def _check_support(barrier: Barrier) -> None:
-    """Refuse a barrier that is stated in two ways."""
-    if barrier.bends and barrier.thickness is None:
-        raise SceneError("is missing: how much a plate bends depends on it.", key="thickness")
-    if barrier.bends and barrier.mass is not None:
-        remedy = 'Leave out the mass, or support = "infinite".'
-        raise SceneError("is that of a free body, but an infinite plate has none.", key="mass", remedy=remedy)
-    if barrier.span is not None and not barrier.bends:
-        remedy = 'Leave it out, or add support = "infinite" and a thickness.'
-        raise SceneError("means nothing for a barrier that does not bend.", key="span", remedy=remedy)
-    if barrier.boundary == "fixed" and (barrier.bends or barrier.mass is not None):
-        remedy = 'Leave out boundary = "fixed", or the mass and the support.'
-        raise SceneError("holds the barrier, which is stated to give way.", key="boundary", remedy=remedy)

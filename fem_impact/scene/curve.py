@@ -55,7 +55,14 @@ def curve(stated: Any, strain: Any, E: float) -> Points:
     if kind == "plastic":
         return points
     if kind == "engineering":
-        _refuse_necked(points)
+        for (_, before), (e, s) in pairwise(points):
+            if s < before:  # behind the largest force the strain of the bar is not that of its neck
+                raise SceneError(
+                    f"falls from {before / 1e6:.4g} to {s / 1e6:.4g} MPa at a strain of {e:.4g}: the bar "
+                    "necks, and its strain is no longer that of the metal.",
+                    key="points",
+                    remedy="Leave out what follows the largest stress, or give true strains and stresses.",
+                )
         points = tuple((log(1 + e), s * (1 + e)) for e, s in points if e > -1)
     plastic = [(e - s / E, s) for e, s in points]
     elastic = [k for k, (p, _) in enumerate(plastic) if p <= ELASTIC]
@@ -78,18 +85,6 @@ def curve(stated: Any, strain: Any, E: float) -> Points:
             remedy="Are the strains in per cent? Give 0.01 for 1 %, and the point at which the body yields.",
         )
     return ((0.0, plastic[first][1]), *plastic[first + 1 :])
-
-
-def _refuse_necked(points: Points) -> None:
-    """Refuse a bar that necks: behind the largest force its strain is not that of the neck."""
-    for (_, before), (strain, stress) in pairwise(points):
-        if stress < before:
-            raise SceneError(
-                f"falls from {before / 1e6:.4g} to {stress / 1e6:.4g} MPa at a strain of {strain:.4g}: the "
-                "bar necks, and its strain is no longer that of the metal.",
-                key="points",
-                remedy="Leave out what follows the largest stress, or give true strains and stresses.",
-            )
 
 
 def _of_rows(rows: Any) -> Points:

@@ -120,20 +120,6 @@ def the_way(keys: Collection[str]) -> tuple[str, ...]:
     raise SceneError(problem, remedy=_KEEP)
 
 
-def _refuse_one_of_two(old: Impact, new: Collection[str]) -> None:
-    """Refuse one new velocity beside a height or speed: the other would silently be that of the old fall."""
-    velocities = set(WAYS[2]) & set(new)
-    if old.stated == WAYS[2] or len(velocities) != 1 or {"height", "speed"} & set(new):
-        return
-    (key,), (way,) = velocities, old.stated
-    (other,) = set(WAYS[2]) - velocities
-    raise SceneError(
-        f"is one of two velocities, but the scene states its impact by {way} along the body's axis.",
-        key=f"impact.{key}",
-        remedy=f"Change impact.{way}, or state both velocities: add impact.{other}.",
-    )
-
-
 def restated(old: Impact, table: dict[str, Any], changed: Collection[str]) -> dict[str, Any]:
     """Return the table of a changed impact, in which the changed keys state the velocities.
 
@@ -146,13 +132,21 @@ def restated(old: Impact, table: dict[str, Any], changed: Collection[str]) -> di
         One velocity alone is changed of an impact that a height or speed states.
     """
     new = set(changed)
-    _refuse_one_of_two(old, new)
+    velocities = new & set(WAYS[2])
+    if len(velocities) == 1 and old.stated != WAYS[2] and not new & {"height", "speed"}:
+        # the other velocity would silently be that of the old fall
+        (key,), (other,), (way,) = velocities, set(WAYS[2]) - velocities, old.stated
+        raise SceneError(
+            f"is one of two velocities, but the scene states its impact by {way} along the body's axis.",
+            key=f"impact.{key}",
+            remedy=f"Change impact.{way}, or state both velocities: add impact.{other}.",
+        )
     if not new & {key for way in WAYS for key in way}:
         along = old.slope is None and abs(old.beside) <= BESIDE
         if "angle" not in new or old.stated != WAYS[2] or not along:
             return table
         table, new = {**table, "speed": fields.SPEED.write(hypot(old.v_n, old.v_t))}, {"speed"}
-    both = (fields.V_N, fields.V_T) if new & set(WAYS[2]) else ()
+    both = (fields.V_N, fields.V_T) if velocities else ()
     return one_way({**{p.key: p.write(getattr(old, p.key)) for p in both if p.key not in new}, **table}, new)
 
 
@@ -190,14 +184,20 @@ class Following:
 
     def __post_init__(self) -> None:
         fields.check_numbers(self, fields.STRIKES)
-        if not isinstance(self.fidelity, str) or (self.fidelity and not _holds(self.fidelity)):
+        # all stages but the last have a number, and each is coarser than the one before
+        stages = self.stated if isinstance(self.fidelity, str) else ()
+        counted = all(count for _, count in stages[:-1])
+        ordered = all(_finer(one, other) for (one, _), (other, _) in pairwise(stages))
+        if self.fidelity != "" and not (stages and counted and ordered and stages[-1][1] is None):
             problem = "does not say which models compute the strikes."
             raise SceneError(problem, key="fidelity", value=self.fidelity, remedy=REMEDY)
 
     @property
     def stated(self) -> tuple[Stage, ...]:
-        """The stages as stated, from the first strike on."""
-        return _stages(self.fidelity) if self.fidelity else ()
+        """The stages as stated, from the first strike on; none where a part of them is not understood."""
+        parts = [STAGE.fullmatch(part) for part in self.fidelity.split(", then ")]
+        stages = tuple((part[1], int(part[2]) if part[2] else None) for part in parts if part)
+        return stages if all(parts) else ()
 
     @property
     def first(self) -> str:
@@ -220,17 +220,3 @@ class Following:
 
 def _finer(model: str, other: str) -> bool:
     return FIDELITIES.index(model) > FIDELITIES.index(other)
-
-
-def _stages(text: str) -> tuple[Stage, ...]:
-    """Return the stages of a statement; those of none where a part of it is not understood."""
-    parts = [STAGE.fullmatch(part) for part in text.split(", then ")]
-    return tuple((part[1], int(part[2]) if part[2] else None) for part in parts if part) if all(parts) else ()
-
-
-def _holds(text: str) -> bool:
-    """Return whether all stages but the last have a number, and each is coarser than the one before."""
-    stages = _stages(text)
-    counted = all(count is not None for _, count in stages[:-1])
-    ordered = all(_finer(one, other) for (one, _), (other, _) in pairwise(stages))
-    return bool(stages) and counted and ordered and stages[-1][1] is None
