@@ -126,7 +126,7 @@ class OwnMesh:
 
     def half(self) -> HexMesh:
         """Return the half y >= 0 of the body."""
-        return _body(self).half
+        return self.body().half
 
 
 def stated(table: Mapping[str, Any]) -> OwnMesh:
@@ -145,16 +145,13 @@ def stated(table: Mapping[str, Any]) -> OwnMesh:
     content, symmetry, tip = (table.get(key) for key in ("mesh_content", "mesh_symmetry", "mesh_tip"))
     path, unit = check_text(table["mesh"], "mesh", 1000), table.get("mesh_unit", "m")
     names = tuple(check_text(name, "mesh_sets", 200) for name in named)
-    return OwnMesh.of(path, unit, content, symmetry, _direction(tip) if isinstance(tip, list) else tip, names)
-
-
-def _direction(parts: list[Any]) -> tuple[float, float, float]:
-    """Return the direction (3,) that a list states."""
-    numbers = [float(part) for part in parts if type(part) in (int, float) and isfinite(part)]
-    if len(numbers) != 3 or len(parts) != 3 or not any(numbers):
-        remedy = "Give three numbers of which one is not zero, such as [1, 0, -1]."
-        raise SceneError("is no direction.", key="mesh_tip", value=parts, remedy=remedy)
-    return numbers[0], numbers[1], numbers[2]
+    if isinstance(tip, list):
+        numbers = [float(part) for part in tip if type(part) in (int, float) and isfinite(part)]
+        if len(numbers) != 3 or len(tip) != 3 or not any(numbers):
+            remedy = "Give three numbers of which one is not zero, such as [1, 0, -1]."
+            raise SceneError("is no direction.", key="mesh_tip", value=tip, remedy=remedy)
+        tip = numbers[0], numbers[1], numbers[2]
+    return OwnMesh.of(path, unit, content, symmetry, tip, names)
 
 
 def _planes(symmetry: object) -> tuple[tuple[int, float], ...]:

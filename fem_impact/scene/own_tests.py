@@ -83,7 +83,7 @@ def read_camera(path: str | Path) -> Camera:
     }
     motion = {name: values[name] for name in (*OF_TESTS, *SPIN_BEFORE) if name in values}
     arms = one_pair({name: values[name] for name in ARMS if name in values}, path)
-    _check_motion(motion, table, {name: stated for name, (stated, _) in columns.items()})
+    _check_motion(motion, table, columns)
     _check_labels(table)
     labels = tuple(record.get("test", str(i)) for i, (_, record) in enumerate(records, 1))
     used = {stated for stated, _ in columns.values()} | {"test"}
@@ -98,9 +98,7 @@ def _columns(table: UserTable) -> dict[str, tuple[str, Unit]]:
         means = f" {', '.join(known)} alone can be given as means: a file {MEANS}." if known else ""
         lacks = f"{table.path}: the header lacks {', '.join(missing)}."
         raise ResultError(f"{lacks} It needs {HEADER} (capitals: after impact).{means}")
-    every = {**OF_TESTS, **SPIN_BEFORE, **ARMS}
-    stated = {name: table.quantity(name, dimension) for name, dimension in every.items()}
-    return {name: column for name, column in stated.items() if column}
+    return table.quantities({**OF_TESTS, **SPIN_BEFORE, **ARMS})
 
 
 def _number(place: str, text: str, unit: Unit) -> float:
@@ -140,7 +138,9 @@ def one_pair(arms: Mapping[str, Iterable[float]], path: str | Path) -> tuple[flo
     return stated[0].pop(), stated[1].pop()
 
 
-def _check_motion(motion: Mapping[str, Floats], table: UserTable, stated: Mapping[str, str]) -> None:
+def _check_motion(
+    motion: Mapping[str, Floats], table: UserTable, columns: Mapping[str, tuple[str, Unit]]
+) -> None:
     """Refuse a test that is no impact, usually because of a wrong sign."""
     wrong = (
         ("v_n", motion["v_n"] >= 0, "must be negative: n points out of the barrier, and the rod falls on it"),
@@ -148,11 +148,11 @@ def _check_motion(motion: Mapping[str, Floats], table: UserTable, stated: Mappin
     )
     for name, bad, rule in wrong:
         if bad.any():
-            place, text = table.column(stated[name])[int(np.argmax(bad))]
+            place, text = table.column(columns[name][0])[int(np.argmax(bad))]
             raise ResultError(f"{place}: {text} {rule}.")
     for name in (name for name, dimension in OF_TESTS.items() if dimension == "speed"):
         if (fast := abs(motion[name]) > FASTEST).any():
-            place, text = table.column(stated[name])[int(np.argmax(fast))]
+            place, text = table.column(columns[name][0])[int(np.argmax(fast))]
             raise ResultError(f"{place}: {text} {TOO_FAST}")
 
 
@@ -231,8 +231,7 @@ def read_means(path: str | Path, others: Collection[str] = ()) -> Means:
     table = read_user_table(path, MEANS)
     scatter = _scatter(table.names, path)
     means: dict[str, Mean] = {}
-    stated = {name: table.quantity(name, dimension) for name, dimension in ARMS.items()}
-    columns = {name: column for name, column in stated.items() if column}
+    columns = table.quantities(ARMS)
     used = {"quantity", "mean", scatter, "n", "systematic", *(column for column, _ in columns.values())}
     used |= {name for name in table.names if name.startswith(CORRELATION)}
     ignored = table.unused(used, ("systematic", *ARMS, *(f"{CORRELATION}{name}" for name in OF_MEANS)))

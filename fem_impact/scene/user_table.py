@@ -8,7 +8,7 @@ import csv
 import io
 import math
 import re
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
@@ -65,6 +65,11 @@ class UserTable:
     def stating(self, key: str) -> list[str]:
         """Return the names of the columns that state a quantity, in whatever unit."""
         return [name for name in self.names if _stated(name, key)]
+
+    def quantities(self, dimensions: Mapping[str, str]) -> dict[str, tuple[str, Unit]]:
+        """Return name and unit of the column of each quantity that has one; see `quantity`."""
+        found = {key: self.quantity(key, dimension) for key, dimension in dimensions.items()}
+        return {key: column for key, column in found.items() if column}
 
     def unused(self, used: Collection[str], optional: Collection[str]) -> tuple[str, ...]:
         """Return the columns that are not used.
@@ -130,7 +135,17 @@ def read_user_table(path: str | Path, header: str) -> UserTable:
         The file cannot be read, is empty, is not CSV, has two columns of one name, or has decimal
         commas and decimal points.
     """
-    lines = _lines(_text(path), path)
+    text = _text(path)
+    header_line = next((line for line in text.split("\n") if line.strip() and not line.startswith("#")), "")
+    mark = max(",;\t", key=header_line.count)
+    reader = csv.reader(io.StringIO(text), strict=True, delimiter=mark)
+    try:
+        stated = [(reader.line_num, [cell.strip() for cell in cells]) for cells in reader]
+    except csv.Error as error:
+        raise ResultError(f"{path}: line {reader.line_num} is not CSV ({error}).") from None
+    lines = [(line, cells) for line, cells in stated if any(cells) and not cells[0].startswith("#")]
+    if mark != ",":
+        lines = _with_points(lines, path)
     if not lines:
         raise ResultError(f"{path}: is empty. Begin it with the header {header}.")
     names = lines[0][1]
@@ -149,18 +164,6 @@ def _text(path: str | Path) -> str:
         except UnicodeDecodeError:
             continue
     raise ResultError(f"{path}: is no text. Save it as CSV.")
-
-
-def _lines(text: str, path: str | Path) -> list[Line]:
-    header = next((line for line in text.split("\n") if line.strip() and not line.startswith("#")), "")
-    mark = max(",;\t", key=header.count)
-    reader = csv.reader(io.StringIO(text), strict=True, delimiter=mark)
-    try:
-        stated = [(reader.line_num, [cell.strip() for cell in cells]) for cells in reader]
-    except csv.Error as error:
-        raise ResultError(f"{path}: line {reader.line_num} is not CSV ({error}).") from None
-    lines = [(line, cells) for line, cells in stated if any(cells) and not cells[0].startswith("#")]
-    return lines if mark == "," else _with_points(lines, path)
 
 
 def _with_points(lines: list[Line], path: str | Path) -> list[Line]:
