@@ -29,31 +29,18 @@ def read_toml(path: str | Path) -> types.Scene:
 
 def read_tables(path: Path) -> dict[str, Any]:
     """Return the tables of a scene file unchecked, with its own files found from its place."""
-    # put the points of a profile's CSV file, which is named from the scene's directory, in its place
-    data = _beside(_parse(_load(path), str(path)), path)
-    rod = data.get("projectile")
-    if not isinstance(rod, Mapping) or not isinstance(rod.get("profile"), str):
-        return data
-    try:
-        points = shapes.read_points(path.parent / rod["profile"])
-    except ResultError as error:
-        raise SceneError(str(error), key="projectile.profile", source=str(path)) from None
-    return data | {
-        "projectile": {
-            **rod,
-            "profile": [[shapes.HEIGHT.write(z), shapes.RADIUS.write(r)] for z, r in points],
-        }
-    }
-
-
-def _beside(data: dict[str, Any], path: Path) -> dict[str, Any]:
-    """Return the tables with the files of own tests, curves and mesh from the place of its file."""
-    data = curve.beside(data, path.parent)
-    name, rod = data.get("measured"), data.get("projectile")
-    if isinstance(name, str) and name.endswith(types.OWN):
-        data = data | {"measured": str((path.parent / name).resolve())}
-    if isinstance(rod, Mapping) and isinstance(rod.get("mesh"), str):
-        data = data | {"projectile": {**rod, "mesh": str((path.parent / rod["mesh"]).resolve())}}
+    data: dict[str, Any] = curve.beside(_load(path), path.parent)
+    tests, rod = data.get("measured"), data.get("projectile")
+    if isinstance(tests, str) and tests.endswith(types.OWN):
+        data["measured"] = str((path.parent / tests).resolve())
+    if isinstance(rod, dict) and isinstance(rod.get("mesh"), str):
+        rod["mesh"] = str((path.parent / rod["mesh"]).resolve())
+    if isinstance(rod, dict) and isinstance(rod.get("profile"), str):  # the points of its file take its place
+        try:
+            points = shapes.read_points(path.parent / rod["profile"])
+        except ResultError as error:
+            raise SceneError(str(error), key="projectile.profile", source=str(path)) from None
+        rod["profile"] = shapes.written_points(points)
     return data
 
 
@@ -65,8 +52,8 @@ def read_dict(data: Mapping[str, Any], source: str = "scene") -> types.Scene:
         raise error.under("", source) from None
 
 
-def _load(path: Path) -> str:
-    """Return the text of a file that is small enough to be a scene."""
+def _load(path: Path) -> dict[str, Any]:
+    """Return the tables of a file that is small enough to be a scene."""
     try:
         with path.open("rb") as file:
             raw = file.read(_LARGEST_FILE + 1)
@@ -85,14 +72,10 @@ def _load(path: Path) -> str:
         raise SceneError(f"cannot be read ({error}).", source=str(path)) from None
     if len(raw) > _LARGEST_FILE:
         raise SceneError("is larger than a megabyte.", source=str(path), remedy=_TOML)
-    return text
-
-
-def _parse(text: str, source: str) -> dict[str, Any]:
     try:
         return tomllib.loads(text)
     except (ValueError, RecursionError) as error:
-        raise SceneError(f"is not readable as TOML: {error}.", source=source, remedy=_TOML) from None
+        raise SceneError(f"is not readable as TOML: {error}.", source=str(path), remedy=_TOML) from None
 
 
 SMOOTH = Surface("custom", 0.0, 0.0, 0.0, "no surface is stated and no friction effect named")
@@ -307,22 +290,12 @@ def _rod(table: tables.Table, own: dict[str, Any]) -> ProjectileSpec:
     stated = table.get("tip")
     shapes.refuse_as_tip(stated)
     # a tip that is missing or none is told before the radius that it would need
-    plain = {} if _is_rounded(stated) else {"tip_radius": 0.0}
-    numbers = tables.numbers_of(table, fields.PROJECTILE, ("tip", "material"), plain)
+    instead = {} if shapes.is_rounded(stated) else {"tip_radius": 0.0}
+    numbers = tables.numbers_of(table, fields.PROJECTILE, ("tip", "material"), instead)
     tip = tables.needed(table, "tip", '"A", "B" or "plain"')
     return ProjectileSpec(
         tip=tip, material=tables.within(table, "material", library.read_material), **numbers, **own
     )
-
-
-def _is_rounded(tip: object) -> bool:
-    if tip in ("A", "B", "plain"):  # the published tips need no import of the rigid package
-        return tip != "plain"
-    if not isinstance(tip, str):
-        return False
-    from fem_impact.scene.tips import tips
-
-    return tip in tips()
 
 
 def _barrier(table: tables.Table) -> Barrier:
@@ -336,7 +309,7 @@ def _barrier(table: tables.Table) -> Barrier:
 
 def _impact(table: tables.Table) -> Impact:
     """Read a motion that a height, a speed or velocities state, and how far it is followed."""
-    known = (*fields.IMPACT, fields.SLOPE, fields.HEIGHT, fields.SPEED)
+    known = fields.WAYS_OF_IMPACT
     given = {p.key for p in known if {p.key, p.si_key} & set(table)}
     shown = [*(p.key for p in known), "until"]
     tables.check_keys(table, (*shown, *(p.si_key for p in known)), shown)

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 from fem_impact.errors import ResultError, SceneError
 from fem_impact.scene import fields
 from fem_impact.scene.fields import Parameter
-from fem_impact.scene.units import DIMENSIONS, Unit, parse_quantity
-from fem_impact.scene.user_table import UserTable, in_si, read_user_table
+from fem_impact.scene.units import DIMENSIONS, parse_quantity
+from fem_impact.scene.user_table import in_si, read_user_table
 
 if TYPE_CHECKING:
     from fem_impact.arrays import Array
@@ -96,11 +96,18 @@ def refuse_tip(stated: Mapping[str, Any]) -> None:
         )
 
 
-def refuse_as_tip(tip: object) -> None:
-    """Refuse the name of a shape as that of a tip (SceneError), and say how a shape is written."""
+def is_rounded(tip: object) -> bool:
+    """Return whether a word is that of a tip which has a radius."""
+    if tip in ("A", "B", "plain"):  # the published tips need no import of the rigid package
+        return tip != "plain"
     from fem_impact.scene.tips import tips
 
-    if isinstance(tip, str) and tip in NEEDS and tip not in tips():
+    return isinstance(tip, str) and tip in tips()
+
+
+def refuse_as_tip(tip: object) -> None:
+    """Refuse the name of a shape as that of a tip (SceneError), and say how a shape is written."""
+    if isinstance(tip, str) and tip in NEEDS and not is_rounded(tip):
         raise SceneError(
             "is a shape, not one of the published tips.",
             key="tip",
@@ -315,12 +322,17 @@ def read_points(path: Path) -> tuple[Point, ...]:
     """
     table, metre = read_user_table(path, "z_mm,r_mm"), DIMENSIONS["length"].units[0]
     columns = [table.quantity(key, "length", bare=metre) for key in ("z", "r")]
-    z, r = (_lengths(table, column, path) for column in columns)
+    lengths = list[list[float]]()
+    for column in columns:
+        if column is None:
+            told = "The first line names them, such as z_mm,r_mm."
+            raise ResultError(f"{path}: has no columns z and r. {told}")
+        name, unit = column
+        lengths.append([in_si(place, text, unit) for place, text in table.column(name)])
+    z, r = lengths
     return tuple(zip(z, r, strict=True))
 
 
-def _lengths(table: UserTable, column: tuple[str, Unit] | None, path: Path) -> list[float]:
-    if column is None:
-        raise ResultError(f"{path}: has no columns z and r. The first line names them, such as z_mm,r_mm.")
-    name, unit = column
-    return [in_si(place, text, unit) for place, text in table.column(name)]
+def written_points(points: Iterable[Point]) -> list[list[Any]]:
+    """Return points (z, r), m, of a profile or bore as a scene file writes them."""
+    return [[HEIGHT.write(z), RADIUS.write(r)] for z, r in points]

@@ -38,7 +38,7 @@ PLACES = {
     for place, wanted in (
         ("a material: projectile.material or barrier.material", fields.MATERIAL),
         ("[surface]", fields.SURFACE),
-        ("[impact]", (*fields.IMPACT, fields.SLOPE, fields.HEIGHT, fields.SPEED)),
+        ("[impact]", fields.WAYS_OF_IMPACT),
         ("[accuracy]", fields.ACCURACY),
         ("[save]", fields.SAVE),
         ("[strikes]", fields.STRIKES),

@@ -7,7 +7,6 @@ are the same object and pass the same checks. `to_dict` and `to_toml` write a sc
 import hashlib
 import json
 import os
-from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from math import inf
 from pathlib import Path
@@ -20,10 +19,10 @@ from fem_impact.scene import fields
 from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.fields import Fields, Parameter
 from fem_impact.scene.impact import FIRST, WAYS, Following, Impact
-from fem_impact.scene.material import Flow, JohnsonCookFlow, JohnsonCookRate, Material, Surface, TableFlow
+from fem_impact.scene.material import JohnsonCookFlow, JohnsonCookRate, Material, Surface, TableFlow
 from fem_impact.scene.own_mesh import OwnMesh
 from fem_impact.scene.projectile import ProjectileSpec
-from fem_impact.scene.shapes import HEIGHT, RADIUS, NamedShape, Point, Profile, sizes_of
+from fem_impact.scene.shapes import HEIGHT, NamedShape, Profile, sizes_of, written_points
 from fem_impact.scene.sliding import written
 
 MEASURED_SETS = (
@@ -307,7 +306,7 @@ def _projectile(rod: ProjectileSpec) -> dict[str, Any]:
         made: dict[str, Any] = {"segments": parts}
     else:
         made = {"material": material_table(rod.material)}
-    bore = {"bore": _points(rod.bore)} if rod.bore else {}
+    bore = {"bore": written_points(rod.bore)} if rod.bore else {}
     return _shape(rod) | bore | made
 
 
@@ -317,7 +316,7 @@ def _shape(rod: ProjectileSpec) -> dict[str, Any]:
         pairs = zip(sizes_of(shape.name, shape.by_length), shape.sizes, strict=True)
         return {"shape": shape.name, **{size.key: size.write(value) for size, value in pairs}}
     if isinstance(shape, Profile):
-        return {"profile": _points(shape.points), "profile_smooth": shape.smooth}
+        return {"profile": written_points(shape.points), "profile_smooth": shape.smooth}
     if isinstance(shape, OwnMesh):
         tip = list(shape.tip) if isinstance(shape.tip, tuple) else shape.tip
         named = {"mesh_symmetry": shape.symmetry, "mesh_tip": tip, "mesh_sets": list(shape.sets)}
@@ -327,10 +326,6 @@ def _shape(rod: ProjectileSpec) -> dict[str, Any]:
         sets = {"mesh_materials": regions, "mesh_surfaces": faces}
         return file | {key: value for key, value in (named | sets).items() if value}
     return {"tip": rod.tip, **_written(rod, fields.PROJECTILE)}
-
-
-def _points(points: Iterable[Point]) -> list[list[Any]]:
-    return [[HEIGHT.write(z), RADIUS.write(r)] for z, r in points]
 
 
 def _barrier(barrier: Barrier) -> dict[str, Any]:
@@ -348,9 +343,8 @@ def _barrier(barrier: Barrier) -> dict[str, Any]:
 def _impact(impact: Impact) -> dict[str, Any]:
     """Write the velocities as they are stated."""
     stated = ("angle", *impact.stated, "omega", "slope")
-    known = (*fields.IMPACT, fields.SLOPE, fields.HEIGHT, fields.SPEED)
     until = {} if impact.until == FIRST else {"until": impact.until}
-    return _written(impact, tuple(p for p in known if p.key in stated)) | until
+    return _written(impact, tuple(p for p in fields.WAYS_OF_IMPACT if p.key in stated)) | until
 
 
 def _accuracy(accuracy: Accuracy) -> dict[str, Any]:
@@ -366,26 +360,27 @@ def _accuracy(accuracy: Accuracy) -> dict[str, Any]:
 
 def material_table(material: Material) -> dict[str, Any]:
     """Return a material as the table that a scene states."""
-    law = {"law": material.law} if material.law != "tensile" else {}
-    rate = material.rate
-    rates = {"rate": {"law": rate.law, **_written(rate, fields.RATES[rate.law])}} if rate else {}
-    if isinstance(material.flow, JohnsonCookFlow) and isinstance(rate, JohnsonCookRate):
-        follows = ("tested",) if rate.tested == rate.reference else ()
-        rates["rate"] = {key: value for key, value in rates["rate"].items() if key not in follows}
-    flow = {"flow": _flow(material.flow)} if material.flow else {}
-    skin = material.skin
-    skins = {"skin": {**_written(skin, fields.SKIN), "shape": skin.shape}} if skin else {}
-    words = {"family": material.family} if material.family else {}
-    sources = {"sources": dict(material.sources)} if material.sources else {}
-    numbers = _written(material, fields.MATERIAL)
-    return {"name": material.name, **words, **numbers, **law, **flow, **rates, **skins, **sources}
-
-
-def _flow(flow: Flow) -> dict[str, Any]:
-    if isinstance(flow, TableFlow):
-        points = [[strain, fields.FLOW_STRESS.write(stress)] for strain, stress in flow.points]
-        return {"law": flow.law, "points": points}
-    return {"law": flow.law, **_written(flow, fields.FLOWS[flow.law])}
+    table: dict[str, Any] = {"name": material.name}
+    if material.family:
+        table["family"] = material.family
+    table |= _written(material, fields.MATERIAL)
+    if material.law != "tensile":
+        table["law"] = material.law
+    if flow := material.flow:
+        table["flow"] = {"law": flow.law, **_written(flow, fields.FLOWS[flow.law])}
+        if isinstance(flow, TableFlow):
+            points = [[strain, fields.FLOW_STRESS.write(stress)] for strain, stress in flow.points]
+            table["flow"]["points"] = points
+    if rate := material.rate:
+        table["rate"] = {"law": rate.law, **_written(rate, fields.RATES[rate.law])}
+        if isinstance(rate, JohnsonCookRate) and isinstance(flow, JohnsonCookFlow):
+            if rate.tested == rate.reference:  # it follows from the flow, see `tested_at`
+                del table["rate"]["tested"]
+    if skin := material.skin:
+        table["skin"] = {**_written(skin, fields.SKIN), "shape": skin.shape}
+    if material.sources:
+        table["sources"] = dict(material.sources)
+    return table
 
 
 def _written(part: object, wanted: tuple[Parameter, ...]) -> dict[str, Any]:
