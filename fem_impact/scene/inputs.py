@@ -25,9 +25,16 @@ def inputs(scene: Scene) -> Table:
     ``value`` with its unit; ``source``, `STATED` or `DEFAULT` for values that no shipped table holds.
     """
     tables, surface = to_dict(scene), scene.surface
-    rows = [row for name in ("projectile", "barrier", "impact") for row in _rows(name, tables[name])]
-    kept = _defaults(scene)
-    rows = [(key, value, DEFAULT if key in kept else source) for key, value, source in rows]
+    rows = list[tuple[str, str, str]]()
+    for name in ("projectile", "barrier", "impact"):
+        part = getattr(scene, name)
+        kept = {
+            f"{name}.{field.name}"
+            for field in fields(part)
+            if field.default is not MISSING and getattr(part, field.name) == field.default
+        }
+        stated = _rows(name, tables[name])
+        rows += [(key, value, DEFAULT if key in kept else source) for key, value, source in stated]
     low, high = surface.friction_low, surface.friction_high
     friction = f"{surface.friction:g} ({low:g} to {high:g})" if low < high else f"{surface.friction:g}"
     rows.append(("surface.friction", friction, surface.source))
@@ -38,17 +45,6 @@ def inputs(scene: Scene) -> Table:
         own = getattr(scene.heating, f"{body}_melting") is None
         rows += [(f"heating.{body}_melting", f"{limit:g} K", source_of(name, "melting") if own else STATED)]
     return Table.of(("input", "value", "source"), rows, left=range(3))
-
-
-def _defaults(scene: Scene) -> set[str]:
-    """Return the keys of projectile, barrier and impact that have their default value."""
-    parts = ("projectile", scene.projectile), ("barrier", scene.barrier), ("impact", scene.impact)
-    return {
-        f"{name}.{field.name}"
-        for name, part in parts
-        for field in fields(part)
-        if field.default is not MISSING and getattr(part, field.name) == field.default
-    }
 
 
 def _source(material: dict[str, Any], key: str) -> str:

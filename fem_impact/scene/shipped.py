@@ -134,13 +134,16 @@ def _changed(scene: Scene, changes: Mapping[str, Any]) -> dict[str, Any]:
         raise SceneError("is taken out again by another change of the same call.", key=undone, remedy=remedy)
     if any(_is_another_impact(scene, key, value) for key, value in changes.items()):
         measured = "" if changes.get("measured") else data.pop("measured", "")
-        if "title" not in changes:
-            data["title"] = _title(data["title"], measured, changes)
+        if "title" not in changes and (measured or _CHANGED in data["title"]):
+            published = measured and not measured.endswith(OWN)
+            data["title"] = titled(measured if published else data["title"], changes)
     for body, metal in scene.materials.items():
         _follow_flow(data, f"{body}.material", metal, changes)
     bodies_changed = {key.partition(".")[0] for key in changes} & {"projectile", "barrier"}
     if bodies_changed and not changes.keys() & {"surface", *(f"surface.{key}" for key in PAIR)}:
-        _follow_pair(data["surface"])
+        if data["surface"]["state"] == "pair":  # the surface of a pair of materials follows from them
+            for key in PAIR:
+                data["surface"].pop(key, None)
     if changes.get("impact.until") == FIRST and not any(key.startswith("strikes") for key in changes):
         data.pop("strikes", None)  # it says how a body is followed
     if new := moved(changes):
@@ -163,13 +166,6 @@ def _follow_flow(data: dict[str, Any], place: str, metal: Material, changes: Map
     if changed and isinstance(rate, dict) and isinstance(own, JohnsonCookRate):
         if own.tested == tested_at(metal.flow, own.reference):
             rate.pop("tested", None)
-
-
-def _follow_pair(surface: dict[str, Any]) -> None:
-    """Let a surface that is that of a pair of materials follow from them."""
-    if surface["state"] == "pair":
-        for key in PAIR:
-            surface.pop(key, None)
 
 
 def named(value: Any) -> str:
@@ -263,7 +259,10 @@ def _change(data: dict[str, Any], key: str, value: Any) -> None:
     for other in _replaced(table, path, last, value):
         table.pop(other, None)
     table[last] = value
-    _rename(table, path, last)
+    if path == ["surface"] and last.startswith("friction"):  # the name of a state stands for no other values
+        table |= {"state": "custom", "source": "set by the user"}
+        if last == "friction":
+            table |= {"friction_low": value, "friction_high": value}
     if "material" in path and last != "name":
         metal = _section(data, path[: path.index("material") + 1], key)
         metal["name"] = f"{metal['name'].removesuffix(CHANGED)}{CHANGED}"
@@ -305,21 +304,10 @@ def _is_another_impact(scene: Scene, key: str, value: Any) -> bool:
     stated = {names[0]: value} if names else value  # a whole table states several
     if not isinstance(stated, Mapping) or not {*stated} <= {"material", "boundary"}:
         return True
-    return "material" in stated and body != "impact" and _is_another_metal(scene, body, stated["material"])
-
-
-def _is_another_metal(scene: Scene, body: str, material: Any) -> bool:
-    """Return whether a material has another name than a body's."""
-    metal = scene.projectile.material if body == "projectile" else scene.barrier.material
-    name = named(material)
-    return (own_name(name) or name) != metal.name.removesuffix(CHANGED)
-
-
-def _title(title: str, measured: str, changes: Mapping[str, Any]) -> str:
-    """Return the title of a scene that repeated measured tests: the set, and what differs from it."""
-    if measured and not measured.endswith(OWN):
-        return titled(measured, changes)
-    return titled(title, changes) if measured or _CHANGED in title else title
+    if "material" not in stated or body == "impact":
+        return False
+    name = named(stated["material"])
+    return (own_name(name) or name) != scene.materials[body].name.removesuffix(CHANGED)
 
 
 def titled(title: str, changes: Mapping[str, Any]) -> str:
@@ -354,11 +342,3 @@ def _section(data: dict[str, Any], path: list[str], key: str) -> dict[str, Any]:
             raise SceneError("is not a key of a scene.", key=key, remedy=hint)
         table = inner
     return table
-
-
-def _rename(table: dict[str, Any], path: list[str], last: str) -> None:
-    """Let the name of a surface state not stand for other values."""
-    if path == ["surface"] and last.startswith("friction"):
-        table |= {"state": "custom", "source": "set by the user"}
-        if last == "friction":
-            table |= {"friction_low": table["friction"], "friction_high": table["friction"]}
