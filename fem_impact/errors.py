@@ -40,15 +40,11 @@ class StatementError(FemImpactError):
     ) -> None:
         self.problem, self.key, self.value = problem, key, value
         self.remedy, self.source = remedy, source
-        super().__init__(self._message())
-
-    def _message(self) -> str:
-        value = "" if self.value is None else _short(self.value)
-        between = "" if self.key.endswith("=") else " " if self.key.startswith("--") else " = "
-        stated = f"{self.key}{between}{value}" if value and self.key else self.key or value
-        place = ": ".join(part for part in (self.source, stated) if part)
-        text = f"{place}: {self.problem}" if place else self.problem
-        return f"{text} {self.remedy}".strip()
+        shown = "" if value is None else _short(value)
+        between = "" if key.endswith("=") else " " if key.startswith("--") else " = "
+        stated = f"{key}{between}{shown}" if shown and key else key or shown
+        parts = [part for part in (source, stated, problem) if part]
+        super().__init__(f"{': '.join(parts)} {remedy}".strip())
 
 
 class UsageError(StatementError):
@@ -159,15 +155,13 @@ def nearest(name: str, known: Iterable[str], bare: Callable[[str], str] = _bare)
     like_it_last = sorted(known, key=lambda candidate: candidate.startswith("-") == name.startswith("-"))
     by_bare = {bare(candidate): candidate for candidate in like_it_last}
     asked = bare(name)
-    mistyped = sorted((one for one in by_bare if _is_mistyped(asked, one)), key=lambda one: one != asked)
-    near = mistyped or get_close_matches(asked, by_bare, 1)
+    mistyped = [
+        one
+        for one in by_bare
+        if len(one) == len(asked) and one[:1] == asked[:1] and sum(map(str.__ne__, one, asked)) <= 1
+    ]
+    near = sorted(mistyped, key=lambda one: one != asked) or get_close_matches(asked, by_bare, 1)
     return by_bare[near[0]] if near else ""
-
-
-def _is_mistyped(name: str, known: str) -> bool:
-    """Return whether a name is a known one but for one letter behind its first."""
-    wrong = sum(map(str.__ne__, name, known))
-    return len(name) == len(known) and name[:1] == known[:1] and wrong <= 1
 
 
 def printable(text: str) -> str:
@@ -185,8 +179,8 @@ def printable(text: str) -> str:
 _PASSING = "\n\u00a0\u2009\u202f"
 
 
-def _short(value: Any, limit: int = 60) -> str:
+def _short(value: Any) -> str:
     text = f'"{value}"' if isinstance(value, str) else repr(value)
     if isinstance(value, float) and len(text) > 8:
         text = f"{value:.4g}"
-    return text if len(text) <= limit else text[: limit - 3] + "..."
+    return text if len(text) <= 60 else text[:57] + "..."

@@ -173,7 +173,13 @@ def read_waves(path: str | Path) -> Waves:
         with h5py.File(path, "r") as file:
             ringing = Ringing(**_taken(file["ringing"])) if "ringing" in file else None
             waves = Waves(**_taken(file), ringing=ringing)
-            _check(waves)
+        check_times(waves.times, len(waves.times))
+        shape = (len(waves.times), len(waves.position))
+        for name in ("stretch", "bending"):
+            if getattr(waves, name).shape != shape or not shape[0]:
+                raise ValueError(f"{name} has shape {getattr(waves, name).shape}, not {shape}")
+        if ringing is not None and ringing.shape.shape != (len(ringing.omega), len(ringing.rest), 3):
+            raise ValueError(f"the mode shapes have shape {ringing.shape.shape}")
     except (OSError, LookupError, ValueError, RuntimeError, AttributeError, TypeError) as error:
         raise ResultError(f"{path}: not a readable file of waves ({str(error).rstrip('.')}).") from error
     return waves
@@ -186,14 +192,3 @@ def _taken(group: h5py.Group) -> dict[str, Any]:
     numbers = {name: float(value) for name, value in group.attrs.items()}
     check_finite("attributes", np.array(list(numbers.values())))
     return arrays | numbers
-
-
-def _check(waves: Waves) -> None:
-    check_times(waves.times, len(waves.times))
-    shape = (len(waves.times), len(waves.position))
-    for name in ("stretch", "bending"):
-        if getattr(waves, name).shape != shape or not shape[0]:
-            raise ValueError(f"{name} has shape {getattr(waves, name).shape}, not {shape}")
-    ringing = waves.ringing
-    if ringing is not None and ringing.shape.shape != (len(ringing.omega), len(ringing.rest), 3):
-        raise ValueError(f"the mode shapes have shape {ringing.shape.shape}")

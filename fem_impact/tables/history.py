@@ -85,10 +85,22 @@ class HistoryWriter:
 
     def flush(self) -> None:
         """Write the rows that wait. Raises OutputPathError."""
-        text, self._waiting = "".join(self._waiting), []
+        data, self._waiting = "".join(self._waiting).encode("utf-8"), []
         self._due = time.monotonic() + self._seconds
-        if text:
-            _append(self.path, text.encode("utf-8"))
+        if not data:
+            return
+        size = self.path.stat().st_size if self.path.exists() else 0
+        try:
+            with self.path.open("ab", buffering=0) as file:
+                written = file.write(data)
+                if written != len(data):
+                    # a short write means a full disk; writing the rest raises the error
+                    file.write(data[written:])
+        except OSError as error:
+            _cut_back(self.path, size)
+            why = error.strerror or str(error)
+            kept = "the rows before are kept."
+            raise OutputPathError(f"{self.path}: rows cannot be added ({why}); {kept}") from error
 
     @property
     def size(self) -> int:
@@ -112,20 +124,6 @@ class HistoryWriter:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.flush()
-
-
-def _append(path: Path, data: bytes) -> None:
-    size = path.stat().st_size if path.exists() else 0
-    try:
-        with path.open("ab", buffering=0) as file:
-            written = file.write(data)
-            if written != len(data):
-                # a short write means a full disk; writing the rest raises the error
-                file.write(data[written:])
-    except OSError as error:
-        _cut_back(path, size)
-        why = error.strerror or str(error)
-        raise OutputPathError(f"{path}: rows cannot be added ({why}); the rows before are kept.") from error
 
 
 def _cut_back(path: Path, size: int) -> None:

@@ -7,6 +7,7 @@ import io
 import math
 import textwrap
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
@@ -189,17 +190,16 @@ class Table:
         """Return a column as ``(n_rows,) float64``, nan where nothing is known. Raises ResultError."""
         import numpy as np
 
-        return np.array([self._number(name, i, text) for i, text in enumerate(self.texts(name))], np.float64)
-
-    def _number(self, column: str, row: int, text: str) -> float:
-        try:
-            value = float(text) if text else 0.0
-        except ValueError:
-            value = math.nan
-        if not math.isfinite(value):
-            place = f"{self.source}: row {row + 1}, column {column}"
-            raise ResultError(f'{place} = "{text[:40]}" is not a finite number.')
-        return value if text else math.nan
+        values = np.full(len(self), math.nan)
+        for at, text in enumerate(self.texts(name)):
+            if not text:
+                continue
+            with suppress(ValueError):
+                values[at] = float(text)
+            if not math.isfinite(values[at]):
+                place = f"{self.source}: row {at + 1}, column {name}"
+                raise ResultError(f'{place} = "{text[:40]}" is not a finite number.')
+        return values
 
     def csv(self) -> str:
         """Return header and rows as CSV; floats read back exactly, an empty cell is unknown."""
@@ -241,8 +241,16 @@ class Table:
         if over > 0 and texts:
             widest = max(texts, key=lambda at: widths[at])
             widths[widest] = max(widths[widest] - over, min(NARROWEST, widths[widest]))
-        lines = [line for row in rows for line in self._lines(row, widths)]
-        return "\n".join((indent + line).rstrip() for line in lines)
+        lines = list[str]()
+        for row in rows:
+            parts = [textwrap.wrap(text, width) or [""] for text, width in zip(row, widths, strict=True)]
+            for at in range(max(map(len, parts))):  # as many lines as the longest cell needs
+                cells = (
+                    f"{part[at] if at < len(part) else '':{'<' if column.left else '>'}{width}}"
+                    for part, column, width in zip(parts, self.columns, widths, strict=True)
+                )
+                lines.append((indent + GAP.join(cells)).rstrip())
+        return "\n".join(lines)
 
     def plain_rows(self) -> list[list[str]]:
         """Return the cells as texts without marks."""
@@ -252,17 +260,6 @@ class Table:
         return [
             [_text(cell, column.digits) for cell, column in zip(row, self.columns, strict=True)]
             for row in self.rows
-        ]
-
-    def _lines(self, row: Sequence[str], widths: Sequence[int]) -> list[str]:
-        """Return a row in as many lines as its longest cell needs."""
-        parts = [textwrap.wrap(text, width) or [""] for text, width in zip(row, widths, strict=True)]
-        return [
-            GAP.join(
-                f"{part[at] if at < len(part) else '':{'<' if column.left else '>'}{width}}"
-                for part, column, width in zip(parts, self.columns, widths, strict=True)
-            )
-            for at in range(max(map(len, parts)))
         ]
 
 
