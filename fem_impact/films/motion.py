@@ -8,7 +8,7 @@ import numpy as np
 
 from fem_impact.errors import ResultError
 from fem_impact.files.fields import CORNERS, FieldFile, jacobian
-from fem_impact.films.movement import Movement
+from fem_impact.films.movement import Movement, evenly
 
 
 def hex_volumes(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
@@ -186,7 +186,7 @@ def prepare(movement: Movement, field: str, times: Sequence[float] | np.ndarray)
     lowest = fields.points[rod][np.argmin(fields.points[rod, 2])]
     span = 2.0 * float(fields.points[rod, 1].max())
     distance = np.linalg.norm(fields.points - lowest, axis=1) / span
-    looked = np.asarray(times)[np.unique(np.linspace(0, len(times) - 1, LOOKED).round()).astype(int)]
+    looked = evenly(np.asarray(times), LOOKED)
     away, largest = distance[rod] > 2.0, 0.0
     for time in looked:
         moved = movement.points(time)

@@ -175,10 +175,16 @@ def film_times(movement: Movement, field: str, span: Span) -> np.ndarray:
     if movement.waves is None:
         stored = movement.fields.times
         count = len(stored) if span.frames is None else min(span.frames, len(stored))
-        return np.asarray(stored[np.unique(np.linspace(0, len(stored) - 1, count).round()).astype(int)])
+        return evenly(stored, count)
     parts = (PASSES * movement.waves.transit, movement.waves.end)
     marks = sorted({0.0, *(mark for mark in parts if mark < end * (1 - 1e-9)), end})
     return np.interp(np.linspace(0, len(marks) - 1, span.frames or FRAMES), np.arange(len(marks)), marks)
+
+
+def evenly(times: np.ndarray, most: int) -> np.ndarray:
+    """Return so many of the times at most, evenly from the first to the last."""
+    at = np.linspace(0, len(times) - 1, most).round()
+    return np.asarray(times[np.unique(at).astype(int)])
 
 
 def slow_motion(times: np.ndarray, at: int) -> float:

@@ -143,8 +143,6 @@ class Job:
             The text is damaged, or of another scene or fidelity, or the directory of the run does not hold
             the files of this run.
         """
-        from fem_impact.outcome.record import Outcome
-
         outcome = Outcome.from_json(text, source=self.name)
         written = outcome.provenance.scene_digest, outcome.provenance.fidelity
         if written != (digest(self.scene), self.fidelity):
