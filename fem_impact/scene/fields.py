@@ -209,25 +209,23 @@ def check_text(value: Any, key: str, longest: int = 300) -> str:
     return value
 
 
-def check_id(value: Any, key: str) -> str:
-    """Return an identifier that is safe as the name of a directory."""
+def check_id(value: Any) -> None:
+    """Refuse an ``id`` that is not safe as the name of a directory."""
     if not isinstance(value, str) or not _ID.fullmatch(value):
         raise SceneError(
             "is not an identifier: it names the directory of the results.",
-            key=key,
+            key="id",
             value=value,
             remedy='Use small letters, digits and hyphens, such as "my-rod-45".',
         )
-    return value
 
 
-def check_names(value: Any, key: str) -> tuple[str, ...]:
-    """Return a list of names, or the one word "auto", as a tuple; what they name is the plan's business."""
+def check_names(value: Any) -> tuple[str, ...]:
+    """Return names of effects, a list or "auto", as a tuple; what they name is the plan's business."""
     names = (value,) if value == "auto" else value
-    listed = isinstance(names, (list, tuple)) and all(isinstance(name, str) for name in names)
-    if not listed:
-        raise SceneError('must be "auto" or a list of names.', key=key, value=value)
-    return tuple(check_text(name, key, 60) for name in names)
+    if not isinstance(names, (list, tuple)) or not all(isinstance(name, str) for name in names):
+        raise SceneError('must be "auto" or a list of names.', key="effects", value=value)
+    return tuple(check_text(name, "effects", 60) for name in names)
 
 
 def check_choice(value: Any, choices: tuple[str, ...], key: str, other: str = "") -> str:

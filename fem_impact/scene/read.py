@@ -91,7 +91,7 @@ def read_scene(data: tables.Table) -> types.Scene:
     if not isinstance(data, Mapping):
         raise SceneError("a scene must be a table of tables.", value=data)
     tables.check_keys(data, (*TOP, *PARTS))
-    effects = fields.check_names(data.get("effects", "auto"), "effects")
+    effects = fields.check_names(data.get("effects", "auto"))
     # only a list of effects without friction needs no surface
     rubs = "friction" in effects or ("auto" in effects and "-friction" not in effects)
     restitution = parse_number(data["restitution"], "restitution") if "restitution" in data else None
@@ -133,8 +133,8 @@ def _check_measured(scene: types.Scene) -> None:
     """Refuse the name of a measured set beside another rod, impact, barrier or state of the surfaces."""
     if scene.measured is None:
         return
-    if scene.measured.endswith(types.OWN):
-        if not Path(scene.measured).is_file():
+    if scene.own_tests:
+        if not scene.own_tests.is_file():
             remedy = "Name a CSV file, from the place of the scene's file."
             raise SceneError("there is no such file.", key="measured", value=scene.measured, remedy=remedy)
         return

@@ -156,11 +156,10 @@ class Scene:
     restitution: float | None = None
 
     def __post_init__(self) -> None:
-        fields.check_id(self.id, "id")
+        fields.check_id(self.id)
         fields.check_text(self.title, "title")
-        object.__setattr__(self, "effects", fields.check_names(self.effects, "effects"))
-        own_tests = isinstance(self.measured, str) and self.measured.endswith(OWN)
-        if self.measured is not None and not own_tests:
+        object.__setattr__(self, "effects", fields.check_names(self.effects))
+        if self.measured is not None and self.own_tests is None:
             other = f"the path of a CSV file of your own tests (*{OWN})"
             fields.check_choice(self.measured, MEASURED_SETS, "measured", other)
         if self.restitution is not None:
@@ -178,6 +177,13 @@ class Scene:
                 value=f"{size * 1e3:.3g} mm",
                 remedy=f"Give at most {largest * 1e3:g} mm.",
             )
+
+    @property
+    def own_tests(self) -> Path | None:
+        """The file of the user's own tests that ``measured`` names, None where it names none."""
+        if isinstance(self.measured, str) and self.measured.endswith(OWN):
+            return Path(self.measured)
+        return None
 
     @property
     def across(self) -> int:
@@ -282,9 +288,9 @@ def digest(scene: Scene) -> str:
     where that file cannot be read.
     """
     tables = to_dict(scene)
-    if scene.measured is not None and scene.measured.endswith(OWN):
+    if scene.own_tests:
         try:
-            tables["measured_content"] = hashlib.sha256(Path(scene.measured).read_bytes()).hexdigest()
+            tables["measured_content"] = hashlib.sha256(scene.own_tests.read_bytes()).hexdigest()
         except OSError as error:
             problem, remedy = f"cannot be read: {error.strerror}.", "Put the file of your own tests there."
             raise SceneError(problem, key="measured", value=scene.measured, remedy=remedy) from None
