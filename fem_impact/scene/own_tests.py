@@ -1,6 +1,6 @@
 """A user's own tests: a CSV file with one test a row, or with mean and scatter of one quantity a row."""
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -73,7 +73,13 @@ def read_camera(path: str | Path) -> Camera:
         Names the file, and the row and column where there is one.
     """
     table = read_user_table(path, HEADER)
-    columns = _columns(table)
+    missing = [name for name in OF_TESTS if not table.stating(name)]
+    if missing and not any(len(table.stating(name)) > 1 for name in OF_TESTS):
+        known = [name for name in ("e", "mu", "V_n", "V_t", "Omega") if table.stating(name)]
+        means = f" {', '.join(known)} alone can be given as means: a file {MEANS}." if known else ""
+        lacks = f"{path}: the header lacks {', '.join(missing)}."
+        raise ResultError(f"{lacks} It needs {HEADER} (capitals: after impact).{means}")
+    columns = table.quantities({**OF_TESTS, **SPIN_BEFORE, **ARMS})
     records = list(table.records())
     if len(records) < 2:
         raise ResultError(f"{path}: holds {len(records)} tests; an uncertainty needs at least two.")
@@ -88,17 +94,6 @@ def read_camera(path: str | Path) -> Camera:
     labels = tuple(record.get("test", str(i)) for i, (_, record) in enumerate(records, 1))
     used = {stated for stated, _ in columns.values()} | {"test"}
     return Camera(motion, labels, table.unused(used, ("test", *ARMS)), arms)
-
-
-def _columns(table: UserTable) -> dict[str, tuple[str, Unit]]:
-    """Return name and unit of the column of each quantity; refuse a header that lacks one."""
-    missing = [name for name in OF_TESTS if not table.stating(name)]
-    if missing and not any(len(table.stating(name)) > 1 for name in OF_TESTS):
-        known = [name for name in ("e", "mu", "V_n", "V_t", "Omega") if table.stating(name)]
-        means = f" {', '.join(known)} alone can be given as means: a file {MEANS}." if known else ""
-        lacks = f"{table.path}: the header lacks {', '.join(missing)}."
-        raise ResultError(f"{lacks} It needs {HEADER} (capitals: after impact).{means}")
-    return table.quantities({**OF_TESTS, **SPIN_BEFORE, **ARMS})
 
 
 def _number(place: str, text: str, unit: Unit) -> float:
@@ -229,7 +224,14 @@ def read_means(path: str | Path, others: Collection[str] = ()) -> Means:
         Names the file, and the line and column where there is one.
     """
     table = read_user_table(path, MEANS)
-    scatter = _scatter(table.names, path)
+    missing = [name for name in ("mean", "n") if name not in table.names]
+    given = [name for name in SCATTER if name in table.names]
+    if missing or len(given) != 1:
+        raise ResultError(
+            f"{path}: the header must be {MEANS}, or have standard_error in the place of sd; it is "
+            f"{','.join(table.names)}."
+        )
+    scatter = given[0]
     means: dict[str, Mean] = {}
     columns = table.quantities(ARMS)
     used = {"quantity", "mean", scatter, "n", "systematic", *(column for column, _ in columns.values())}
@@ -270,18 +272,6 @@ def _check_correlations(means: Mapping[str, Mean], path: str | Path) -> None:
             f"{path}: no quantities have these correlations together (their matrix has a negative "
             "eigenvalue, those that are not stated counted as 0). Check their signs and sizes."
         )
-
-
-def _scatter(names: Sequence[str], path: str | Path) -> str:
-    """Return the one column of the scatter; refuse a header that lacks a column or has both."""
-    missing = [name for name in ("mean", "n") if name not in names]
-    given = [name for name in SCATTER if name in names]
-    if missing or len(given) != 1:
-        raise ResultError(
-            f"{path}: the header must be {MEANS}, or have standard_error in the place of sd; it is "
-            f"{','.join(names)}."
-        )
-    return given[0]
 
 
 def _read_row(row: Mapping[str, str], scatter: str, place: str, others: Collection[str]) -> tuple[str, Mean]:

@@ -73,17 +73,17 @@ def stated_by_length(shape: str, stated: Collection[str]) -> bool:
     """Return whether the form of a nose is stated by its length; refuse both ways, or none (SceneError)."""
     _check_shape(shape)
     form = next((key for key in NEEDS[shape] if key in REPLACED), "")
-    # a size counts by its key and by that with its SI unit
-    names = {size.key: (size.key, size.si_key or size.key) for size in SIZES}
-    keys = {key: [name for name in stated if name in names[key]] for key in (form, BY_LENGTH) if form}
-    if form and len([key for key in keys if keys[key]]) != 1:
-        both = bool(keys[form])
+    if not form:
+        return False
+    given = {size.key for size in SIZES if {size.key, size.si_key} & {*stated}}
+    both = form in given
+    if both == (BY_LENGTH in given):
         raise SceneError(
             f"is given beside {form}, which says the same." if both else "is missing, and so is nose_length.",
             key=BY_LENGTH if both else form,
             remedy=f"Give {form} or {BY_LENGTH}, one of them.",
         )
-    return bool(form and keys[BY_LENGTH])
+    return BY_LENGTH in given
 
 
 def refuse_tip(stated: Mapping[str, Any]) -> None:

@@ -109,9 +109,8 @@ def replace_all(scene: Scene, changes: Mapping[str, Any], source: str = "") -> S
     property renames its material, and with a changed rod, impact or surface state, or a material of another
     name, the scene is not a measured set, which the title says: a name never stands for other values.
     Friction, values of materials, effects and accuracy are the model's side and leave ``measured`` as it is.
-    The surface of a pair of materials
-    follows changed bodies. A value may be a path or a number or array of numpy. ``source`` is named in every
-    message.
+    The surface of a pair of materials follows changed bodies. A value may be a path or a number or array of
+    numpy. ``source`` is named in every message.
 
     Raises
     ------
@@ -129,9 +128,11 @@ def _changed(scene: Scene, changes: Mapping[str, Any]) -> dict[str, Any]:
     data = to_dict(scene)
     for key, value in _ordered(changes):
         _change(data, key, plain_value(value))
-    if undone := next((key for key, value in changes.items() if not _stands(data, key, value)), ""):
-        remedy = "Keep one of the two."
-        raise SceneError("is taken out again by another change of the same call.", key=undone, remedy=remedy)
+    for key, value in changes.items():
+        there = value_at(data, key)
+        if there != value if key == "surface.state" else there is None and value is not None:
+            problem = "is taken out again by another change of the same call."
+            raise SceneError(problem, key=key, remedy="Keep one of the two.")
     if any(_is_another_impact(scene, key, value) for key, value in changes.items()):
         measured = "" if changes.get("measured") else data.pop("measured", "")
         if "title" not in changes and (measured or _CHANGED in data["title"]):
@@ -202,12 +203,6 @@ def _ordered(changes: Mapping[str, Any]) -> list[tuple[str, Any]]:
         return len(path), ranks.get(last, 2)
 
     return sorted(changes.items(), key=place)
-
-
-def _stands(data: dict[str, Any], key: str, value: Any) -> bool:
-    """Return whether a dotted key has a value, of a state that which was stated."""
-    there = value_at(data, key)
-    return there == value if key == "surface.state" else value is None or there is not None
 
 
 def value_at(data: Mapping[str, Any], key: str) -> Any:
