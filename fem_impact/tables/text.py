@@ -2,7 +2,6 @@
 
 import re
 import textwrap
-from collections.abc import Callable
 from decimal import Decimal
 from html import escape
 from math import ceil, floor, inf, log10
@@ -142,17 +141,13 @@ def markup(text: str) -> str:
     >>> markup("E_vib < 1 at gamma = 26 m^-0.3815 after 3 us: `E_vib`")
     '<i>E</i><sub>vib</sub> &lt; 1 at γ = 26 m<sup>−0.3815</sup> after 3 µs: <code>E_vib</code>'
     """
-
-    def shown(base: str, index: str, power: str) -> str:
-        if power:
-            return f"<sup>{power}</sup>"
-        return f"<i>{base}</i><sub>{index}</sub>" if index else base
-
     parts = CODE.split(escape(text))  # code at the odd places
-    return "".join(
-        f"<code>{part}</code>" if at % 2 else STRONG.sub(r"<strong>\1</strong>", _replaced(part, shown))
-        for at, part in enumerate(parts)
-    )
+    for at in range(0, len(parts), 2):
+        signs = _replaced(parts[at], "<sup>{}</sup>", "<i>{}</i><sub>{}</sub>")
+        parts[at] = STRONG.sub(r"<strong>\1</strong>", signs)
+    for at in range(1, len(parts), 2):
+        parts[at] = f"<code>{parts[at]}</code>"
+    return "".join(parts)
 
 
 def readable(name: str) -> str:
@@ -174,24 +169,22 @@ def readable(name: str) -> str:
 
 def formula(text: str) -> str:
     """Return a text for matplotlib: indices and powers between dollar signs, its own dollar signs escaped."""
-
-    def shown(base: str, index: str, power: str) -> str:
-        if power:
-            return f"$^{{{power}}}$"
-        return rf"${base}_{{\mathrm{{{index}}}}}$" if index else base
-
-    return _replaced(text.replace("$", r"\$"), shown)
+    return _replaced(text.replace("$", r"\$"), "$^{{{}}}$", r"${}_{{\mathrm{{{}}}}}$")
 
 
-def _replaced(text: str, shown: Callable[[str, str, str], str]) -> str:
+def _replaced(text: str, raised: str, indexed: str) -> str:
+    """Return a text with its signs, and its powers and letters with an index in the forms of these two."""
+
     def one(match: re.Match[str]) -> str:
         base, _, index = (match["under"] or match["base"] or "").partition("_")
         index = index or match["index"] or ""
         if base == "T1":
             base, index = "T", "1"
-        if not index and base not in GREEK and not match["power"]:
-            return match[0]
-        return shown(GREEK.get(base, base), index, (match["power"] or "").replace("-", "−"))
+        if match["power"]:
+            return raised.format(match["power"].replace("-", "−"))
+        if index:
+            return indexed.format(GREEK.get(base, base), index)
+        return GREEK.get(base, match[0])
 
     for plain, sign in PLAIN:
         text = plain.sub(sign, text)
