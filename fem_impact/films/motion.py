@@ -254,14 +254,9 @@ def _ranges(
     in_cells, signed, cells = field != "velocity", FIELDS[field].signed, movement.fields.cells
     place = distance[cells].mean(axis=1) if in_cells else distance
     on_rod = rod[cells].all(axis=1) if in_cells else rod
-    near, far = np.max([_tops(one, place, on_rod) for one in sizes], axis=0).tolist()
+    close, body = sizes[:, place < 0.5], sizes[:, on_rod & (place > 1.0)]
+    near = float(np.percentile(close, 99.5, axis=1).max()) if close.size else 0.0
+    far = float(np.percentile(body, 99.5, axis=1).max()) if body.size else near
     near = max(near, 1e-12)
     far = far if far > 1e-6 * near else near
     return (-near if signed else 0.0, near), (-far if signed else 0.0, far)
-
-
-def _tops(sizes: np.ndarray, distance: np.ndarray, rod: np.ndarray) -> tuple[float, float]:
-    close, body = sizes[distance < 0.5], sizes[rod & (distance > 1.0)]
-    near = float(np.percentile(close, 99.5)) if close.size else 0.0
-    far = float(np.percentile(body, 99.5)) if body.size else near
-    return near, far

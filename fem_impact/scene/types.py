@@ -268,9 +268,10 @@ def to_toml(scene: Scene, folder: Path | None = None) -> str:
     """
     tables = to_dict(scene)
     if folder:
-        for place, key, ending in ((tables, "measured", OWN), (tables["projectile"], "mesh", "")):
-            if key in place and place[key].endswith(ending):
-                place[key] = os.path.relpath(place[key], folder.resolve())
+        if scene.own_tests:
+            tables["measured"] = os.path.relpath(scene.own_tests, folder.resolve())
+        if mesh := scene.projectile.own_mesh:
+            tables["projectile"]["mesh"] = os.path.relpath(mesh.path, folder.resolve())
     return tomli_w.dumps(tables)
 
 
