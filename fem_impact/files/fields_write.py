@@ -45,17 +45,14 @@ def write_mesh(path: Path, points: np.ndarray, cells: np.ndarray, static: Mappin
         root["Connectivity"] = np.asarray(cells, dtype=np.int64).ravel()
         root["Offsets"] = np.arange(len(cells) + 1, dtype=np.int64) * 8
         root["Types"] = np.full(len(cells), VTK_HEXAHEDRON, dtype=np.uint8)
-        for name, count in (
-            ("Points", len(points)),
-            ("Cells", len(cells)),
-            ("ConnectivityIds", 8 * len(cells)),
-        ):
+        counts = {"Points": len(points), "Cells": len(cells), "ConnectivityIds": 8 * len(cells)}
+        for name, count in counts.items():
             root[f"NumberOf{name}"] = np.array([count], dtype=np.int64)
         steps = root.create_group("Steps")
         steps.attrs["NSteps"] = 0
         _series(steps, "Values", np.float64)
         for name in STEP_ROWS:
-            _series(steps, name, np.int64, columns=1 if name.startswith("C") else 0)
+            _series(steps, name, np.int64, tail=(1,) if name.startswith("C") else ())
         for kind in ("PointData", "CellData"):
             root.create_group(kind)
             steps.create_group(f"{kind}Offsets")
@@ -80,8 +77,13 @@ def add_frame(
     steps, at = root["Steps"], int(root["Steps"].attrs["NSteps"])
     for kind, data in (("PointData", point_data), ("CellData", cell_data)):
         for name, values in data.items():
-            _put_rows(root[kind], name, at, np.asarray(values, dtype=np.float32))
-            _put_step(steps[f"{kind}Offsets"], name, at, at * len(values))
+            new, group = np.asarray(values, dtype=np.float32), root[kind]
+            if name not in group:
+                _series(group, name, np.float32, new.shape[1:], _CHUNK_FRAMES * len(new))
+            rows = group[name]
+            rows.resize((at + 1) * len(new), axis=0)
+            rows[at * len(new) :] = new
+            _put_step(steps[f"{kind}Offsets"], name, at, at * len(new))
     for name in root["CellData"]:
         if name not in cell_data:
             _put_step(steps["CellDataOffsets"], name, at, 0)
@@ -92,27 +94,17 @@ def add_frame(
     steps.attrs["NSteps"] = at + 1
 
 
-def _series(group: h5py.Group, name: str, dtype: Any, columns: int = 0) -> h5py.Dataset:
-    tail = (columns,) if columns else ()
-    return group.create_dataset(
-        name, shape=(0, *tail), maxshape=(None, *tail), chunks=(_CHUNK_STEPS, *tail), dtype=dtype
-    )
+def _series(
+    group: h5py.Group, name: str, dtype: Any, tail: tuple[int, ...] = (), piece: int = _CHUNK_STEPS
+) -> h5py.Dataset:
+    """Make a data set that grows by rows of the shape ``tail``, ``piece`` of them in a chunk."""
+    return group.create_dataset(name, (0, *tail), dtype, maxshape=(None, *tail), chunks=(piece, *tail))
 
 
 def _put_step(group: h5py.Group, name: str, at: int, value: float) -> None:
     series = group[name] if name in group else _series(group, name, np.int64)
     series.resize(at + 1, axis=0)
     series[at] = value
-
-
-def _put_rows(group: h5py.Group, name: str, at: int, values: np.ndarray) -> None:
-    if name not in group:
-        free = (None, *values.shape[1:])
-        piece = (_CHUNK_FRAMES * len(values), *values.shape[1:])
-        group.create_dataset(name, shape=(0, *values.shape[1:]), maxshape=free, chunks=piece, dtype="f4")
-    rows = group[name]
-    rows.resize((at + 1) * len(values), axis=0)
-    rows[at * len(values) :] = values
 
 
 def _packed(new: h5py.File, name: str, item: h5py.Group | h5py.Dataset) -> None:

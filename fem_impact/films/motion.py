@@ -173,7 +173,6 @@ def prepare(movement: Movement, field: str, times: Sequence[float] | np.ndarray)
     fields = movement.fields
     if field not in FIELDS:
         raise ResultError(f'field "{field}" cannot be drawn; choose one of {", ".join(FIELDS)}.')
-    # (m, 8)
     rod_cells = fields.cells[fields.static["body"] == 0] if "body" in fields.static else fields.cells[:0]
     if not len(rod_cells):
         raise ResultError(f'{fields.path}: cell data "body" names no rod (0).')
