@@ -240,13 +240,12 @@ def _faces(table: tables.Table) -> tuple[Face, ...]:
         if isinstance(table[name], Mapping) and "sliding_law" in table[name]:
             remedy = "State it in [surface]: it multiplies f of every face."
             raise SceneError("stands beside that of the scene.", key=f"{name}.sliding_law", remedy=remedy)
-    found = tuple(
-        Face(name, surface) for name in table if (surface := tables.within(table, name, read_surface))
-    )
-    for name in set(table) - {face.name for face in found}:
-        remedy = "Leave it out, or name another state, such as custom."
-        raise SceneError("is the state of the scene's surface.", key=f"{name}.state", remedy=remedy)
-    return found
+    surfaces = {name: tables.within(table, name, read_surface) for name in table}
+    for name, surface in surfaces.items():
+        if surface is None:  # the state is that of the pair
+            remedy = "Leave it out, or name another state, such as custom."
+            raise SceneError("is the state of the scene's surface.", key=f"{name}.state", remedy=remedy)
+    return tuple(Face(name, surface) for name, surface in surfaces.items() if surface)
 
 
 def _region(material: Any, name: str) -> Material:
