@@ -306,33 +306,34 @@ def _surface(surface: Surface) -> dict[str, Any]:
 
 
 def _projectile(rod: ProjectileSpec) -> dict[str, Any]:
-    if rod.segments:
-        parts = [
-            {"to": HEIGHT.write(part.to), "material": material_table(part.material)} for part in rod.segments
-        ]
-        made: dict[str, Any] = {"segments": parts}
-    else:
-        made = {"material": material_table(rod.material)}
-    bore = {"bore": written_points(rod.bore)} if rod.bore else {}
-    return _shape(rod) | bore | made
-
-
-def _shape(rod: ProjectileSpec) -> dict[str, Any]:
     shape = rod.shape
+    table: dict[str, Any]
     if isinstance(shape, NamedShape):
         pairs = zip(sizes_of(shape.name, shape.by_length), shape.sizes, strict=True)
-        return {"shape": shape.name, **{size.key: size.write(value) for size, value in pairs}}
-    if isinstance(shape, Profile):
-        return {"profile": written_points(shape.points), "profile_smooth": shape.smooth}
-    if isinstance(shape, OwnMesh):
-        tip = list(shape.tip) if isinstance(shape.tip, tuple) else shape.tip
-        named = {"mesh_symmetry": shape.symmetry, "mesh_tip": tip, "mesh_sets": list(shape.sets)}
-        file = {"mesh": shape.path, "mesh_unit": shape.unit, "mesh_content": shape.content}
-        regions = {one.name: material_table(one.material) for one in rod.regions}
-        faces = {one.name: _surface(one.surface) for one in rod.faces}
-        sets = {"mesh_materials": regions, "mesh_surfaces": faces}
-        return file | {key: value for key, value in (named | sets).items() if value}
-    return {"tip": rod.tip, **_written(rod, fields.PROJECTILE)}
+        table = {"shape": shape.name, **{size.key: size.write(value) for size, value in pairs}}
+    elif isinstance(shape, Profile):
+        table = {"profile": written_points(shape.points), "profile_smooth": shape.smooth}
+    elif isinstance(shape, OwnMesh):
+        table = {"mesh": shape.path, "mesh_unit": shape.unit, "mesh_content": shape.content}
+        stated = {
+            "mesh_symmetry": shape.symmetry,
+            "mesh_tip": list(shape.tip) if isinstance(shape.tip, tuple) else shape.tip,
+            "mesh_sets": list(shape.sets),
+            "mesh_materials": {one.name: material_table(one.material) for one in rod.regions},
+            "mesh_surfaces": {one.name: _surface(one.surface) for one in rod.faces},
+        }
+        table |= {key: value for key, value in stated.items() if value}
+    else:
+        table = {"tip": rod.tip, **_written(rod, fields.PROJECTILE)}
+    if rod.bore:
+        table["bore"] = written_points(rod.bore)
+    if rod.segments:
+        table["segments"] = [
+            {"to": HEIGHT.write(part.to), "material": material_table(part.material)} for part in rod.segments
+        ]
+    else:
+        table["material"] = material_table(rod.material)
+    return table
 
 
 def _barrier(barrier: Barrier) -> dict[str, Any]:
