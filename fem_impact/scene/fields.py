@@ -136,7 +136,6 @@ ACCURACY, SAVE, HEATING, STRIKES = (
 )
 ANGLE, V_N, V_T, OMEGA, HEIGHT, SLOPE, SPEED = _numbers(_STATED["impact"])
 IMPACT = (ANGLE, V_N, V_T, OMEGA)  # as seen from the barrier
-WAYS_OF_IMPACT = (*IMPACT, SLOPE, HEIGHT, SPEED)  # as a scene states it in one way or another
 MOTION = (ANGLE, replace(V_N, low=-500.0, high=500.0, remedy=""), V_T, OMEGA)
 TIP_SIZE = ACCURACY[0]
 LEVELS, MOST_LEVELS = (int(_STATED["accuracy"]["levels"][key]) for key in ("default", "high"))

@@ -16,6 +16,8 @@ FIRST, REST = "first", "rest"
 STRIKES = re.compile(r"([1-9][0-9]{0,2}) strikes?")
 WAYS = (("height",), ("speed",), ("v_n", "v_t"))
 """The keys of each way to state how fast the body comes."""
+NUMBERS = (*fields.IMPACT, fields.SLOPE, fields.HEIGHT, fields.SPEED)
+"""All numbers that a table of an impact may hold."""
 _KEEP = "Give a height, or a speed along the body's axis, or v_n and v_t, and keep one of them."
 
 

@@ -11,7 +11,7 @@ from typing import Any
 from fem_impact.errors import ResultError, SceneError, UsageError
 from fem_impact.scene import curve, fields, library, own_mesh, shapes, tables, types
 from fem_impact.scene.barrier import Barrier, Layer
-from fem_impact.scene.impact import WAYS, Following, Impact, the_way
+from fem_impact.scene.impact import NUMBERS, WAYS, Following, Impact, the_way
 from fem_impact.scene.material import Material, Surface
 from fem_impact.scene.measured import differing
 from fem_impact.scene.projectile import Face, ProjectileSpec, Region, Segment
@@ -308,13 +308,12 @@ def _barrier(table: tables.Table) -> Barrier:
 
 def _impact(table: tables.Table) -> Impact:
     """Read a motion that a height, a speed or velocities state, and how far it is followed."""
-    known = fields.WAYS_OF_IMPACT
-    given = {p.key for p in known if {p.key, p.si_key} & set(table)}
-    shown = [*(p.key for p in known), "until"]
-    tables.check_keys(table, (*shown, *(p.si_key for p in known)), shown)
+    given = {p.key for p in NUMBERS if {p.key, p.si_key} & set(table)}
+    shown = [*(p.key for p in NUMBERS), "until"]
+    tables.check_keys(table, (*shown, *(p.si_key for p in NUMBERS)), shown)
     way = the_way(given)
     made: dict[tuple[str, ...], Callable[..., Impact]] = {WAYS[0]: Impact.dropped, WAYS[1]: Impact.thrown}
-    stated = (fields.ANGLE, fields.OMEGA, fields.SLOPE, *(p for p in known if p.key in way))
+    stated = (fields.ANGLE, fields.OMEGA, fields.SLOPE, *(p for p in NUMBERS if p.key in way))
     return made.get(way, Impact)(**tables.values_of(table, stated, ("until",)))
 
 

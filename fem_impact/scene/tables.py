@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import Any, TypeVar
 
 from fem_impact.errors import SceneError, did_you_mean
-from fem_impact.scene import fields
+from fem_impact.scene import fields, impact
 from fem_impact.scene.fields import Parameter
 from fem_impact.scene.units import parse_number, parse_quantity
 
@@ -38,7 +38,7 @@ PLACES = {
     for place, wanted in (
         ("a material: projectile.material or barrier.material", fields.MATERIAL),
         ("[surface]", fields.SURFACE),
-        ("[impact]", fields.WAYS_OF_IMPACT),
+        ("[impact]", impact.NUMBERS),
         ("[accuracy]", fields.ACCURACY),
         ("[save]", fields.SAVE),
         ("[strikes]", fields.STRIKES),

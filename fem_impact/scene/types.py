@@ -18,7 +18,7 @@ from fem_impact.errors import SceneError, UsageError
 from fem_impact.scene import fields
 from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.fields import Fields, Parameter
-from fem_impact.scene.impact import FIRST, WAYS, Following, Impact
+from fem_impact.scene.impact import FIRST, NUMBERS, WAYS, Following, Impact
 from fem_impact.scene.material import JohnsonCookFlow, JohnsonCookRate, Material, Surface, TableFlow
 from fem_impact.scene.own_mesh import OwnMesh
 from fem_impact.scene.projectile import ProjectileSpec
@@ -352,7 +352,7 @@ def _impact(impact: Impact) -> dict[str, Any]:
     """Write the velocities as they are stated."""
     stated = ("angle", *impact.stated, "omega", "slope")
     until = {} if impact.until == FIRST else {"until": impact.until}
-    return _written(impact, tuple(p for p in fields.WAYS_OF_IMPACT if p.key in stated)) | until
+    return _written(impact, tuple(p for p in NUMBERS if p.key in stated)) | until
 
 
 def _accuracy(accuracy: Accuracy) -> dict[str, Any]:
