@@ -29,7 +29,8 @@ from fem_impact.run.resolution import unresolved
 from fem_impact.run.solid import readings
 from fem_impact.run.strikes import Followed
 from fem_impact.solid.build import START_GAP, build
-from fem_impact.solid.carry import carry, dented, later_view, lowered, turned
+from fem_impact.solid.carry import carry, dented, later_view, lowered
+from fem_impact.solid.frame import turned
 from fem_impact.solid.run import SolidResult, solve
 from rigid.strikes import Finish, FlightState, next_touch
 

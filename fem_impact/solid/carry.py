@@ -6,28 +6,16 @@ from math import cos, sin
 
 import numpy as np
 
-from fem_impact.arrays import Array, Ints
+from fem_impact.arrays import Array
 from fem_impact.fem.flight import FreeVibration, RigidMotion
 from fem_impact.fem.hexmodes import LANES
+from fem_impact.solid.frame import turned, turned_at
 from fem_impact.solid.model import Model
 from fem_impact.solid.rodview import RodState
 from fem_impact.solid.run import SolidResult
 from fem_impact.solid.stepguard import zone_step
 
 NOW = np.zeros(1)
-
-
-def turned(rows: Array, angle: float) -> Array:
-    """Return vectors along t, b, n, (m, 3) or (m, 3, k), turned from n towards t, rad."""
-    (t, b, n), c, s = np.moveaxis(rows, 1, 0), cos(angle), sin(angle)
-    return np.stack([c * t + s * n, b, c * n - s * t], axis=1)
-
-
-def turned_at(vector: Array, places: Ints, angle: float) -> Array:
-    """Return a flat vector, (n,) or (n, k), whose places (m, 3) are turned from n towards t, rad."""
-    result = vector.copy()
-    result[places] = turned(vector[places], angle)
-    return result
 
 
 def later_view(model: Model, last: SolidResult, angle: float) -> RodState:
@@ -45,15 +33,7 @@ def rest_shape(last: SolidResult) -> Array:
     """Return the positions (size,), m, at the end of a run, the rod's without its vibration."""
     shake = last.flight.displacement(np.arange(last.view.size), NOW)[:, 0]
     angle = last.view.angle(last.state, last.model)  # from t towards n
-    return last.state.x - _of_all(last.model, turned_at(shake, last.view.places, -angle))
-
-
-def _of_all(model: Model, of_rod: Array) -> Array:
-    """Return a flat vector (size,) with values of the rod's unknowns, those of tied nodes included."""
-    whole = np.zeros(model.layout.size)
-    whole[: len(of_rod)] = of_rod
-    model.hanging.expand(whole)
-    return whole
+    return last.state.x - last.model.with_ties(turned_at(shake, last.view.places, -angle))
 
 
 def carry(
@@ -79,9 +59,9 @@ def carry(
     x, v = model.start[0].copy(), np.zeros_like(model.start[1])
     here, there = (np.array([one.centre[0], 0.0, one.centre[2]]) for one in (motion, last.motion))
     x[rod] = here + turned(rest_shape(last)[last.model.layout.rod] - there, angle)
-    x[rod] += _of_all(model, vibration.displacement(np.arange(view.size), NOW)[:, 0])[rod]
+    x[rod] += model.with_ties(vibration.displacement(np.arange(view.size), NOW)[:, 0])[rod]
     arm = x[rod] - here
-    v[rod] = _of_all(model, vibration.modes.shape @ (vibration.modes.omega * vibration.b))[rod]
+    v[rod] = model.with_ties(vibration.modes.shape @ (vibration.modes.omega * vibration.b))[rod]
     v[rod[:, 0]] += motion.V_t + motion.Omega * arm[:, 2]
     v[rod[:, 2]] += motion.V_n - motion.Omega * arm[:, 0]
     whole = _zone_steps(model, "rod", model.start[0])

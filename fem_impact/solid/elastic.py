@@ -10,7 +10,7 @@ from fem_impact.fem.eigen import RodModes
 from fem_impact.fem.layout import DofLayout, MassPoints
 from fem_impact.fem.slices import SliceOperator
 from fem_impact.fem.sparse import NodeProduct
-from fem_impact.solid.frame import FixedFrame, TurningFrame
+from fem_impact.solid.frame import FixedFrame, TurningFrame, turned_at
 from fem_impact.solid.state import State
 
 
@@ -200,23 +200,16 @@ class ModalDamping:
 
     def resolve(self, state: State) -> None:
         """Damp and add the work done, from the mean of old and new velocity."""
-        n = len(self.modes.mass)
-        kicked = self._turned(state.v[:n], -self.frame.angle)
-        pushed = self._turned(self.inverse_mass * state.force[:n], -self.frame.angle)
+        n, angle = len(self.modes.mass), self.frame.angle
+        kicked = turned_at(state.v[:n], self.places, angle)
+        pushed = turned_at(self.inverse_mass * state.force[:n], self.places, angle)
         q = self.weighted @ kicked
         old = q - state.kick * (self.weighted @ pushed)
         lost = q * -np.expm1(-self.loss * self.modes.omega * (state.time - self.last))
         self.last = state.time
         self.taken += 0.5 * float(lost @ (old + q - lost))
-        state.v[:n] -= self._turned(self.modes.shape @ lost, self.frame.angle)
+        state.v[:n] -= turned_at(self.modes.shape @ lost, self.places, -angle)
 
     def energies(self, state: State) -> tuple[float, ...]:
         """Return the damped energy so far."""
         return (self.taken,)
-
-    def _turned(self, v: Array, angle: float) -> Array:
-        """Return a vector of the rod turned from t towards n."""
-        result, (t, n) = v.copy(), (self.places[:, 0], self.places[:, 2])
-        result[t] = np.cos(angle) * v[t] - np.sin(angle) * v[n]
-        result[n] = np.cos(angle) * v[n] + np.sin(angle) * v[t]
-        return result

@@ -9,6 +9,7 @@ so linear and angular momentum and energy are all conserved, and a free rotation
 """
 
 from dataclasses import dataclass, field
+from math import cos, sin
 from typing import ClassVar
 
 import numpy as np
@@ -26,6 +27,19 @@ def mass_centre(mass: Array, x: Array, places: Ints) -> Array:
     centre = m @ x[places] / m.sum()
     centre[1] = 0.0
     return np.asarray(centre)
+
+
+def turned(rows: Array, angle: float) -> Array:
+    """Return vectors along t, b, n, (m, 3) or (m, 3, k), turned from n towards t, rad."""
+    (t, b, n), c, s = np.moveaxis(rows, 1, 0), cos(angle), sin(angle)
+    return np.stack([c * t + s * n, b, c * n - s * t], axis=1)
+
+
+def turned_at(vector: Array, places: Ints, angle: float) -> Array:
+    """Return a flat vector, (n,) or (n, k), whose places (m, 3) are turned from n towards t, rad."""
+    result = vector.copy()
+    result[places] = turned(vector[places], angle)
+    return result
 
 
 @dataclass(slots=True)

@@ -92,6 +92,13 @@ class Model:
         self.drawn.expand(self.layout.slices_of(moved))
         return moved
 
+    def with_ties(self, of_rod: Array) -> Array:
+        """Return a flat vector (size,) with values of the rod's unknowns, those of tied nodes included."""
+        whole = np.zeros(self.layout.size)
+        whole[: len(of_rod)] = of_rod
+        self.hanging.expand(whole)
+        return whole
+
     def initial_state(self) -> State:
         """Return the state just before the first contact."""
         x, v = self.start

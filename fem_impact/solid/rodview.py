@@ -14,6 +14,7 @@ from fem_impact.fem.elements import lame_constants
 from fem_impact.fem.flight import FreeVibration, RigidMotion, flight, rigid_motion
 from fem_impact.fem.hexmodes import reference_gradients
 from fem_impact.scene.material import Material
+from fem_impact.solid.frame import turned_at
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
 from meshes import HexMesh
@@ -66,11 +67,7 @@ class RodState:
 
     def turned_back(self, vector: Array, angle: float) -> Array:
         """Return the rod's part of a flat vector seen in the turned frame."""
-        result = vector[: self.size].copy()
-        t, n = self.places[:, 0], self.places[:, 2]
-        result[t] = cos(angle) * vector[t] + sin(angle) * vector[n]
-        result[n] = cos(angle) * vector[n] - sin(angle) * vector[t]
-        return result
+        return turned_at(vector[: self.size], self.places, angle)
 
     def present(self, state: State, model: Model) -> Array:
         """Return velocities (size,), m/s, at the time of the positions; the state's are half a step older.
@@ -180,15 +177,12 @@ class FieldSampler:
 
     def sample(self, state: State) -> tuple[dict[str, Array], dict[str, Array]]:
         """Return point data and cell data of the present state."""
+        n, rods = len(self.model.geometry.rod_points), len(self.model.geometry.rod.mesh.cells)
         u = self.model.nodes(state.x - self.model.start[0])[self.places]
         if self.model.in_plate_frame:
-            u[len(self.model.geometry.rod_points) :, 2] += self.model.ground.risen(state.x)
-        velocity = {"velocity": self.model.nodes(state.v)[self.places]} if self.whole else {}
-        return {"displacement": u, **velocity}, self._cells(state, self.points + u)
-
-    def _cells(self, state: State, x: Array) -> dict[str, Array]:
-        n, rods = len(self.model.geometry.rod_points), len(self.model.geometry.rod.mesh.cells)
-        angle, local = self.view.angle(state, self.model), x - self.points
+            u[n:, 2] += self.model.ground.risen(state.x)
+        # elastic stresses are those of the displacements that each body sees in its own frame
+        x, local, angle = self.points + u, np.empty_like(u), self.view.angle(state, self.model)
         c, s = cos(angle), sin(angle)
         turn = np.array([[c, 0, -s], [0, 1, 0], [s, 0, c]])  # of the rod, from t towards n
         local[:n] = x[:n] @ turn - self.points[:n]
@@ -199,6 +193,9 @@ class FieldSampler:
         for zone in self.model.zones:
             rows = zone.cells + (0 if zone.body == "rod" else rods)
             size[rows], strain[rows], stress[rows] = zone.mises(), zone.plastic_strain(), zone.tensor()
-        shown = {"mises": size, "plastic_strain": strain}
+        in_cells = {"mises": size, "plastic_strain": strain}
+        if not self.whole:
+            return {"displacement": u}, in_cells
         # VTK's order of a symmetric tensor: tt, bb, nn, tb, bn, tn
-        return {**shown, "stress": stress[:, [0, 1, 2, 0, 1, 0], [0, 1, 2, 1, 2, 2]]} if self.whole else shown
+        in_cells["stress"] = stress[:, [0, 1, 2, 0, 1, 0], [0, 1, 2, 1, 2, 2]]
+        return {"displacement": u, "velocity": self.model.nodes(state.v)[self.places]}, in_cells

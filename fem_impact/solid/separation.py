@@ -10,6 +10,7 @@ from fem_impact.arrays import Array, Bools, Ints
 from fem_impact.case.case import before_other_end
 from fem_impact.fem.flight import FreeVibration, RigidMotion
 from fem_impact.solid.contact.surface import SurfaceContact
+from fem_impact.solid.frame import turned
 from fem_impact.solid.model import Model
 from fem_impact.solid.observers import OF_IMPACT, QUIET
 from fem_impact.solid.rodview import RodState
@@ -134,38 +135,37 @@ class Separation:
         heights = flight_heights(x, rim[:, 2], motion, ahead, t)
         if not ground.turns:
             return heights
-        shake = ahead.displacement(rim[:, 0], t) - ahead.displacement(rim[:, 0], np.zeros(1))
-        along = _rigid_along(x - motion.centre, motion, t) + shake
+        along = _rigid_along(x - motion.centre, motion, t) + _shake(ahead, rim[:, 0], t)
         return ground.levelled(along, heights, state.x, ground.spin(state.v) * t)
 
 
 def flown(x: Array, places: Ints, motion: RigidMotion, ahead: FreeVibration, t: float) -> Array:
     """Return a copy of positions ``x`` in which nodes ``places`` (k, 3) flew on freely for a time, s."""
-    moved, now = x.copy(), np.zeros(1)
-    c, s, drift = np.cos(motion.Omega * t), np.sin(motion.Omega * t), (motion.V_t * t, 0.0, motion.V_n * t)
-    arm = x[places] - motion.centre
-    turned = np.stack([c * arm[:, 0] + s * arm[:, 2], arm[:, 1], c * arm[:, 2] - s * arm[:, 0]], axis=1)
-    rows = places.ravel()
-    shake = ahead.displacement(rows, now + t) - ahead.displacement(rows, now)
-    moved[places] = motion.centre + drift + turned + shake.reshape(-1, 3)
+    moved, drift = x.copy(), (motion.V_t * t, 0.0, motion.V_n * t)
+    shake = _shake(ahead, places.ravel(), np.array([t])).reshape(-1, 3)
+    moved[places] = motion.centre + drift + turned(x[places] - motion.centre, motion.Omega * t) + shake
     return moved
 
 
 def flight_heights(x: Array, rows: Ints, motion: RigidMotion, ahead: FreeVibration, t: Array) -> Array:
     """Return heights n (k, times), m, of nodes at x (k, 3) in free flight after times t, s."""
-    shake = ahead.displacement(rows, t) - ahead.displacement(rows, np.zeros(1))
-    return _rigid_heights(x - motion.centre, motion, t) + shake
+    return _rigid_heights(x - motion.centre, motion, t) + _shake(ahead, rows, t)
+
+
+def _shake(ahead: FreeVibration, rows: Ints, t: Array) -> Array:
+    """Return how far, m, unknowns move by vibration from now to times t, s, (k, times)."""
+    return ahead.displacement(rows, t) - ahead.displacement(rows, np.zeros(1))
 
 
 def _rigid_heights(arm: Array, motion: RigidMotion, t: Array, angle: float = 0.0) -> Array:
     """Return heights n (k, times), m, of points that stand at ``arm`` (k, 3) turned by ``angle``, rad."""
-    turned = angle + motion.Omega * t
-    rise = np.outer(arm[:, 2], np.cos(turned)) - np.outer(arm[:, 0], np.sin(turned))
+    turn = angle + motion.Omega * t
+    rise = np.outer(arm[:, 2], np.cos(turn)) - np.outer(arm[:, 0], np.sin(turn))
     return np.asarray(motion.centre[2] + motion.V_n * t + rise)
 
 
 def _rigid_along(arm: Array, motion: RigidMotion, t: Array, angle: float = 0.0) -> Array:
     """Return places t (k, times), m, of points that stand at ``arm`` (k, 3) turned by ``angle``, rad."""
-    turned = angle + motion.Omega * t
-    moved = np.outer(arm[:, 0], np.cos(turned)) + np.outer(arm[:, 2], np.sin(turned))
+    turn = angle + motion.Omega * t
+    moved = np.outer(arm[:, 0], np.cos(turn)) + np.outer(arm[:, 2], np.sin(turn))
     return np.asarray(motion.centre[0] + motion.V_t * t + moved)

@@ -12,6 +12,7 @@ from fem_impact.errors import SceneError
 from fem_impact.fem.flight import FreeVibration
 from fem_impact.files.waves import Ringing, Waves, write_waves
 from fem_impact.physics.beam import bar_speed, bending_group_speed
+from fem_impact.solid.frame import turned
 from fem_impact.solid.model import Model
 from fem_impact.solid.rodview import RodState
 from fem_impact.solid.state import State
@@ -168,25 +169,18 @@ class StrainWatch:
         """Return the free flight from the present state on, by the modes that hold the vibration energy."""
         angle, motion, kept = view.angle(state, self.model), view.rigid(state), _held(flight.energies)
         modes, a, b = flight.modes.shape[:, kept].T, flight.a[kept], flight.b[kept]
-        shape = np.array([self._points(mode) for mode in modes]).reshape(len(kept), -1, 3)
+        rod = self.model.layout.rod  # all of its nodes
+        moves = [self.model.nodes(self.model.with_ties(mode))[rod] for mode in modes]
+        shape = np.array(moves).reshape(len(kept), -1, 3)
         strain = [self.sections.linear(_in_plane(self.model, mode)) for mode in modes]
         stretch, bending = np.array(strain).reshape(len(kept), 2, -1).transpose(1, 0, 2)
-        moved = self.model.nodes(state.x - self.model.start[0])[self.model.layout.rod]
+        moved = self.model.nodes(state.x - self.model.start[0])[rod]
         x = self.model.geometry.rod_points + moved - motion.centre
-        c, s = np.cos(angle), np.sin(angle)
-        local = np.stack([c * x[:, 0] + s * x[:, 2], x[:, 1], c * x[:, 2] - s * x[:, 0]], axis=1)
-        rest = local - np.tensordot(a, shape, 1)
+        rest = turned(x, angle) - np.tensordot(a, shape, 1)
         speed = np.array([motion.V_t, 0.0, motion.V_n])
-        turning = (float(angle), -float(motion.Omega))  # Omega is positive from n to t
-        moving = (state.time, np.asarray(motion.centre), speed, *turning)
+        # Omega is positive from n to t
+        moving = (state.time, motion.centre, speed, angle, -motion.Omega)
         return Ringing(*moving, flight.modes.omega[kept], a, b, shape, rest, stretch, bending)
-
-    def _points(self, mode: Array) -> Array:
-        """Return the displacement (n, 3) of all rod points from a mode over the free unknowns."""
-        whole = np.zeros(self.model.layout.size)
-        whole[: len(mode)] = mode
-        self.model.hanging.expand(whole)
-        return np.asarray(self.model.nodes(whole)[self.model.layout.rod])
 
 
 def _held(energies: Array) -> Array:

@@ -15,7 +15,8 @@ from fem_impact.fem.hexmodes import LANES
 from fem_impact.fem.stable import SAFETY
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.solid.build import build
-from fem_impact.solid.carry import carry, dented, turned, turned_at, turned_stress
+from fem_impact.solid.carry import carry, dented, turned_stress
+from fem_impact.solid.frame import turned, turned_at
 from fem_impact.solid.rodview import RodState
 from fem_impact.solid.separation import SAMPLES, Separation
 from fem_impact.solid.stepguard import zone_step
