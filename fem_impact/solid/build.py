@@ -28,8 +28,9 @@ from fem_impact.physics.viscous import LinearSolid, linear_solid
 from fem_impact.solid.contact.moving_plane import MovingPlane
 from fem_impact.solid.contact.patch import facing_skin, make_patch
 from fem_impact.solid.contact.plane import PlaneContact
+from fem_impact.solid.contact.points import make_points
 from fem_impact.solid.contact.surface import SurfaceContact
-from fem_impact.solid.elastic import Dashpots, ElasticRod, Weight
+from fem_impact.solid.elastic import ElasticRod, Weight
 from fem_impact.solid.frame import FixedFrame, TurningFrame, mass_centre
 from fem_impact.solid.ground import Ground
 from fem_impact.solid.model import Model
@@ -41,8 +42,7 @@ if TYPE_CHECKING:
     from fem_impact.solid.block import ElasticBlockParts
     from fem_impact.solid.elastic import ModalDamping
     from fem_impact.solid.foundation import FoundationSprings
-    from fem_impact.solid.rigid_rest import ElasticNose, RigidRest
-    from fem_impact.solid.viscous import MaxwellCells
+    from fem_impact.solid.rigid_rest import RigidRest
     from fem_impact.solid.yielding import YieldingZone
 
 START_GAP = 1e-10  # m, so small that contact begins in the first step, before gravity or spin acts
@@ -87,10 +87,9 @@ def surface_contact(
     rod, barrier = (
         make_patch(skin, body.places, body.points) for skin, body in zip(skins, bodies, strict=True)
     )
+    rod, play = (rod.rounded(x), PLAY * h) if conforming else (rod, 0.0)
     f = f[np.unique(skins[0])]
-    if not conforming:
-        return SurfaceContact.of(rod, barrier, inverse_mass, f, over_speed, 0.0, BAND * h, x)
-    return SurfaceContact.of(rod.rounded(x), barrier, inverse_mass, f, over_speed, PLAY * h, BAND * h, x)
+    return SurfaceContact.of(rod, barrier, inverse_mass, f, over_speed, play, BAND * h, x)
 
 
 class Builder:
@@ -137,18 +136,15 @@ class Builder:
         return FixedFrame(x.copy())
 
     @cached_property
-    def elastic_rod(self) -> tuple[ElasticRod | ElasticNose, MassStiffness]:
+    def elastic_rod(self) -> tuple[ElasticRod, MassStiffness]:
         """Return the rod's linear part, and its elastic stiffness over its mass points, N/m."""
         n, mesh = self.meshed.layout.rod_size, self.meshed.geometry.rod
         self.stage(self.meshed.geometry)
         nose, whole = self.meshed.rod_stiffness
         product, d, y = NodeProduct.of(nose, self.meshed.free_nodes), np.zeros(n), np.zeros(n)
-        if not self.spec.vibrating:
-            from fem_impact.solid.rigid_rest import ElasticNose
-
-            return ElasticNose(product, self.frame, d, y), whole
-        slices = slices_of(self.meshed.rod, mesh)
-        return ElasticRod(slices, self.meshed.drawn, product, self.frame, self.meshed.layout, d, y), whole
+        linear = slices_of(self.meshed.rod, mesh), self.meshed.drawn, product
+        effect = "vibration" if self.spec.vibrating else "nose"
+        return ElasticRod(*linear, self.frame, self.meshed.layout, d, y, effect), whole
 
     @cached_property
     def block_parts(self) -> ElasticBlockParts:
@@ -182,18 +178,11 @@ class Builder:
         pots = [dashpots(self.meshed.barrier, layout, inverse, block)] if self.spec.radiating else []
         if self.spec.bending:
             pots = [plate_dashpots(layout, inverse, block)]
-        if self.ground.turns:
-            return self.turning_block(pots, step)
-        return [block.linear], [*pots], {"barrier": step}
-
-    def turning_block(
-        self, pots: list[Dashpots], step: float
-    ) -> tuple[list[Force], list[Impulse], dict[str, float]]:
-        """Return the items of a block on a foundation that turns, from those of one that stands still."""
+        if not self.ground.turns:
+            return [block.linear], [*pots], {"barrier": step}
         from fem_impact.solid.turning import TurningBlock, TurningDashpots
 
-        block, ground, layout = self.block_parts, self.ground, self.meshed.layout
-        inverse, place = self.meshed.inverse_mass, layout.barrier_slice
+        ground, place = self.ground, layout.barrier_slice
         linear = TurningBlock.of(block.linear.stiffness, place, ground, block.linear.effect)
         turning = [TurningDashpots.of(p.places, p.damping, inverse, ground, place.start) for p in pots]
         return [linear], [*turning], {"barrier": step}
@@ -226,15 +215,15 @@ class Builder:
         _, stiffness = self.elastic_rod
         inverse = self.meshed.inverse_mass[: self.meshed.layout.rod_size]
         step = stable_step(stiffness, inverse, self.scene.accuracy.step)
-        return steps | {"rod": step / sqrt(max((law.stiffest for law in self.viscous), default=1.0))}
+        return steps | {"rod": step / sqrt(self.viscous.stiffest if self.viscous else 1.0)}
 
     @cached_property
-    def viscous(self) -> list[LinearSolid]:
-        """Return the law of a rod that is viscous, none of one that is not."""
+    def viscous(self) -> LinearSolid | None:
+        """Return the law of a rod that is viscous."""
         loss = self.scene.projectile.material.loss_factor
         if self.spec.contact_loss is None or not loss:
-            return []
-        return [linear_solid(loss, self.case.estimate.duration)]
+            return None
+        return linear_solid(loss, self.case.estimate.duration)
 
     @cached_property
     def zones(self) -> list[YieldingZone]:
@@ -279,7 +268,7 @@ class Builder:
             skin = np.setdiff1d(skin, g.rod.body_nodes)
         nodes, inverse = self.meshed.rod.places[skin], self.meshed.inverse_mass
         if self.scene.barrier.mass is not None:
-            return MovingPlane.of(nodes, self.ground, inverse, f[skin], over_speed)
+            return MovingPlane(nodes, self.ground, inverse, f[skin], make_points(len(nodes), over_speed))
         return PlaneContact(nodes, inverse, f[skin], over_speed)
 
     @cached_property
@@ -320,14 +309,6 @@ class Builder:
         modes = rod_modes(K, self.meshed.mass[: K.shape[0]], inverse == 0)
         return ModalDamping.of(modes, self.frame, inverse, self.meshed.free_nodes, loss, self.steps["rod"])
 
-    def maxwell(self, rod: ElasticRod | ElasticNose) -> list[MaxwellCells]:
-        """Return the Maxwell elements of a viscous rod beside its elastic item."""
-        if not self.viscous:
-            return []
-        from fem_impact.solid.viscous import MaxwellCells
-
-        return [MaxwellCells.of(rod, law) for law in self.viscous]
-
     def rigid_rest(self) -> RigidRest:
         """Return the rigid body behind the nose: the nose's last section and the points behind it."""
         from fem_impact.solid.rigid_rest import RigidRest
@@ -341,7 +322,12 @@ class Builder:
         (linear, _), (block, _, _), gravity = self.elastic_rod, self.block, self.spec.gravity
         weight = [] if gravity is None else [self.weight(gravity)]
         own = [item for name in self.case.active for item in EFFECTS[name].forces(self)]
-        return [linear, *self.maxwell(linear), *weight, *block, *self.foundation, *self.zones, *own]
+        maxwell = []
+        if self.viscous:
+            from fem_impact.solid.viscous import MaxwellCells
+
+            maxwell = [MaxwellCells.of(linear, self.viscous)]
+        return [linear, *maxwell, *weight, *block, *self.foundation, *self.zones, *own]
 
     def impulses(self) -> list[Impulse]:
         """Return the items that change velocities, in their order, which ends with the contact."""

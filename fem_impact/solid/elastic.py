@@ -16,10 +16,12 @@ from fem_impact.solid.state import State
 
 @dataclass(slots=True)
 class ElasticRod:
-    """The rod's linear part: slices by stencil and elastic nose cells by sparse rows, both in one frame."""
+    """The rod's linear part: slices by stencil and elastic nose cells by sparse rows, both in one frame.
+
+    A nose that ends in a rigid rest has no slices, and the ``effect`` ``nose``.
+    """
 
     body: ClassVar[str] = "rod"
-    effect: ClassVar[str] = "vibration"
     accounts: ClassVar[tuple[str, ...]] = ("strain_rod",)
     moving: ClassVar[tuple[str, ...]] = ("frame.work",)  # its angle
     slices: SliceOperator
@@ -29,6 +31,7 @@ class ElasticRod:
     layout: DofLayout
     d: Array
     y: Array
+    effect: str = "vibration"
 
     def add(self, state: State) -> None:
         """Add the elastic forces."""

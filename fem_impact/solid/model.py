@@ -23,7 +23,6 @@ from fem_impact.solid.ledger import Ledger
 from fem_impact.solid.state import Force, Impulse, Item, State
 
 if TYPE_CHECKING:
-    from fem_impact.solid.rigid_rest import ElasticNose
     from fem_impact.solid.yielding import YieldingZone
 
 
@@ -61,7 +60,7 @@ class Model:
     drawn: MassPoints
     forces: Sequence[Force]
     impulses: Sequence[Impulse]
-    rod: ElasticRod | ElasticNose
+    rod: ElasticRod
     zones: Sequence[YieldingZone]
     contact: PlaneContact | MovingPlane | SurfaceContact | None
     ground: Ground

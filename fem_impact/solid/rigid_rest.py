@@ -11,40 +11,7 @@ from typing import ClassVar
 
 from fem_impact.arrays import Array, Ints
 from fem_impact.fem.kernels import kernel
-from fem_impact.fem.sparse import NodeProduct
-from fem_impact.solid.frame import FixedFrame, TurningFrame
 from fem_impact.solid.state import State
-
-
-@dataclass(slots=True)
-class ElasticNose:
-    """The linear part of a nose that ends in a rigid rest."""
-
-    body: ClassVar[str] = "rod"
-    effect: ClassVar[str] = "nose"
-    accounts: ClassVar[tuple[str, ...]] = ("strain_rod",)
-    moving: ClassVar[tuple[str, ...]] = ("frame.work",)  # its angle
-    nose: NodeProduct
-    frame: FixedFrame | TurningFrame
-    d: Array
-    y: Array
-
-    def add(self, state: State) -> None:
-        """Add the elastic forces."""
-        n = len(self.d)
-        self.frame.localise(state.x[:n], self.d)
-        self.apply(self.d, self.y)
-        self.frame.add_force(self.d, self.y, state.force[:n])
-
-    def apply(self, d: Array, y: Array) -> None:
-        """Set ``y`` (n,), N, to the stiffness times displacements ``d`` (n,), m, in the frame."""
-        y[:] = 0.0
-        self.nose.multiply(d)
-        self.nose.add_to(y)
-
-    def energies(self, state: State) -> tuple[float, ...]:
-        """Return the strain energy at the last force evaluation."""
-        return (0.5 * float(self.d @ self.y),)
 
 
 @dataclass(slots=True)

@@ -18,7 +18,6 @@ import numpy as np
 from fem_impact.arrays import Array
 from fem_impact.physics.viscous import LinearSolid
 from fem_impact.solid.elastic import ElasticRod
-from fem_impact.solid.rigid_rest import ElasticNose
 from fem_impact.solid.state import State
 
 
@@ -43,7 +42,7 @@ class MaxwellCells:
     effect: ClassVar[str] = "contact-loss"
     accounts: ClassVar[tuple[str, ...]] = ("strain_rod", "damping")
     moving: ClassVar[tuple[str, ...]] = ("q", "pull", "before", "time", "spring", "stored", "lost")
-    rod: ElasticRod | ElasticNose
+    rod: ElasticRod
     solid: LinearSolid
     q: Array
     pull: Array
@@ -56,7 +55,7 @@ class MaxwellCells:
     lost: float = 0.0
 
     @classmethod
-    def of(cls, rod: ElasticRod | ElasticNose, solid: LinearSolid) -> "MaxwellCells":
+    def of(cls, rod: ElasticRod, solid: LinearSolid) -> "MaxwellCells":
         """Return the elements of a rod at rest."""
         q, pull, before, w, y = np.zeros((5, len(rod.d)))
         return cls(rod, solid, q, pull, before, w, y)
@@ -71,23 +70,17 @@ class MaxwellCells:
         np.multiply(self.q, law.g * law.c, out=self.w)
         self.w -= (1.0 - law.c) * d
         self.rod.apply(self.w, self.y)
-        self._book()
-        self.before[:] = d
-        self.time = state.time
         self.rod.frame.add_force(d, self.y, state.force[: len(d)])
-
-    def _book(self) -> None:
-        """Set the energies: the dashpots take what the elements are given and their springs do not store.
-
-        The work is that of the mean force along the way since the last time, as leapfrog does it.
-        """
-        d, relaxed = self.rod.d, 1.0 - self.solid.c
+        # the dashpots take what the elements are given and their springs do not store; the work is that of
+        # the mean force along the way since the last time, as leapfrog does it
+        relaxed = 1.0 - law.c
         pull = self.y + relaxed * self.rod.y
         spring = 0.5 * float(self.q @ pull)
         given = 0.5 * float((self.pull + pull) @ (d - self.before))
         self.lost += given - (spring - self.spring)
         self.pull[:], self.spring = pull, spring
         self.stored = spring - 0.5 * relaxed * float(d @ self.rod.y)
+        self.before[:], self.time = d, state.time
 
     def energies(self, state: State) -> tuple[float, ...]:
         """Return what the elements add to the strain energy, and what their dashpots have taken."""

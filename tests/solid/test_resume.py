@@ -145,8 +145,6 @@ WORK_SPACE = {
         "NodeProduct.product",
         "ElasticRod.d",
         "ElasticRod.y",
-        "ElasticNose.d",
-        "ElasticNose.y",
         "MaxwellCells.w",
         "MaxwellCells.y",
     ),

@@ -1,12 +1,13 @@
 """Record of the contact of a run: work, impulses and contact intervals."""
 
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
 from fem_impact.arrays import Array
 from fem_impact.physics.contact_law import FAINT, MERGE_GAP
+from fem_impact.solid.state import State
 
 # what a checkpoint keeps of a contact
 MOVING = tuple(
@@ -112,3 +113,17 @@ class ContactBook:
             now.end = time
             now.impulse_n += 2 * self.step.impulse_n
             now.impulse_t += 2 * self.step.impulse_t
+
+
+class Booked:
+    """A contact of any kind, as the ledger sees it: its energies are those in its book."""
+
+    __slots__ = ()
+    effect: ClassVar[str] = "contact"
+    accounts: ClassVar[tuple[str, ...]] = ("friction", "contact_dissipation")
+    every: ClassVar[int] = 1
+    book: ContactBook
+
+    def energies(self, state: State) -> tuple[float, ...]:
+        """Return friction heat and closing loss."""
+        return self.book.friction, self.book.closing

@@ -4,21 +4,14 @@ from dataclasses import dataclass, field
 from typing import ClassVar
 
 from fem_impact.arrays import Array, Ints
-from fem_impact.solid.contact.book import MOVING, ContactBook
-from fem_impact.solid.contact.points import (
-    Points,
-    PointState,
-    make_points,
-    over_plane,
-    over_turning_plane,
-    settle,
-)
+from fem_impact.solid.contact.book import MOVING, Booked, ContactBook
+from fem_impact.solid.contact.points import Points, PointState, over_plane, over_turning_plane, settle
 from fem_impact.solid.ground import Ground
 from fem_impact.solid.state import State
 
 
 @dataclass(slots=True)
-class MovingPlane:
+class MovingPlane(Booked):
     """Unilateral contact with Coulomb friction on a plane that is a free barrier's foundation.
 
     Every impulse changes the velocity of the plane, so the nodes are solved together.
@@ -26,12 +19,9 @@ class MovingPlane:
     Attributes
     ----------
     nodes : (k, 3) unknowns of the rod's nodes; f : (k,) their Coulomb coefficients
-    ground : the motion of the plane
+    ground : the motion of the plane; points : room for all nodes
     """
 
-    effect: ClassVar[str] = "contact"
-    accounts: ClassVar[tuple[str, ...]] = ("friction", "contact_dissipation")
-    every: ClassVar[int] = 1
     moving: ClassVar[tuple[str, ...]] = ("points.memory", *MOVING)
     nodes: Ints
     ground: Ground
@@ -39,13 +29,6 @@ class MovingPlane:
     f: Array
     points: Points
     book: ContactBook = field(default_factory=ContactBook)
-
-    @classmethod
-    def of(
-        cls, nodes: Ints, ground: Ground, inverse_mass: Array, f: Array, over_speed: Array
-    ) -> "MovingPlane":
-        """Build with room for all nodes; ``over_speed`` is a `fem_impact.fem.sliding.speed_table`."""
-        return cls(nodes, ground, inverse_mass, f, make_points(len(nodes), over_speed))
 
     def resolve(self, state: State) -> None:
         """Apply this step's impulses and book the work."""
@@ -62,7 +45,3 @@ class MovingPlane:
         """Return the smallest height, m, of the nodes over the plane at positions ``x``."""
         heights = self.ground.levelled(x[self.nodes[:, 0]], x[self.nodes[:, 2]], x)
         return float(heights.min() - self.ground.risen(x))
-
-    def energies(self, state: State) -> tuple[float, ...]:
-        """Return friction heat and closing loss."""
-        return self.book.friction, self.book.closing

@@ -8,12 +8,12 @@ import numpy as np
 from fem_impact.arrays import Array, Ints
 from fem_impact.fem.kernels import kernel
 from fem_impact.fem.sliding import factor_at, speed_table
-from fem_impact.solid.contact.book import MOVING, ContactBook, StepRecord
+from fem_impact.solid.contact.book import MOVING, Booked, ContactBook, StepRecord
 from fem_impact.solid.state import State
 
 
 @dataclass(slots=True)
-class PlaneContact:
+class PlaneContact(Booked):
     """Unilateral contact with Coulomb friction on a rigid plane, node by node.
 
     A node whose predicted position would lie below the plane gets the smallest impulse that lets it
@@ -22,9 +22,6 @@ class PlaneContact:
     `fem_impact.fem.sliding.speed_table`.
     """
 
-    effect: ClassVar[str] = "contact"
-    accounts: ClassVar[tuple[str, ...]] = ("friction", "contact_dissipation")
-    every: ClassVar[int] = 1
     moving: ClassVar[tuple[str, ...]] = MOVING
     nodes: Ints
     inverse_mass: Array
@@ -41,10 +38,6 @@ class PlaneContact:
     def clearance(self, x: Array) -> float:
         """Return the smallest height, m, of the nodes over the plane at positions ``x``."""
         return float(x[self.nodes[:, 2]].min())
-
-    def energies(self, state: State) -> tuple[float, ...]:
-        """Return friction heat and closing loss."""
-        return self.book.friction, self.book.closing
 
 
 @kernel

@@ -20,7 +20,7 @@ from typing import ClassVar
 import numpy as np
 
 from fem_impact.arrays import Array, Ints
-from fem_impact.solid.contact.book import MOVING, ContactBook
+from fem_impact.solid.contact.book import MOVING, Booked, ContactBook
 from fem_impact.solid.contact.patch import Patch, lowest_gap, nearest_quads, vertex_normals
 from fem_impact.solid.contact.points import (
     Points,
@@ -34,7 +34,7 @@ from fem_impact.solid.state import State
 
 
 @dataclass(slots=True)
-class SurfaceContact:
+class SurfaceContact(Booked):
     """Coulomb contact between two patches.
 
     Attributes
@@ -47,9 +47,6 @@ class SurfaceContact:
     last : (rod nodes + barrier nodes,) last quad found for each node
     """
 
-    effect: ClassVar[str] = "contact"
-    accounts: ClassVar[tuple[str, ...]] = ("friction", "contact_dissipation")
-    every: ClassVar[int] = 1
     moving: ClassVar[tuple[str, ...]] = ("last", "points.memory", *MOVING)
     rod: Patch
     barrier: Patch
@@ -115,7 +112,3 @@ class SurfaceContact:
         vertex_normals(x, barrier.places, barrier.quads, barrier.mirrored, self.normals)
         if rod.bend.any():  # not by the sag: that of a flat face may be exactly 0
             vertex_normals(x, rod.places, rod.quads, rod.mirrored, self.rod_normals)
-
-    def energies(self, state: State) -> tuple[float, ...]:
-        """Return friction heat and closing loss."""
-        return self.book.friction, self.book.closing
