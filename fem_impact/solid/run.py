@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import resource
 import sys
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
@@ -22,7 +21,7 @@ from fem_impact.fem.kernels import compiled_before
 from fem_impact.files.run_directory import CHECKPOINT
 from fem_impact.options import RunOptions
 from fem_impact.outcome.groups import Limitation, limitations
-from fem_impact.progress import Notice, Progress, compiling, setting_up, standing
+from fem_impact.progress import compiling, setting_up, standing
 from fem_impact.solid.build import build
 from fem_impact.solid.checkpoint import Checkpoint
 from fem_impact.solid.fine_zone import left_zones, outside_zones, skin_shares
@@ -36,9 +35,7 @@ from fem_impact.solid.state import State
 from fem_impact.solid.watchers import Stopwatch, Watchers
 
 if TYPE_CHECKING:
-    from fem_impact.scene.types import Save
     from fem_impact.solid.heatwatch import HeatWatch
-    from fem_impact.solid.strain import StrainWatch
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,12 +145,18 @@ def solve(
         end, time = case.size.steps * case.size.step, case.size.time
         # a level's own mesh says more, as soon as it stands
         show(setting_up(end, case.scene.id, None if options.resume or case.record is not None else time))
-    # the set-up of a large mesh takes longer than all steps: what shows may end it between its stages
-    model = model or build(case, stage=partial(_tell, case, show))
+
+    def tell(geometry: Geometry) -> None:
+        # the set-up of a large mesh takes longer than all steps: what shows may end it between its stages
+        if show is not None:
+            show(setting_up(end, case.scene.id, setup_s=_setup_s(case, geometry)))
+
+    model = model or build(case, stage=tell)
     if show is None:
         view = view or RodState.of(model)
     else:
-        show(_standing(case, model, options))
+        remaining = None if options.resume else _remaining_s(case, model, end)
+        show(standing(end, case.scene.id, remaining, _setup_s(case, model.geometry)))
         going_on = partial(show, setting_up(end, case.scene.id))
         view = view or RodState.of(model, modes_of(model, step=going_on))
     state = model.initial_state()
@@ -167,7 +170,12 @@ def solve(
     evaluate(model, model.initial_state())  # compiles the kernels before the time loop
     clock = Stopwatch()
     if out is not None:
-        observers.append(_checkpoint(model, state, watchers, clock, options, out))
+        holders, over = watchers.holders(model, state, clock), lambda: bool(watchers.reason)
+        checkpoint = Checkpoint(out / CHECKPOINT, options.stamp, holders, options.checkpoint_s, over)
+        observers.append(checkpoint)
+        if options.resume:
+            checkpoint.restore()
+            advance(model, state)  # the checkpoint's forces are up to date
     marching = Stopwatch()
     try:
         march(model, state, observers)
@@ -187,36 +195,16 @@ def solve(
     return replace(result, shares=run_time_shares(model, state, cost.cpu / max(state.step, 1), watchers.heat))
 
 
-def _standing(case: Case, model: Model, options: RunOptions) -> Progress:
-    """Return the report that the mesh stands, with the time that its modes, cells and steps will take."""
-    end, g = case.size.steps * case.size.step, model.geometry
+def _remaining_s(case: Case, model: Model, end: float) -> float:
+    """Return about the time, s, of the modes of a model and of its steps up to ``end``, s."""
+    g = model.geometry
     time = run_time(g.count, sum(zone.count for zone in model.zones), end / model.step)
-    time += modes_time(case.bodies, len(g.rod.mesh.cells)) if model.rod_stiffness is not None else 0.0
-    return standing(end, case.scene.id, None if options.resume else time, _setup_s(case, g))
-
-
-def _tell(case: Case, show: Callable[[Progress | Notice], None] | None, geometry: Geometry) -> None:
-    """Report that a run with these meshes goes on with its set-up."""
-    if show is not None:
-        end = case.size.steps * case.size.step
-        show(setting_up(end, case.scene.id, setup_s=_setup_s(case, geometry)))
+    return time + (modes_time(case.bodies, len(g.rod.mesh.cells)) if model.rod_stiffness is not None else 0.0)
 
 
 def _setup_s(case: Case, geometry: Geometry) -> float:
     """Return about the time, s, of the set-up with these meshes."""
     return setup_time(case.bodies, case.slots.vibrating, len(geometry.rod.mesh.cells), geometry.count)
-
-
-def _checkpoint(
-    model: Model, state: State, watchers: Watchers, clock: Stopwatch, options: RunOptions, out: Path
-) -> Checkpoint:
-    """Return the observer that writes checkpoints; on resuming, restore the state and go one step on."""
-    holders, interval = watchers.holders(model, state, clock), options.checkpoint_s
-    checkpoint = Checkpoint(out / CHECKPOINT, options.stamp, holders, interval, lambda: bool(watchers.reason))
-    if options.resume:
-        checkpoint.restore()
-        advance(model, state)  # the checkpoint's forces are up to date
-    return checkpoint
 
 
 def _result(
@@ -229,7 +217,10 @@ def _result(
     cost: LoopCost,
 ) -> SolidResult:
     """Return the result at ``state``, without the shares of the run time."""
-    ledger, stop = watchers.watch.ledger, watchers.stop
+    ledger, stop, save, gauge = watchers.watch.ledger, watchers.stop, case.scene.save, None
+    if save.gauge is not None and watchers.strain:
+        across = 1.0 if save.gauge_across is None else save.gauge_across
+        gauge = watchers.strain[0].waves().gauge(save.gauge, across)
     return SolidResult(
         case=case,
         model=model,
@@ -263,15 +254,8 @@ def _result(
             crushed=bool(watchers.guard.reason),
         ),
         heat=watchers.heat,
-        strain=_gauge(case.scene.save, watchers.strain),
+        strain=gauge,
     )
-
-
-def _gauge(save: Save, watched: Sequence[StrainWatch]) -> Array | None:
-    """Return what the strain gauge of a scene shows over time (k,), None without one."""
-    if save.gauge is None or not watched:
-        return None
-    return watched[0].waves().gauge(save.gauge, 1.0 if save.gauge_across is None else save.gauge_across)
 
 
 def _base(case: Case, model: Model, state: State) -> tuple[float, float]:

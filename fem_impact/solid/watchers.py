@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, field
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Protocol
 
 import numpy as np
 
-from fem_impact.arrays import Array, Bools, Ints
+from fem_impact.arrays import Array
 from fem_impact.case.cells import body_cell
 from fem_impact.case.size import FRAMES_SPAN
 from fem_impact.fem.geometry import tail_corners
@@ -125,8 +124,11 @@ class Watchers:
             others = [c for c in map(history_column, watch.ledger.names) if c not in HISTORY]
             writer = HistoryWriter(out / "history.csv", (*HISTORY, *others), go_on=go_on)
             history = [History(model, view, watch, writer, scene.save.history_every)]
-        if out is not None and scene.save.frames:
-            frames = [_frames(case, model, view, out, go_on)]
+            if scene.save.frames:
+                fields = FieldSampler.of(model, view, case.bodies)
+                body = {"body": fields.body}
+                to = FieldWriter(out / "fields.vtkhdf", fields.points, fields.cells, body, go_on)
+                frames = [Frames(fields, to, *_schedule(case))]
         sliced = model.rod_stiffness is not None and model.layout.body_shape[1] > 2
         kept = out is not None and scene.save.strain_samples > 0
         if sliced and (kept or scene.save.gauge is not None):
@@ -145,9 +147,13 @@ class Watchers:
         barrier = case.scene.barrier
         moves = barrier.mass is not None or barrier.bends
         contact = ContactWatch(model, case.bodies.stretching_period, moves)
-        tail, behind = _far_tail(case, model), _far_half(case, model, view)
-        touched = partial(_has_touched, contact, case, model)
-        stop = Separation(model, view, case.max_time, case.one_impact, tail, behind, touched)
+        stop = Separation(model, view, case.max_time, case.one_impact)
+        if isinstance(model.contact, SurfaceContact) or model.rod_stiffness is None:
+            stop.tail = _far_tail(case, model)
+        elif scene.impact.until == FIRST:  # all of the rod may touch; strikes of a followed body go on
+            z, middle = model.geometry.rod.mesh.points[:, 2], 0.5 * case.bodies.body.length
+            stop.behind = z[nodes_of(model.layout.rod, view.rim)] > middle
+            stop.touched = lambda: bool((z[contact.rod[contact.last >= 0.0]] > middle).any())
         # a level is run again without thin cells, a strike of a body that is followed is not
         again = case.record is not None and not case.record.crushed and scene.impact.until == FIRST
         rows = case.zones.skin_rows + case.zones.rod_rows
@@ -181,43 +187,12 @@ class Watchers:
 
 def _far_tail(case: Case, model: Model) -> Array:
     """Return the corners (k, 3), m, of the rod's tail at the start that no skin of the contact reaches."""
-    contact = model.contact
-    if _all_touches(model):
-        return np.zeros((0, 3))
-    tail = tail_corners(case.bodies)
+    tail, contact = tail_corners(case.bodies), model.contact
     if not isinstance(contact, SurfaceContact):
         return tail
     touching = model.start[0][contact.rod.places]
     gap = np.linalg.norm(tail[:, None] - touching[None], axis=2).min(axis=1)
     return np.asarray(tail[gap > body_cell(case.bodies)])
-
-
-def _far_half(case: Case, model: Model, view: RodState) -> Bools:
-    """Return which nodes of the rim lie in the half of the tail, where all of a rod may touch."""
-    if not _all_touches(model) or case.scene.impact.until != FIRST:  # strikes of a followed body go on
-        return np.zeros(0, bool)
-    return _lies_behind(case, model, nodes_of(model.layout.rod, view.rim))
-
-
-def _all_touches(model: Model) -> bool:
-    """Return whether all skin of the rod may touch: of one that deforms, on a plane."""
-    return not isinstance(model.contact, SurfaceContact) and model.rod_stiffness is not None
-
-
-def _has_touched(contact: ContactWatch, case: Case, model: Model) -> bool:
-    """Return whether a node in the half of the tail was seen pressed."""
-    return bool(_lies_behind(case, model, contact.rod[contact.last >= 0.0]).any())
-
-
-def _lies_behind(case: Case, model: Model, nodes: Ints) -> Bools:
-    return np.asarray(model.geometry.rod.mesh.points[nodes, 2] > 0.5 * case.bodies.body.length)
-
-
-def _frames(case: Case, model: Model, view: RodState, out: Path, go_on: bool) -> Frames:
-    fields = FieldSampler.of(model, view, case.bodies)
-    body = {"body": fields.body}
-    writer = FieldWriter(out / "fields.vtkhdf", fields.points, fields.cells, body, go_on)
-    return Frames(fields, writer, *_schedule(case))
 
 
 def _schedule(case: Case) -> tuple[float, float, float]:
