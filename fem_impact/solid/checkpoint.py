@@ -54,21 +54,16 @@ def put_back(holders: Mapping[str, Moving], stored: Mapping[str, np.ndarray]) ->
         raise ValueError("holds other parts than this run.")
     for key, name in wanted:
         *path, last = name.split(".")
-        owner = attrgetter(".".join(path))(holders[key]) if path else holders[key]
-        _set(owner, last, stored[f"{key}/{name}"])
-
-
-def _set(owner: Any, name: str, value: np.ndarray) -> None:
-    """Set a property, number or array (in place); raise ValueError for another shape or type."""
-    now = getattr(owner, name)
-    if isinstance(getattr(type(owner), name, None), property):
-        setattr(owner, name, value)
-    elif not isinstance(now, np.ndarray):
-        setattr(owner, name, type(now)(value.item()))
-    elif value.shape != now.shape or value.dtype != now.dtype:
-        raise ValueError(f"holds {name} of the shape {value.shape}, not {now.shape}.")
-    else:
-        now[...] = value
+        owner: Any = attrgetter(".".join(path))(holders[key]) if path else holders[key]
+        now, value = getattr(owner, last), stored[f"{key}/{name}"]
+        if isinstance(getattr(type(owner), last, None), property):
+            setattr(owner, last, value)
+        elif not isinstance(now, np.ndarray):
+            setattr(owner, last, type(now)(value.item()))
+        elif value.shape != now.shape or value.dtype != now.dtype:
+            raise ValueError(f"holds {last} of the shape {value.shape}, not {now.shape}.")
+        else:
+            now[...] = value  # in place: others hold the same array
 
 
 _MARK = b"fem-ckp1"
@@ -138,28 +133,19 @@ class Checkpoint:
         """
         try:
             largest = sum(a.nbytes for a in take_out(self.holders).values()) + _ROOM
-            stored = _read(self.path, largest)
-            _check_stamp(str(stored.pop(_STAMP, "")), self.stamp)
+            with self.path.open("rb") as file:
+                data = file.read(largest + 1)
+            body = data[_START:]
+            if data[:_START] != _MARK + hashlib.sha256(body).digest() or len(data) > largest:
+                raise ValueError("is damaged, or no checkpoint of this run.")
+            with np.load(BytesIO(body), allow_pickle=False) as archive:
+                stored = {name: archive[name] for name in archive.files}
+            written = str(stored.pop(_STAMP, "")).splitlines()
+            other = [line.partition(" ")[0] for line in self.stamp.splitlines() if line not in written]
+            if other:
+                raise ValueError(
+                    f"was written with another {' and other '.join(other)}; the run cannot go on from it."
+                )
             put_back(self.holders, stored)
         except _BROKEN as error:
             raise ResultError(f"{self.path}: {error} Run again without resuming to start anew.") from error
-
-
-def _read(path: Path, largest: int) -> dict[str, np.ndarray]:
-    """Return the arrays of a checkpoint of at most ``largest`` bytes, after a check of its digest."""
-    with path.open("rb") as file:
-        data = file.read(largest + 1)
-    body = data[_START:]
-    if data[:_START] != _MARK + hashlib.sha256(body).digest() or len(data) > largest:
-        raise ValueError("is damaged, or no checkpoint of this run.")
-    with np.load(BytesIO(body), allow_pickle=False) as archive:
-        return {name: archive[name] for name in archive.files}
-
-
-def _check_stamp(stored: str, wanted: str) -> None:
-    """Raise ValueError, with the names of the lines that differ, for a stamp of another scene or program."""
-    other = [line.partition(" ")[0] for line in wanted.splitlines() if line not in stored.splitlines()]
-    if other:
-        raise ValueError(
-            f"was written with another {' and other '.join(other)}; the run cannot go on from it."
-        )

@@ -120,14 +120,19 @@ class ContactWatch:
 
     def _sites(self, touched: Ints) -> tuple[Site, ...]:
         """Return the places of contact: groups of touched nodes that lie close together."""
-        points = self.model.geometry.rod_points[self.rod[touched]]
-        h = self.model.geometry.tip_size
-        groups = _groups(points, APART * h)
+        g = self.model.geometry
+        points = g.rod_points[self.rod[touched]]
+        groups = _groups(points, APART * g.tip_size)
         sites = []
         for group in range(groups.max(initial=-1) + 1):
             nodes, at = touched[groups == group], points[groups == group]
             low, high = at[:, :2].min(axis=0), at[:, :2].max(axis=0)
             impulse_n, impulse_t = (float(part) for part in self.impulse[nodes].sum(axis=0))
+            depth = 0.0
+            if g.barrier is not None:
+                place = g.barrier.points[self.barrier, :2]
+                inside = ((place >= low - g.tip_size) & (place <= high + g.tip_size)).all(axis=1)
+                depth = float(np.max(self.deepest, where=inside, initial=0.0))
             sites.append(
                 Site(
                     start=float(self.first[nodes].min()),
@@ -136,19 +141,10 @@ class ContactWatch:
                     impulse_t=impulse_t,
                     low=(float(low[0]), float(low[1])),
                     high=(float(high[0]), float(high[1])),
-                    depth=self._depth(low, high),
+                    depth=depth,
                 )
             )
         return tuple(sorted(sites, key=lambda site: site.start))
-
-    def _depth(self, low: Array, high: Array) -> float:
-        """Return the largest indentation, m, between two corners along t and b."""
-        g = self.model.geometry
-        if g.barrier is None:
-            return 0.0
-        at = g.barrier.points[self.barrier, :2]
-        inside = ((at >= low - g.tip_size) & (at <= high + g.tip_size)).all(axis=1)
-        return float(np.max(self.deepest, where=inside, initial=0.0))
 
 
 def nodes_of(layout: Ints, places: Ints) -> Ints:

@@ -108,7 +108,13 @@ class SkinWatch:
         outside = ~np.isin(places[:, 2], touching[:, 2])
         self.nodes, self.places = skin[outside], places[outside]
         self.ground = model.ground
-        self.top = _top(model) if bends else None
+        self.top: tuple[Ints, Delaunay] | None = None
+        if bends:  # the unknowns (k, 3) of the nodes on the barrier's face, and triangles between them
+            from scipy.spatial import Delaunay
+
+            x, barrier = model.start[0], model.layout.barrier
+            nodes = barrier[np.abs(x[barrier[:, 2]]) < LEVEL]
+            self.top = nodes, Delaunay(x[nodes[:, :2]])
         self.lowest = np.inf
         self.deepest = -DEEP * model.geometry.tip_size
         self.reason = ""
@@ -170,24 +176,23 @@ class SkinWatch:
         )
 
 
-def _top(model: Model) -> tuple[Ints, Delaunay]:
-    """Return the unknowns (k, 3) of the nodes on a meshed barrier's face, and triangles between them."""
-    from scipy.spatial import Delaunay
-
-    x, places = model.start[0], model.layout.barrier
-    nodes = places[np.abs(x[places[:, 2]]) < LEVEL]
-    return nodes, Delaunay(x[nodes[:, :2]])
-
-
 def outside_zones(model: Model, watch: SkinWatch) -> tuple[str, ...]:
     """Return sentences on contact and yielding that left the fine zones; empty ones where they did not."""
-    nodes = model.book.outside
-    left = (
-        f"{nodes} rod nodes left the fine zone of the barrier while below its surface: "
-        'friction and indentation there are missing. accuracy.fine_zone = "even" makes it wider, as does '
-        "a larger accuracy.barrier_size."
-    )
-    return (watch.below(), *(_at_border(model, zone) for zone in model.zones), left if nodes else "")
+    said, nodes = [watch.below()], model.book.outside
+    for zone in model.zones:
+        if (strain := border_strain(model, zone)) > PROOF_STRAIN:
+            said.append(
+                f"Yielding reached the edge of the {zone.body}'s fine zone (plastic strain {strain:.3f}): "
+                "beyond it the material was taken as elastic. A larger accuracy.tip_size makes the zone "
+                "wider."
+            )
+    if nodes:
+        said.append(
+            f"{nodes} rod nodes left the fine zone of the barrier while below its surface: "
+            'friction and indentation there are missing. accuracy.fine_zone = "even" makes it wider, as does '
+            "a larger accuracy.barrier_size."
+        )
+    return tuple(said)
 
 
 def left_zones(model: Model, watch: SkinWatch) -> bool:
@@ -203,14 +208,3 @@ def border_strain(model: Model, zone: YieldingZone) -> float:
     yields = g.may_yield[zone.body]
     border = np.isin(mesh.cells[zone.cells], mesh.cells[~yields]).any(axis=1)
     return float(np.max(zone.plastic_strain(), where=border, initial=0.0))
-
-
-def _at_border(model: Model, zone: YieldingZone) -> str:
-    """Say that yielding reached the edge of the fine zone, an empty string where it did not."""
-    strain = border_strain(model, zone)
-    if strain <= PROOF_STRAIN:
-        return ""
-    return (
-        f"Yielding reached the edge of the {zone.body}'s fine zone (plastic strain {strain:.3f}): "
-        "beyond it the material was taken as elastic. A larger accuracy.tip_size makes the zone wider."
-    )

@@ -145,13 +145,16 @@ class ProgressObserver:
 
     def observe(self, state: State) -> bool:
         """Report the progress."""
-        end = self._end(state.time)
-        eta = self._eta(state.time, end)
+        time, end = state.time, self._end(state.time)
+        # kernels are loaded in the steps before the second report: they do not count for the pace
+        self.reports += 1
+        if self.reports == 2:  # a resumed run does not begin at time 0
+            self.begun = clock.monotonic(), time
+        spent, done = clock.monotonic() - self.begun[0], time - self.begun[1]
+        eta = spent * (end - time) / done if self.reports > 2 and time < end else None
         nodes = self.model.book.step.active
         contact = f"{nodes} nodes touch" if nodes else "no contact"
-        self.show(
-            Progress(state.time, max(end, state.time), state.step, self.watch.drift, contact, eta, self.note)
-        )
+        self.show(Progress(time, max(end, time), state.step, self.watch.drift, contact, eta, self.note))
         return False
 
     def _end(self, time: float) -> float:
@@ -164,17 +167,6 @@ class ProgressObserver:
             return self.end
         half_sine = time * 0.5 * np.pi / float(np.arcsin(np.sqrt(share))) + QUIET
         return (1 - share) * self.end + share * half_sine
-
-    def _eta(self, time: float, end: float) -> float | None:
-        """Return the wall time, s, to the expected end; None in the first two reports and once it has passed.
-
-        The steps between these two do not count for the pace: kernels are loaded in them.
-        """
-        self.reports += 1
-        if self.reports == 2:  # a resumed run does not begin at time 0
-            self.begun = clock.monotonic(), time
-        spent, done = clock.monotonic() - self.begun[0], time - self.begun[1]
-        return spent * (end - time) / done if self.reports > 2 and time < end else None
 
 
 @dataclass(slots=True)

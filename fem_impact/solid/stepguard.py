@@ -31,7 +31,11 @@ def zone_step(zone: YieldingZone, model: Model, x: Array) -> float:
     cells that yield set the step: of plates and tips dragged, squeezed and crushed, the whole body's fell as
     that of its zone within 2 %. Hanging nodes are held.
     """
-    trial, places = _trial(zone), zone.places()
+    # a copy that may be advanced without changing the zone, and that stays elastic
+    old = zone.blocks
+    own = {name: np.empty_like(getattr(old, name)) for name in ("stress", "pressure", "nodal")}
+    blocks = old._replace(flow=np.full_like(old.flow, np.inf), **own)
+    trial, places = replace(zone, blocks=blocks, room=np.empty_like(zone.room)), zone.places()
     moves, still = np.zeros(len(x), dtype=bool), np.zeros_like(x)
     moves[places] = True
     used = np.flatnonzero(moves & (model.inverse_mass > 0))
@@ -39,7 +43,7 @@ def zone_step(zone: YieldingZone, model: Model, x: Array) -> float:
 
     def force(motion: Array, share: float) -> Array:
         state = State(x + share * motion, motion, np.zeros_like(x), dt=share)
-        trial.blocks.stress[:] = zone.blocks.stress
+        trial.blocks.stress[:] = old.stress
         trial.add(state)
         return state.force[used]
 
@@ -53,18 +57,6 @@ def zone_step(zone: YieldingZone, model: Model, x: Array) -> float:
 
     K = LinearOperator((len(used),) * 2, matvec=product, dtype=np.float64)
     return stable_step(K, model.inverse_mass[used], share=1.0)
-
-
-def _trial(zone: YieldingZone) -> YieldingZone:
-    """Return a copy of the zone that may be advanced without changing it, and that stays elastic.
-
-    Its flow stress is infinite; stress, pressure and nodal forces are arrays of its own, not yet filled.
-    Everything else is shared.
-    """
-    old = zone.blocks
-    own = {name: np.empty_like(getattr(old, name)) for name in ("stress", "pressure", "nodal")}
-    blocks = old._replace(flow=np.full_like(old.flow, np.inf), **own)
-    return replace(zone, blocks=blocks, room=np.empty_like(zone.room))
 
 
 SMALLEST = 0.02  # of the first step: below it the elements are crushed beyond use
@@ -125,16 +117,13 @@ class StepGuard:
             place = when_and_where(state, self.model.start[0][nodes[first]])
             not_finite = f"The motion is not finite {place} What was computed before is kept. {REMEDY}"
             raise RunError(not_finite)
-        if len(self.places):
-            self._follow(state)
-        return bool(self.reason)
-
-    def _follow(self, state: State) -> None:
+        if not len(self.places):
+            return False
         now = gradient_squares(state.x, self.places)
         folded = ~np.isfinite(now)
         if folded.any():
             self.reason = f"An element folded {self._where(state, int(np.argmax(folded)))} {REMEDY}"
-            return
+            return True
         before, self.allowed = self.allowed, min(self.model.step, self._find(state.x, now))
         # as if it fell on until the next look as since the last, by up to 7 % in fast drops: then no step of
         # nine drops was over .94 of the limit at the end of its look (1.04 without, at 100 steps a look)
@@ -143,6 +132,7 @@ class StepGuard:
         if self.allowed < self.crushed * self.model.step:
             place = self._where(state, int(np.argmax(now)))
             self.reason = f"An element was crushed to under {self.crushed:g} of its step {place} {REMEDY}"
+        return bool(self.reason)
 
     def _find(self, x: Array, now: Array) -> float:
         """Return the stable step, s, where the elements' gradient numbers are ``now``."""
