@@ -3,9 +3,9 @@
 Element matrices are assembled in batches and never stored all at once.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise
 from math import sqrt
 from typing import Protocol
 
@@ -17,7 +17,7 @@ from fem_impact.case.case import Case
 from fem_impact.case.plates import widening
 from fem_impact.fem.eigen import MassStiffness, RodModes, rod_modes
 from fem_impact.fem.elements import Kind, element_stiffness, lame_constants, lumped_mass
-from fem_impact.fem.geometry import POINTS, Geometry, build_geometry
+from fem_impact.fem.geometry import POINTS, Geometry, build_geometry, material_numbers
 from fem_impact.fem.hexmodes import dummy_element
 from fem_impact.fem.layout import DofLayout, MassPoints, number
 from fem_impact.fem.mass_scaling import LEAST, crossing_times, mass_factors, reference_time, scaled_rod
@@ -26,8 +26,6 @@ from fem_impact.fem.slices import SliceOperator
 from fem_impact.fem.sparse import assemble, assemble_mass, tie_operator
 from fem_impact.physics.contact import pressure_speed
 from fem_impact.scene.material import Material
-from fem_impact.scene.own_mesh import cell_regions
-from fem_impact.scene.projectile import Segment
 from meshes import OUTER, HexMesh, RodMesh
 from rigid import Turned
 
@@ -96,22 +94,9 @@ def make_body(
     return MeshedBody(name, mesh, points, places, material, yields, element, mass, yielding)
 
 
-def of_materials(body: MeshedBody, place: Array, parts: tuple[tuple[float, Material], ...]) -> MeshedBody:
-    """Return a body of several materials, masses included, the first being its own.
-
-    ``place`` (m,), m, says how far along the body each cell lies, ``parts`` the end, m, of each material.
-    """
-    others = tuple(
-        (material, (place > before) & (place < end)) for (before, _), (end, material) in pairwise(parts)
-    )
-    for material, here in others:
-        body.mass[here] *= material.rho / body.material.rho
-    return replace(body, others=others)
-
-
-def of_regions(body: MeshedBody, region: Ints, materials: list[Material]) -> MeshedBody:
-    """Return a body whose cells of ``region`` (m,) k are of the k-th of ``materials``, 0 of its own."""
-    others = tuple((material, region == number) for number, material in enumerate(materials, 1))
+def of_materials(body: MeshedBody, which: Ints, materials: Sequence[Material]) -> MeshedBody:
+    """Return a body, masses included, whose cells (m,) are of ``which`` of ``materials``; 0 is its own."""
+    others = tuple((material, which == k) for k, material in enumerate(materials) if k)
     for material, here in others:
         body.mass[here] *= material.rho / body.material.rho
     return replace(body, others=others)
@@ -229,21 +214,6 @@ class MeshedBodies:
         return reference_time(self.case.zones, {"rod": self.materials["rod"], **barrier})
 
     @cached_property
-    def nose(self) -> Bools:
-        """Return the mask (m,) of the rod's cells that are in no slice."""
-        nose = np.ones(len(self.geometry.rod.mesh.cells), dtype=bool)
-        nose[self.geometry.rod.body_cells] = False
-        return nose
-
-    @cached_property
-    def cut_off(self) -> Bools:
-        """Return the mask (m,) of the rod's cells where the nodes of the skin lie on the round surface."""
-        mesh = self.geometry.rod.mesh
-        z = mesh.points[mesh.cells, 2].mean(axis=1)
-        inside = [(z > low) & (z < high) for low, high in self.geometry.rod.on_surface]
-        return np.asarray(np.any(inside, axis=0))
-
-    @cached_property
     def true_rod(self) -> MeshedBody:
         """Return the meshed rod with its exact mass.
 
@@ -253,14 +223,10 @@ class MeshedBodies:
         steel, accuracy = self.materials["rod"], self.scene.accuracy
         kinds = accuracy.element, accuracy.yielding_element
         rod = make_body("rod", g.rod.mesh, g.rod_points, self.layout.rod, steel, yields, *kinds)
-        parts = self.scene.projectile.segments or (Segment(np.inf, steel),)
-        z = g.rod.mesh.points[g.rod.mesh.cells, 2].mean(axis=1)
-        rod = of_materials(rod, z, tuple((part.to, part.material) for part in parts))
-        if (own := self.scene.projectile.own_mesh) and (regions := self.scene.projectile.regions):
-            assert g.rod.mesh.region is not None, "the cells of a mesh of its own are numbered"
-            of = cell_regions(own, tuple(region.name for region in regions))[g.rod.mesh.region]
-            rod = of_regions(rod, of, [region.material for region in regions])
-        rod, cut = replace(rod, touching=g.touching), self.cut_off
+        spec = self.scene.projectile
+        rod = of_materials(rod, material_numbers(spec, g.rod.mesh), spec.materials)
+        rod, z = replace(rod, touching=g.touching), g.rod.mesh.points[g.rod.mesh.cells, 2].mean(axis=1)
+        cut = np.any([(z > low) & (z < high) for low, high in g.rod.on_surface], axis=0)
         missing = self.case.bodies.body.mass / 2 - rod.mass.sum() - self.rest_mass
         if cut.any():
             rod.mass[cut] *= 1 + missing / rod.mass[cut].sum()
@@ -275,7 +241,9 @@ class MeshedBodies:
         zones, bodies = self.case.zones, self.case.bodies
         long = zones.edges > 0 and widening(bodies, zones.base) > 1  # it takes many steps
         least = LEAST if long and wanted > 1 else 1.0
-        mass, scaling = scaled_rod(rod.mass, place, self.nose, crossing, reference, wanted, least)
+        nose = np.ones(len(place), dtype=bool)  # cells that are in no slice
+        nose[self.geometry.rod.body_cells] = False
+        mass, scaling = scaled_rod(rod.mass, place, nose, crossing, reference, wanted, least)
         return replace(rod, mass=mass), scaling
 
     @property
@@ -292,8 +260,9 @@ class MeshedBodies:
         steel, accuracy = self.materials["barrier"], self.scene.accuracy
         kinds, elastic = (accuracy.element, accuracy.yielding_element), np.zeros(len(mesh.cells), dtype=bool)
         body = make_body("barrier", mesh, mesh.points, self.layout.barrier, steel, elastic, *kinds)
-        depth = -mesh.points[mesh.cells, 2].mean(axis=1)
-        body = of_materials(body, depth, self.scene.barrier.strata)
+        ends, layers = zip(*self.scene.barrier.strata, strict=True)
+        which = np.searchsorted(ends, -mesh.points[mesh.cells, 2].mean(axis=1))
+        body = of_materials(body, which, layers)
         flows = [here for (_, here), law in zip(body.parts, self.spec.barrier_laws, strict=False) if law]
         return replace(body, yields=g.may_yield["barrier"] & np.any([elastic, *flows], axis=0))
 

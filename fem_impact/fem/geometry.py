@@ -7,7 +7,7 @@ from math import cos, sin, sqrt
 import numpy as np
 
 import meshes
-from fem_impact.arrays import Array, Bools
+from fem_impact.arrays import Array, Bools, Ints
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.cells import body_cell
 from fem_impact.case.layers import block_of, moved_rows
@@ -16,6 +16,7 @@ from fem_impact.case.recorded import AnyZones, RecordedZones
 from fem_impact.case.size import no_rest
 from fem_impact.case.zones import BUFFER, Zones
 from fem_impact.errors import SceneError
+from fem_impact.scene.projectile import ProjectileSpec
 from meshes import Cloud, HexMesh, RodMesh, Zone
 from rigid import Projectile, Turned
 
@@ -95,7 +96,7 @@ def build_geometry(
         cells[rod.body_cells] = False  # slices have mass points in place of nodes, and one elastic operator
     if not vibrating:  # nodes of the rigid rest do not give way: a contact there would lose energy
         touching &= ~np.isin(rod.mesh.cells, rod.body_nodes).any(axis=1)
-    may_yield = {"rod": flows & _first_segment(bodies, rod.mesh)}
+    may_yield = {"rod": flows & (material_numbers(bodies.rod, rod.mesh) == 0)}  # the others stay elastic
     barrier = None
     if meshed_barrier:
         barrier = _block(bodies, zones)
@@ -112,7 +113,7 @@ def _mesh(bodies: Bodies, zones: AnyZones, vibrating: bool) -> RodMesh:
     turn, lowest = to_barrier_frame(bodies.mesh_inclination), bodies.lowest_point
     rod = _rod(bodies, lowest, zones.in_rod(lowest, turn))
     if isinstance(zones, RecordedZones) and zones.rod_rows:
-        part = zones.pressed(rod.mesh, turn) & _first_segment(bodies, rod.mesh)
+        part = zones.pressed(rod.mesh, turn) & (material_numbers(bodies.rod, rod.mesh) == 0)
         rod = replace(rod, mesh=meshes.with_thin_rows(rod.mesh, part, zones.tip_size, zones.rod_rows))
     if not vibrating:
         if bodies.rod.own_mesh:
@@ -200,13 +201,12 @@ def _require_tip_first(points: Array, base: float, on_feet: bool) -> None:
         )
 
 
-def _first_segment(bodies: Bodies, mesh: HexMesh) -> Bools:
-    """Return the mask (m,) of the rod's cells of the material that touches; the others stay elastic."""
+def material_numbers(rod: ProjectileSpec, mesh: HexMesh) -> Ints:
+    """Return which of a projectile's materials each cell (m,) of its mesh is of; 0 is that which touches."""
     if mesh.region is not None:
-        return np.asarray(bodies.rod.cell_materials()[mesh.region] == 0)
-    segments = bodies.rod.segments
-    end = segments[0].to if segments else np.inf
-    return np.asarray(mesh.points[mesh.cells, 2].mean(axis=1) < end)
+        return np.asarray(rod.cell_materials()[mesh.region])
+    ends = [part.to for part in rod.segments[:-1]]
+    return np.asarray(np.searchsorted(ends, mesh.points[mesh.cells, 2].mean(axis=1)))
 
 
 def _block(bodies: Bodies, zones: AnyZones) -> HexMesh:

@@ -8,12 +8,16 @@ from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
+import numpy as np
 from llvmlite.binding import get_host_cpu_features
 from numba import extending
 from numba.core import event
+from numpy.typing import NDArray
 
 SETTINGS: Any = numba.config
 F = TypeVar("F", bound=Callable[..., Any])
+Counts = NDArray[np.uint32]
+"""Indices that compiled code reads: unsigned, so that it does not test for negative ones."""
 
 # Contraction and reciprocals are allowed; reordering of sums is not, so results do not depend on the
 # vector width of the machine. NaN is not assumed away: a diverging run must be detected.
@@ -41,17 +45,11 @@ if os.environ.get("NUMBA_CACHE_DIR") or os.access(Path(__file__).parent, os.W_OK
     SETTINGS.CACHE_DIR = str(_cache_folder())
 
 
-def _use_whole_registers() -> None:
-    """Compile loops to 512-bit registers where the processor has AVX-512 VBMI2; the default is 256 bits.
-
-    Processors with AVX-512 but without VBMI2 (before 2019) run slower with 512 bits. Results do not change.
-    """
-    features = get_host_cpu_features().flatten()
-    if SETTINGS.CPU_FEATURES is None and "+avx512vbmi2" in features.split(","):
-        SETTINGS.CPU_FEATURES = f"{features},-prefer-256-bit"
-
-
-_use_whole_registers()
+# loops take whole registers of 512 bits, by default 256, where the processor has AVX-512 VBMI2: those with
+# AVX-512 but without VBMI2 (before 2019) run slower with 512 bits; results do not change
+_FEATURES = get_host_cpu_features().flatten()
+if SETTINGS.CPU_FEATURES is None and "+avx512vbmi2" in _FEATURES.split(","):
+    SETTINGS.CPU_FEATURES = f"{_FEATURES},-prefer-256-bit"
 
 
 def compiled_before(name: str = "yielding_kernel.update") -> bool:

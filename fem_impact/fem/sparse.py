@@ -5,15 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 
 from fem_impact.arrays import Array, Ints
 from fem_impact.fem.elements import Kind, element_stiffness
-from fem_impact.fem.kernels import inlined, kernel
+from fem_impact.fem.kernels import Counts, inlined, kernel
 from fem_impact.fem.vectors import add_product, load, spread, store, sum_of_three
-
-Counts = NDArray[np.uint32]
-
 
 CHUNK = 500  # elements assembled at once: their entries take a few MB
 # differences, over the largest number, below which stiffness blocks and node positions count as equal

@@ -126,10 +126,8 @@ def ovalling_period(rod: ProjectileSpec) -> float:
     if not rod.bore:
         return 0.0
     z, outer, inner = rod.wall()
-    ends = [part.to for part in rod.segments][:-1]
-    steels = [part.material for part in rod.segments] or [rod.material]
-    of = np.searchsorted(ends, z)
-    E, nu, rho = (np.array([getattr(steel, key) for steel in steels])[of] for key in ("E", "nu", "rho"))
+    of = np.searchsorted([part.to for part in rod.segments[:-1]], z)
+    E, nu, rho = stepped_beam.elastic_constants(rod.materials, of)
     h, R = outer - inner, 0.5 * (outer + inner)
     stiffness, mass = 9 * E * h**3 / (12 * (1 - nu**2) * R**3), 1.25 * rho * h * R
     return 2 * pi * sqrt(float(mass.sum() / stiffness.sum()))

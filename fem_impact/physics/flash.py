@@ -21,11 +21,12 @@ from numpy.typing import ArrayLike
 
 from fem_impact.arrays import Array
 from fem_impact.physics.contact import ContactPair
-from fem_impact.physics.hardening import rate_gain, strain_rate
+from fem_impact.physics.hardening import KGF_PER_MM2, rate_gain, strain_rate
+from fem_impact.physics.indentation import FACES
 from fem_impact.scene.material import Material
 
 HARDNESS = 3.0  # hardness over ultimate stress: largest mean pressure on an asperity of the softer body
-VICKERS = 9.80665e6 / 0.927  # Pa, mean pressure on the projected area of the print over Vickers' number
+VICKERS = KGF_PER_MM2 / FACES  # Pa, mean pressure on the projected area of the print over Vickers' number
 ASSUMPTIONS = (
     "every touching spot carries the hardness of the softer body: three times its ultimate stress, or its "
     "stated Vickers hardness if that is more, times what strain rate and skin add",

@@ -4,6 +4,7 @@ Shear is integrated at the middle of each element, so that slender bodies do not
 the first frequencies of uniform beams within 2e-4.
 """
 
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -16,7 +17,6 @@ from rigid import Faceted
 
 ELEMENTS = 120
 MODES = 20  # largest number of bending and of stretching modes
-RIGID = {"bending": 2, "stretching": 1}
 
 
 class Sections(NamedTuple):
@@ -59,20 +59,22 @@ def shear_coefficient(nu: Array, hollow: Array) -> Array:
     return np.asarray(6 * (1 + nu) * both / ((7 + 6 * nu) * both + (20 + 12 * nu) * hollow**2))
 
 
+def elastic_constants(metals: Sequence[Material], of: Ints) -> tuple[Array, Array, Array]:
+    """Return E, Pa, nu and rho, kg/m3, of places, each ``of`` one of the metals."""
+    E, nu, rho = np.array([(metal.E, metal.nu, metal.rho) for metal in metals]).T
+    return E[of], nu[of], rho[of]
+
+
 def sections(rod: ProjectileSpec) -> Sections:
     """Return the elements of a projectile, ends of segments and bore among their ends."""
-    body, parts = rod.body(), rod.segments
-    ends = np.array([part.to for part in parts]) if parts else np.array([rod.length])
-    steels = [part.material for part in parts] or [rod.material]
-    bore = np.array([z for z, _ in rod.bore])
-    z = np.unique(np.concatenate([np.linspace(0.0, rod.length, ELEMENTS + 1), ends[:-1], bore]).round(12))
+    body, ends, bore = rod.body(), [part.to for part in rod.segments[:-1]], [z for z, _ in rod.bore]
+    z = np.unique(np.concatenate([np.linspace(0.0, rod.length, ELEMENTS + 1), ends, bore]).round(12))
     if isinstance(body, Faceted):
         return _faceted(body, z, rod.materials, rod.cell_materials())
     x, weight = np.polynomial.legendre.leggauss(3)
     place = 0.5 * (z[1:] + z[:-1])[:, None] + 0.5 * np.diff(z)[:, None] * x
     outer, inner = body.radius(place), body.inner_radius(place)
-    of = np.minimum(np.searchsorted(ends, place), len(steels) - 1)
-    E, nu, rho = (np.array([getattr(steel, key) for steel in steels])[of] for key in ("E", "nu", "rho"))
+    E, nu, rho = elastic_constants(rod.materials, np.searchsorted(ends, place))
     area, second = np.pi * (outer**2 - inner**2), np.pi / 4 * (outer**4 - inner**4)
     shear = shear_coefficient(nu, np.divide(inner, outer, out=np.zeros_like(outer), where=outer > 0))
     means = [E * second, E * area, shear * E / (2 * (1 + nu)) * area, rho * area, rho * second]
@@ -85,7 +87,7 @@ def _faceted(body: Faceted, z: Array, steels: list[Material], of: Ints) -> Secti
     ``of`` (m,) says of which of ``steels`` each of its parts is; those side by side bend about the axis of
     their stiffness.
     """
-    E, nu, rho = (np.array([getattr(steel, key) for steel in steels])[of] for key in ("E", "nu", "rho"))
+    E, nu, rho = elastic_constants(steels, of)
     (mass, turning), (EA, EI) = body.sections(z).T, body.sections(z, E / rho).T
     shear = shear_coefficient(nu, np.zeros_like(nu)) / (2 * (1 + nu))
     return Sections(z, EI, EA, body.sections(z, shear * E / rho)[:, 0], mass, turning)
@@ -95,8 +97,8 @@ def _faceted(body: Faceted, z: Array, steels: list[Material], of: Ints) -> Secti
 def beam_modes(rod: ProjectileSpec) -> BeamModes:
     """Return the free-free modes of a turned projectile."""
     s = sections(rod)
-    stretched, u = _elastic(*_stretching(s), RIGID["stretching"])
-    bent, both = _elastic(*_bending(s), RIGID["bending"])
+    stretched, u = _elastic(*_stretching(s), rigid=1)
+    bent, both = _elastic(*_bending(s), rigid=2)
     return BeamModes(s.z, bent, both[:, ::2], both[:, 1::2], stretched, u)
 
 

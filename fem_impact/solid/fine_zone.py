@@ -15,6 +15,7 @@ import numpy as np
 from fem_impact.arrays import Array, Ints
 from fem_impact.case.record import ContactRecord
 from fem_impact.fem.hexmodes import CORNERS, SIGNS
+from fem_impact.physics.hardening import PROOF_STRAIN
 from fem_impact.solid.contact.patch import bilinear
 from fem_impact.solid.contact.surface import SurfaceContact
 from fem_impact.solid.model import Model
@@ -86,7 +87,6 @@ def _work_above(zone: YieldingZone, nodes: Array) -> float:
 
 DEEP = 0.25  # depth over the tip size at which skin outside the contact stops the run
 LEVEL = 1e-9  # m, within which a node lies on the barrier's face
-PROOF_STRAIN = 0.002  # conventional proof strain: below it an element has hardly yielded
 
 
 class SkinWatch:
@@ -180,7 +180,7 @@ def outside_zones(model: Model, watch: SkinWatch) -> tuple[str, ...]:
     """Return sentences on contact and yielding that left the fine zones; empty ones where they did not."""
     said, nodes = [watch.below()], model.book.outside
     for zone in model.zones:
-        if (strain := border_strain(model, zone)) > PROOF_STRAIN:
+        if (strain := border_strain(model, zone)) > PROOF_STRAIN:  # below it an element has hardly yielded
             said.append(
                 f"Yielding reached the edge of the {zone.body}'s fine zone (plastic strain {strain:.3f}): "
                 "beyond it the material was taken as elastic. A larger accuracy.tip_size makes the zone "

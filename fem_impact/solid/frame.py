@@ -13,12 +13,9 @@ from math import cos, sin
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem_impact.arrays import Array, Ints
-from fem_impact.fem.kernels import kernel
-
-Counts = NDArray[np.uint32]
+from fem_impact.fem.kernels import Counts, kernel
 
 
 def mass_centre(mass: Array, x: Array, places: Ints) -> Array:

@@ -1,6 +1,6 @@
 """The rod's motion and the fields, read from a state in the barrier frame or in the rod's own frame."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import cos, sin
 
@@ -12,8 +12,8 @@ from fem_impact.case.bodies import Bodies
 from fem_impact.fem.eigen import DEFAULT_COUNT, RodModes, no_modes, rod_modes
 from fem_impact.fem.elements import lame_constants
 from fem_impact.fem.flight import FreeVibration, RigidMotion, flight, rigid_motion
+from fem_impact.fem.geometry import material_numbers
 from fem_impact.fem.hexmodes import reference_gradients
-from fem_impact.scene.material import Material
 from fem_impact.solid.frame import turned_at
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
@@ -106,20 +106,10 @@ def centre_gradients(points: Array, cells: Ints) -> Array:
 
 def cell_lame(bodies: Bodies, mesh: HexMesh, depth: Array) -> Array:
     """Return Lame's (m, 2) lambda and G, Pa, of the rod's cells, then of the barrier's at ``depth``, m."""
-    rod, strata = bodies.rod, bodies.barrier.strata
-    z, metals = mesh.points[mesh.cells, 2].mean(axis=1), rod.materials
-    if mesh.region is not None:
-        own = np.array([lame_constants(m.E, m.nu) for m in metals])[rod.cell_materials()[mesh.region]]
-    else:
-        own = _lame([part.to for part in rod.segments[:-1]], metals, z)
-    below = _lame([end for end, _ in strata[:-1]], [material for _, material in strata], depth)
-    return np.concatenate([own, below])
-
-
-def _lame(ends: Sequence[float], materials: Sequence[Material], place: Array) -> Array:
-    """Return (k, 2) lambda and G, Pa, at places, m, among materials that end at ``ends``, the last open."""
-    constants = np.array([lame_constants(m.E, m.nu) for m in materials])
-    return np.asarray(constants[np.searchsorted(np.array(ends), place)])
+    own, (ends, layers) = bodies.rod.materials, zip(*bodies.barrier.strata, strict=True)
+    constants = np.array([lame_constants(m.E, m.nu) for m in (*own, *layers)])
+    below = len(own) + np.searchsorted(ends[:-1], depth)
+    return np.asarray(constants[np.concatenate([material_numbers(bodies.rod, mesh), below])])
 
 
 def elastic_stress(gradient: Array, u: Array, lame: Array) -> Array:

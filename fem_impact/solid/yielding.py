@@ -4,16 +4,14 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem_impact.arrays import Array, Ints
 from fem_impact.fem.elements import lame_constants
 from fem_impact.fem.hexmodes import CORNERS, DUMMY_EDGE, LANES, reference_gradients
+from fem_impact.fem.kernels import Counts
 from fem_impact.physics.hardening import FlowCurve, HardeningLaw, RateLaw
 from fem_impact.solid.state import State
 from fem_impact.solid.yielding_kernel import ROWS, Blocks, elastic_energy, subtract_nodal, update
-
-Counts = NDArray[np.uint32]
 
 
 @dataclass(slots=True)
@@ -67,17 +65,15 @@ class YieldingZone:
         """
         blocks = -(-len(dof) // LANES)
         filled = np.concatenate([dof, np.broadcast_to(dummy, (blocks * LANES - len(dof), 8, 3))])
-        weight = np.full((blocks * LANES, 8), DUMMY_EDGE**3 / 8)
-        weight[: len(dof)] = gauss_volumes(points)
-        lame, G = lame_constants(E, nu)
+        volumes, (lame, G) = gauss_volumes(points), lame_constants(E, nu)
         state = Blocks(
             dof=np.ascontiguousarray(filled.reshape(blocks, LANES, 8, 3).transpose(0, 3, 2, 1), np.uint32),
             stress=np.zeros((blocks, 8, 6 * LANES)),
             strain=np.zeros((blocks, 8, LANES)),
-            flow=_in_blocks(blocks, 1.0 if strength is None else strength) * law.yield_stress,
-            weight=np.ascontiguousarray(weight.reshape(blocks, LANES, 8).transpose(0, 2, 1)),
+            flow=_in_blocks(np.ones_like(volumes) if strength is None else strength, 1.0) * law.yield_stress,
+            weight=_in_blocks(volumes, DUMMY_EDGE**3 / 8),
             pressure=np.zeros((blocks, LANES)),
-            volume=weight.sum(axis=1).reshape(blocks, LANES),
+            volume=_in_blocks(volumes.sum(axis=1, keepdims=True), DUMMY_EDGE**3)[:, 0],
             work=np.zeros((blocks, LANES)),
             nodal=np.zeros((blocks, 3, 8, LANES)),
         )
@@ -134,11 +130,11 @@ class YieldingZone:
         return np.asarray(flat[:, [[0, 3, 5], [3, 1, 4], [5, 4, 2]]])
 
 
-def _in_blocks(blocks: int, values: Array | float) -> Array:
-    """Return values (m, 8) at Gauss points, or one for all, as (blocks, 8, LANES); the dummies have 1."""
-    filled = np.ones((blocks * LANES, 8))
-    filled[: np.size(values) // 8 or None] = values
-    return np.ascontiguousarray(filled.reshape(blocks, LANES, 8).transpose(0, 2, 1))
+def _in_blocks(values: Array, dummy: float) -> Array:
+    """Return values (m, k) of elements as (blocks, k, LANES); the dummy element that fills up has its own."""
+    filled = np.full((-len(values) % LANES + len(values), values.shape[1]), dummy)
+    filled[: len(values)] = values
+    return np.ascontiguousarray(filled.reshape(-1, LANES, values.shape[1]).transpose(0, 2, 1))
 
 
 def _around(dof: Ints) -> tuple[Counts, Ints, Counts]:

@@ -13,7 +13,6 @@ Cauchy stresses on current volumes elastic energy would leak by stress over modu
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem_impact.arrays import Array
 from fem_impact.fem.hexmodes import (
@@ -26,10 +25,8 @@ from fem_impact.fem.hexmodes import (
     nodal_forces,
     slope,
 )
-from fem_impact.fem.kernels import inlined, kernel
+from fem_impact.fem.kernels import Counts, inlined, kernel
 from fem_impact.solid.plastic_return import RETURN_ROWS, return_map
-
-Counts = NDArray[np.uint32]
 
 # scratch rows: modes of x, of the increment and of the force (21 each), then point values
 POSITION, INCREMENT, FORCE, COFACTOR, ROTATED, TRIAL2, DET, RETURN = 0, 21, 42, 63, 72, 78, 79, 80
