@@ -78,10 +78,6 @@ class FreeVibration:
         """Return the strain energy of the vibration at t = 0, whole rod, J."""
         return float((self.modes.omega**2 * self.a**2).sum())
 
-    def amplitude(self, rows: Ints) -> Array:
-        """Return bounds (m,), m, on the displacements of unknowns ``rows`` (m,) at any time."""
-        return np.asarray(np.abs(self.modes.shape[rows]) @ np.hypot(self.a, self.b))
-
     def displacement(self, rows: Ints, t: Array) -> Array:
         """Return displacements (m, times), m, of unknowns ``rows`` (m,) at times ``t`` from the start, s."""
         phase = np.outer(self.modes.omega, t)

@@ -176,9 +176,9 @@ def flow_law(pair: ContactPair, rod: HardeningLaw | None, barrier: HardeningLaw 
     size, soft, E_star = pair.estimate, pair.softer, pair.modulus
     R1, R2, flows = size.R1, size.R2, begins_to_yield(pair)
     flowing = [(barrier, pair.barrier)] * pair.barrier_yields + [(rod, pair.rod)] * pair.rod_yields
-    both = [(law.power, metal == soft) for law, metal in flowing if law]
-    both.sort(key=lambda one: not one[1])
-    curve, other, *_ = (*(power for power, _ in both), *2 * [Hardening(inf, 0.0, 0.0)])
+    flowing.sort(key=lambda one: one[1] != soft)  # the softer first
+    never = Hardening(inf, 0.0, 0.0)
+    curve, other, *_ = (*(law.power for law, _ in flowing if law), never, never)
     faster, other_faster = (rate_factor(of.rate, strain_rate(size)) for of in (curve, other))
     skins = (curve, faster), (other, other_faster)
     skin = min(rate * float(of.flow_stress(SKIN_STRAIN)) for of, rate in skins) / sqrt(3)

@@ -16,7 +16,7 @@ from fem_impact.arrays import Array, Ints
 from fem_impact.case.record import ContactRecord
 from fem_impact.fem.hexmodes import CORNERS, SIGNS
 from fem_impact.physics.hardening import PROOF_STRAIN
-from fem_impact.solid.contact.patch import bilinear
+from fem_impact.solid.contact.patch import bilinear, quad_normals
 from fem_impact.solid.contact.surface import SurfaceContact
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
@@ -55,9 +55,7 @@ def depths(model: Model) -> Array:
     under, points = -x, x[places]
     quads = mesh.faces_with(SKIN)
     skin, normals = np.unique(quads), np.zeros((len(points), 3))
-    corners = points[quads]
-    across = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
-    np.add.at(normals, quads, across[:, None])
+    np.add.at(normals, quads, quad_normals(points[quads])[:, None])
     distance, at = KDTree(points[skin]).query(points)
     normal = normals[skin[at]]
     away = np.abs(((points - points[skin[at]]) * normal).sum(axis=1))

@@ -7,6 +7,7 @@ import numpy as np
 
 from fem_impact.arrays import Array, Ints
 from fem_impact.solid.contact.moving_plane import MovingPlane
+from fem_impact.solid.contact.patch import quad_normals
 from fem_impact.solid.contact.plane import PlaneContact
 from fem_impact.solid.contact.surface import SurfaceContact
 from fem_impact.solid.model import Model
@@ -18,8 +19,7 @@ HEAT_WINDOW = 0.5e-6  # s, of the means of power and patch: single nodes open an
 
 def tributary_areas(x: Array, places: Ints, quads: Ints) -> Array:
     """Return the areas (k,), m2, of nodes with unknowns (k, 3): a quarter of each adjacent quad (m, 4)."""
-    corners = x[places[quads]]
-    area = 0.5 * np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
+    area = 0.5 * quad_normals(x[places[quads]])
     share = np.repeat(0.25 * np.linalg.norm(area, axis=1), 4)
     return np.asarray(np.bincount(quads.ravel(), weights=share, minlength=len(places)), dtype=np.float64)
 

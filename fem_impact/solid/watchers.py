@@ -144,8 +144,7 @@ class Watchers:
 
             heat = HeatWatch(model, window=min(HEAT_WINDOW, short))
         # a flat end that lands flat leaves when the wave is back from the other end, and no contact before
-        barrier = case.scene.barrier
-        moves = barrier.mass is not None or barrier.bends
+        moves = scene.barrier.mass is not None or scene.barrier.bends
         contact = ContactWatch(model, case.bodies.stretching_period, moves)
         stop = Separation(model, view, case.max_time, case.one_impact)
         if isinstance(model.contact, SurfaceContact) or model.rod_stiffness is None:

@@ -165,8 +165,6 @@ def test_flight_moves_as_the_rod_would(long):
     assert (u[:, 1] - u[:, 0]) / h == pytest.approx(modes.shape[rows] @ (modes.omega * b), rel=1e-2, abs=1e-8)
     far = modes.shape[rows] @ (a * np.cos(modes.omega * 3e-4) + b * np.sin(modes.omega * 3e-4))
     assert u[:, 2] == pytest.approx(far)
-    times = ahead.displacement(rows, np.linspace(0, 4e-3, 500))
-    assert (abs(times).max(axis=1) <= ahead.amplitude(rows) * (1 + 1e-12)).all()
 
 
 def test_stress_in_balance_with_itself_does_not_vibrate(long):

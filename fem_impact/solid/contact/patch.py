@@ -175,7 +175,7 @@ class Patch(NamedTuple):
         around = np.zeros((len(self.places), 3))
         vertex_normals(x, self.places, self.quads, self.mirrored, around)
         corners = x[self.places[self.quads]]
-        flat = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
+        flat = quad_normals(corners)
         flat /= np.linalg.norm(flat, axis=1)[:, None]
         least = np.ones(len(around))
         np.minimum.at(least, self.quads, np.einsum("qi,qai->qa", flat, around[self.quads]))
@@ -183,11 +183,15 @@ class Patch(NamedTuple):
         return self._replace(bend=bend, sag=_sag(corners, around[self.quads], bend[self.quads]))
 
 
+def quad_normals(corners: Array) -> Array:
+    """Return normals (m, 3) of quads with ``corners`` (m, 4, 3), each as long as twice its area."""
+    return np.asarray(np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]))
+
+
 def facing_skin(body: MeshedBody) -> Ints:
     """Return the skin quads (m, 4) of the cells that may touch, all nodes free, facing the other body."""
     quads = body.mesh.faces_with(SKIN)
-    corners = body.points[quads]
-    normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
+    normal = quad_normals(body.points[quads])
     steep = normal[:, 2] / np.linalg.norm(normal, axis=1)
     facing = steep < -STEEP if body.name == "rod" else steep > STEEP
     touching = body.mesh.finest if body.touching is None else body.touching
