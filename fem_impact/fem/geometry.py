@@ -101,10 +101,17 @@ def build_geometry(
     if meshed_barrier:
         barrier = _block(bodies, zones)
         may_yield["barrier"] = zones.barrier_flow(barrier)
-    sizes = zones.tip_size, zones.barrier_size
     return Geometry(
-        *(rod, points, barrier, *sizes, zones.conforming, zones.skin_rows, may_yield, touching),
-        middle=zones.middle,
+        rod,
+        points,
+        barrier,
+        zones.tip_size,
+        zones.barrier_size,
+        zones.conforming,
+        zones.skin_rows,
+        may_yield,
+        touching,
+        zones.middle,
     )
 
 
@@ -115,18 +122,17 @@ def _mesh(bodies: Bodies, zones: AnyZones, vibrating: bool) -> RodMesh:
     if isinstance(zones, RecordedZones) and zones.rod_rows:
         part = zones.pressed(rod.mesh, turn) & (material_numbers(bodies.rod, rod.mesh) == 0)
         rod = replace(rod, mesh=meshes.with_thin_rows(rod.mesh, part, zones.tip_size, zones.rod_rows))
-    if not vibrating:
-        if bodies.rod.own_mesh:
-            place = (rod.mesh.points - lowest) @ turn.T
-            near = rod.mesh.cells[zones.rod_flow(rod.mesh, place)]
-            end = float(rod.mesh.points[near, 2].max())  # past all that may yield
-            rod = RodMesh.cut(rod.mesh, max(end, bodies.rod.diameter / 3))
-        elif len(rod.rest_cells) in (0, len(rod.mesh.cells)):  # of a disc: all nose, or slices alone
-            return _cut_aslant(bodies, zones, rod, turn)
+    if vibrating:
+        return rod
+    if bodies.rod.own_mesh:
+        near = rod.mesh.cells[zones.rod_flow(rod.mesh, (rod.mesh.points - lowest) @ turn.T)]
+        end = float(rod.mesh.points[near, 2].max())  # past all that may yield
+        rod = RodMesh.cut(rod.mesh, max(end, bodies.rod.diameter / 3))
         if len(rod.rest_cells) in (0, len(rod.mesh.cells)):
             raise no_rest()
-        rod = meshes.without_slices(rod, rest_points(*bodies.body.moments_behind(rod.body_start)[1:]))
-    return rod
+    elif len(rod.rest_cells) in (0, len(rod.mesh.cells)):  # of a disc: all nose, or slices alone
+        return _cut_aslant(bodies, zones, rod, turn)
+    return meshes.without_slices(rod, rest_points(*bodies.body.moments_behind(rod.body_start)[1:]))
 
 
 def _cut_aslant(bodies: Bodies, zones: AnyZones, rod: RodMesh, turn: Array) -> RodMesh:

@@ -121,10 +121,8 @@ class Builder:
         v, impact = np.zeros(self.meshed.layout.size), self.scene.relative
         places, x = self.meshed.rod.places, self.meshed.x
         arm = x[places] - mass_centre(self.meshed.mass, x, places)
-        speed = np.zeros_like(arm)
-        speed[:, 0] = impact.v_t + impact.omega * arm[:, 2]
-        speed[:, 2] = impact.v_n - impact.omega * arm[:, 0]
-        v[places] = speed
+        v[places[:, 0]] = impact.v_t + impact.omega * arm[:, 2]
+        v[places[:, 2]] = impact.v_n - impact.omega * arm[:, 0]
         return v
 
     @cached_property
@@ -294,11 +292,9 @@ class Builder:
     def weight(self, gravity: float) -> Weight:
         """Return the rod's weight under the acceleration ``gravity``, m/s2."""
         n, alpha = self.meshed.layout.rod_size, self.scene.impact.vertical
-        down = np.zeros((len(self.meshed.rod.places), 3))
-        down[:, 0], down[:, 2] = -np.sin(alpha), -np.cos(alpha)
-        direction = np.zeros(self.meshed.layout.size)
-        direction[self.meshed.rod.places] = down
-        return Weight(gravity * self.meshed.mass[:n] * direction[:n], self.meshed.x[:n].copy())
+        down, places = np.zeros(self.meshed.layout.size), self.meshed.rod.places
+        down[places[:, 0]], down[places[:, 2]] = -np.sin(alpha), -np.cos(alpha)
+        return Weight(gravity * self.meshed.mass[:n] * down[:n], self.meshed.x[:n].copy())
 
     def damping(self, loss: float) -> ModalDamping:
         """Return the damping of the rod's modes with the loss factor ``loss``."""

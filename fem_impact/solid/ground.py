@@ -39,11 +39,9 @@ class Ground:
 
     def speed(self, v: Array) -> tuple[float, float]:
         """Return the velocity along n and t, m/s, of the barrier as a whole; 0 for a massive one."""
-        return (
-            (float(v[self.foundation[2]]), float(v[self.foundation[0]]))
-            if len(self.foundation)
-            else (0.0, 0.0)
-        )
+        if not len(self.foundation):
+            return 0.0, 0.0
+        return float(v[self.foundation[2]]), float(v[self.foundation[0]])
 
     def spin(self, v: Array) -> float:
         """Return the angular velocity, rad/s, from n towards t; 0 of a barrier that does not turn."""

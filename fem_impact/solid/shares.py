@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import timeit
+from collections import defaultdict
 from collections.abc import Callable
 from functools import partial
 from time import process_time
@@ -27,37 +29,27 @@ def run_time_shares(
     their own: they are in the contact's and the zones' time. The state of the items is used up; call it last.
     """
     still = State(state.x.copy(), state.v.copy(), state.force.copy(), dt=0.0, kick=model.step)
-    seconds: dict[str, float] = {}
+    seconds: dict[str, float] = defaultdict(float)
     for force in model.forces:
-        _count(seconds, force.effect, _shortest(partial(force.add, still)))
+        seconds[force.effect] += _shortest(partial(force.add, still))
     for item in model.impulses:
         if item is not model.contact:  # no effect, and its record must stay
-            _count(seconds, item.effect, _shortest(partial(item.resolve, still)) / item.every)
+            seconds[item.effect] += _shortest(partial(item.resolve, still)) / item.every
     if heat is not None:
-        _count(seconds, "contact-heating", _shortest(partial(heat.observe, still)))
+        seconds["contact-heating"] += _shortest(partial(heat.observe, still))
     # the nose of a rigid rest turns with or without the effect
     if isinstance(model.rod.frame, TurningFrame) and model.rod_stiffness is not None:
         # the time, s, that the rod's frame takes in a step for turning
         rod, n = model.rod, len(model.rod.d)
         localising = _shortest(lambda: rod.frame.localise(still.x[:n], rod.d))
         turning = localising + _shortest(lambda: rod.frame.add_force(rod.d, rod.y, still.force[:n]))
-        _count(seconds, "large-rotation", turning)
-        _count(seconds, model.rod.effect, -turning)
+        seconds["large-rotation"] += turning
+        seconds[model.rod.effect] -= turning
     return {
         effect: time / step_time if min(time, step_time) > 0 else None for effect, time in seconds.items()
     }
 
 
-def _count(seconds: dict[str, float], effect: str, time: float) -> None:
-    """Add a time, s, to an effect's sum."""
-    seconds[effect] = seconds.get(effect, 0.0) + time
-
-
 def _shortest(act: Callable[[], object]) -> float:
     """Return the shortest processor time, s, of a few calls."""
-    times = []
-    for _ in range(REPEATS):
-        begun = process_time()
-        act()
-        times.append(process_time() - begun)
-    return min(times)
+    return min(timeit.repeat(act, timer=process_time, number=1, repeat=REPEATS))

@@ -55,7 +55,8 @@ class StrainSections:
         along = centre[:, -1] - centre[:, 1]
         axis = along / np.linalg.norm(along)
         # to the side that faces the barrier: the axis turned by a quarter from n towards t, or back
-        x = side * ((rows - centre[:, None])[0] * axis[1] - (rows - centre[:, None])[1] * axis[0])
+        t, n = rows - centre[:, None]
+        x = side * (t * axis[1] - n * axis[0])
         weights = np.stack([mean, mass * x[:, -1] / (mass @ x[:, -1] ** 2)])
         return cls(weights, model.geometry.rod.slice_length, float(np.abs(x[:, 0]).max()), axis)
 
