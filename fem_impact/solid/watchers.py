@@ -108,14 +108,7 @@ class Watchers:
     stop: Separation
 
     @classmethod
-    def of(
-        cls,
-        case: Case,
-        model: Model,
-        view: RodState,
-        out: Path | None,
-        go_on: bool,
-    ) -> Watchers:
+    def of(cls, case: Case, model: Model, view: RodState, out: Path | None, go_on: bool) -> Watchers:
         """Make the observers; with ``go_on`` they append to the files of the run that is resumed."""
         scene = case.scene
         watch = Watch(model.ledger(), scene.save.history_every)
