@@ -104,16 +104,11 @@ class Builder:
         self.case, self.scene, self.spec, self.stage = case, case.scene, case.slots, stage
         self.meshed = MeshedBodies(case, mesh)
         stage(self.meshed.geometry)
-        self.meshed.move_rod(*self.initial_shift(gap))
-
-    def initial_shift(self, gap: float) -> tuple[float, float]:
-        """Return the rod's shift along t and n, m, without rotation, until the skins are a ``gap``, m, apart.
-
-        The shift along t is limited to one cell, for rods that come down almost tangentially.
-        """
+        # the rod comes down without rotation until the skins are a ``gap`` apart, and goes one cell at most
+        # along t, where it comes down almost tangentially
         height, h = self.contact.clearance(self.meshed.x) - gap, self.meshed.geometry.tip_size
-        slid = self.case.contact.sliding * height / self.case.contact.approach
-        return min(max(slid, -h), h), -height
+        slid = case.contact.sliding * height / case.contact.approach
+        self.meshed.move_rod(min(max(slid, -h), h), -height)
 
     @cached_property
     def v(self) -> Array:
@@ -226,17 +221,13 @@ class Builder:
     @cached_property
     def zones(self) -> list[YieldingZone]:
         """Return the zone of each body that yields, of each of its materials."""
-        laws = ((self.spec.rod_law,), self.spec.barrier_laws)
-        yielding = [
-            (body, part, law)
-            for body, body_laws in zip(self.meshed.bodies, laws, strict=False)
-            for part, law in zip(body.parts, body_laws, strict=False)
-            if law and ((part[1] & body.yields).any() or len(body.parts) == 1)
-        ]
-        return [
-            yielding_zone(body, law, self.meshed.layout, self.strength(body, part[1]), part)
-            for body, part, law in yielding
-        ]
+        zones, laws = [], ((self.spec.rod_law,), self.spec.barrier_laws)
+        for body, of_parts in zip(self.meshed.bodies, laws, strict=False):
+            for part, law in zip(body.parts, of_parts, strict=False):
+                if law and ((part[1] & body.yields).any() or len(body.parts) == 1):
+                    strength = self.strength(body, part[1])
+                    zones.append(yielding_zone(body, law, self.meshed.layout, strength, part))
+        return zones
 
     def strength(self, body: MeshedBody, here: Bools) -> Array | None:
         """Return the factor of the flow stress (m, 8) of a part's yielding cells, None without a layer."""
