@@ -7,7 +7,7 @@ what their model leaves open, as long as the same parts of the body strike.
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import takewhile
+from itertools import takewhile, zip_longest
 from math import copysign, exp, hypot, log, pi, radians
 from typing import Any, NamedTuple
 
@@ -100,7 +100,10 @@ def with_spread(case: Case, strikes: Strikes, meshed: Sequence[Doubt | None] = (
     except SceneError as error:
         why = f"rigid theory does not follow the scene: its {error.key} {error.problem.rstrip('.')}"
         return without_spread(strikes, Unknown(why))
-    certain, length = _common([followed, plain, *runs]), case.contact.body.length
+    alike = takewhile(
+        lambda struck: len({one.part for one in struck}) == 1, zip(followed, plain, *runs, strict=False)
+    )
+    certain, length = len(list(alike)), case.contact.body.length
     ends = [other_end(run, length) for run in runs]
     # a strike of a part that the run's own is not of comes by the law of rigid runs, without a force
     forces = [
@@ -113,8 +116,12 @@ def with_spread(case: Case, strikes: Strikes, meshed: Sequence[Doubt | None] = (
         strikes,
         certain=certain,
         spread=tuple(
-            _spread(number, struck, *([followed[number - 1], plain[number - 1]] if number <= certain else []))
-            for number, struck in _by_number(runs)
+            _spread(
+                number,
+                [one for one in struck if one is not None],
+                *([followed[number - 1], plain[number - 1]] if number <= certain else []),
+            )
+            for number, struck in enumerate(zip_longest(*runs), 1)
         ),
         holds=_holds(case, each),
         hardest_agree=_agree(followed, runs, lambda s: s.lost),
@@ -139,7 +146,7 @@ def _each(case: Case, followed: Sequence[StrikeRecord], meshed: Sequence[Doubt |
     for number, one in enumerate(followed[:SEEN]):
         body = Followed.of(case)
         body.upto = 1
-        begin = body.touching(one.alpha, one.v_n, one.v_t, one.omega)
+        begin = body.struck_as(one)
         body.go_on(begin)
         doubt: Doubt | None = None
         if one.fidelity == "modal":
@@ -168,20 +175,12 @@ def _apart(finer: Known, of: StrikeRecord) -> Doubt:
 def _by_stored(case: Case, body: Followed, begin: FlightState, one: StrikeRecord) -> Doubt:
     """Return the half-widths of the reduced model for a strike, by the stored scenes that are like it."""
     pair = body.later(begin).contact
-    stops = float(
-        critical_ratio(
-            *(pair.v_n, pair.v_t),
-            e=one.e,
-            d_c=pair.arms[0],
-            d_d=pair.arms[1],
-            k2=body.pull.k2,
-            omega=pair.omega,
-        )
-    )
-    place = np.array(modal_error.place_at(pair, case.bodies.bending_period, stops))
-    table = modal_error.stored()
+    (d_c, d_d), k2 = pair.arms, body.pull.k2
+    stops = critical_ratio(pair.v_n, pair.v_t, e=one.e, d_c=d_c, d_d=d_d, k2=k2, omega=pair.omega)
+    place = np.array(modal_error.place_at(pair, case.bodies.bending_period, float(stops)))
+    table, columns = modal_error.stored(), (*modal_error.TOLD, *modal_error.FACTORS)
     e, mu, friction, vibration, force = (
-        table.half_width(place, (*modal_error.TOLD, *modal_error.FACTORS).index(name), table.far(place))
+        table.half_width(place, columns.index(name), table.far(place))
         for name in ("e_edge", "mu", "W_friction_over_E_0", modal_error.VIBRATION, "peak_force_N")
     )
     vibrates = max(one.vibration, modal_error.LEAST_VIBRATION * one.before)
@@ -261,7 +260,7 @@ def _run(scene: Scene, each: Sequence[Known], at: Sequence[Doubt] = ()) -> list[
 
     def moved(strike: Strike) -> Strike:
         before = strike.before
-        if not left or left[0][0].own.part != body.part_of(before.place, before.line, before.state.alpha):
+        if not left or left[0][0].own.part != body.part_of(before):
             left.clear()  # from here on another sequence
             return strike
         one, at = left.pop(0)
@@ -316,22 +315,6 @@ def other_end_curve(scene: Scene) -> tuple[list[float], list[float]]:
         ratio = or_none(other_end(run, scene.projectile.rigid_body.length))
         curve += [(angle, ratio)] if ratio is not None else []
     return [angle for angle, _ in curve], [ratio for _, ratio in curve]
-
-
-def _common(runs: Sequence[Sequence[StrikeRecord]]) -> int:
-    """Return how many first strikes are of the same part of the body in all runs."""
-    same = 0
-    for struck in zip(*runs, strict=False):
-        if len({one.part for one in struck}) > 1:
-            break
-        same += 1
-    return same
-
-
-def _by_number(runs: Sequence[Sequence[StrikeRecord]]) -> Iterator[tuple[int, list[StrikeRecord]]]:
-    """Yield the number of a strike, from 1, and that strike of each run that has it."""
-    for number in range(1, 1 + max(len(run) for run in runs)):
-        yield number, [run[number - 1] for run in runs if len(run) >= number]
 
 
 def _agree(

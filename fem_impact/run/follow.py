@@ -6,9 +6,9 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from fem_impact.options import RunOptions
-from fem_impact.outcome.groups import Limitation, limitations
+from fem_impact.outcome.groups import limitations
 from fem_impact.outcome.keys import Unknown, unknown
-from fem_impact.outcome.strikes import StrikeRecord, Strikes
+from fem_impact.outcome.strikes import Strikes
 from fem_impact.run.certain import with_spread, without_spread
 from fem_impact.run.strikes import RULES, Followed
 from rigid.strikes import Finish, FlightState
@@ -36,33 +36,26 @@ def with_strikes(
 
     ``end`` is that of finite elements, whose later strikes tell their progress as the ``options`` say.
     """
-    strikes, sentences = _strikes_of(case, outcome, end, options)
+    after, said = [outcome.motion.V_n, outcome.motion.V_t, outcome.motion.Omega], outcome.validity
+    # where a finished run has none, its contact is not resolved, which is told of the strike
+    lost = "" if said.finished else next((v.reason for v in after if isinstance(v, Unknown)), "")
+    body = Followed.of(case)
+    course = _FollowedCourse(case, end, options, body, body.coming)
+    if end is None or not lost:
+        course.follow()
+    if body.each:
+        strikes = body.strikes(course.state, course.finish, *course.held)
+        told = case.said(limitations("model", *course.told, *RULES, *body.doubts()))
+        said = replace(said, limitations=(*said.limitations, *told))
+    else:
+        why = f"the motion after the first impact is not known: {lost or said.stopped_because}"
+        strikes = replace(unknown(Strikes, why), until=case.scene.impact.until)
     open_errors = outcome.half_widths if case.fidelity == "modal" else None
     if isinstance(open_errors, Unknown):  # nor are those of the strikes known
         strikes = without_spread(strikes, open_errors)
     else:
         strikes = with_spread(case, strikes)
-    validity = replace(outcome.validity, limitations=(*outcome.validity.limitations, *sentences))
-    return replace(outcome, strikes=strikes, validity=validity)
-
-
-def _strikes_of(
-    case: Case, outcome: Outcome, end: SolidResult | None, options: RunOptions
-) -> tuple[Strikes, tuple[Limitation, ...]]:
-    """Return the strikes of a case, whose first impact has an ``outcome``, and what limits trust in them."""
-    after = [outcome.motion.V_n, outcome.motion.V_t, outcome.motion.Omega]
-    # where a finished run has none, its contact is not resolved, which is told of the strike
-    ended = outcome.validity.finished
-    lost = "" if ended else next((v.reason for v in after if isinstance(v, Unknown)), "")
-    course = _FollowedCourse.of(case, end, options)
-    if end is None or not lost:
-        course.follow()
-    if not course.body.each:
-        why = lost or outcome.validity.stopped_because
-        none = unknown(Strikes, f"the motion after the first impact is not known: {why}")
-        return replace(none, until=case.scene.impact.until), ()
-    strikes = course.body.strikes(course.state, course.finish, *course.held)
-    return strikes, case.said(limitations("model", *course.told, *RULES, *course.body.doubts()))
+    return replace(outcome, strikes=strikes, validity=said)
 
 
 @dataclass(eq=False)
@@ -89,12 +82,6 @@ class _FollowedCourse:
     solid: SolidCourse | None = None
     modal: ModalCourse | None = None
     told: list[str] = field(default_factory=list)
-
-    @classmethod
-    def of(cls, case: Case, end: SolidResult | None, options: RunOptions) -> _FollowedCourse:
-        """Return the course before the first strike."""
-        body = Followed.of(case)
-        return cls(case, end, options, body, body.coming)
 
     @property
     def held(self) -> tuple[float, float]:
@@ -147,21 +134,19 @@ class _FollowedCourse:
         self.state, self.told = self.solid.state, [*self.told, *self.solid.limits]
 
     def _tell_change(self, model: str, count: int) -> None:
-        """Tell how far the model of the next strikes is from that of the last one, which both compute."""
-        old = self.body.each[-1]
-        self.told.append(CHANGE.format(model=model, count=count, old=old, new=self._again(model, old)))
-        if model == "rigid":
-            self.told.append(LATER)
+        """Tell how far the model of the next strikes is from that of the last one, which both compute.
 
-    def _again(self, model: str, old: StrikeRecord) -> StrikeRecord:
-        """Return a strike as another model computes it, without vibration before it."""
-        body = Followed.of(self.case)
-        before = body.touching(old.alpha, old.v_n, old.v_t, old.omega)
-        body.upto = 1
+        It computes that without vibration before it.
+        """
+        old, body = self.body.each[-1], Followed.of(self.case)
+        before = body.struck_as(old)
         if model == "rigid":
+            body.upto = 1
             body.go_on(before)
         else:
             from fem_impact.run.modal_strikes import ModalCourse
 
             ModalCourse.going_on(self.case, body, before).strike(before)
-        return body.each[0]
+        self.told.append(CHANGE.format(model=model, count=count, old=old, new=body.each[0]))
+        if model == "rigid":
+            self.told.append(LATER)

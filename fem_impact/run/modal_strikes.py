@@ -225,14 +225,10 @@ class ModalCourse:
 
     def _record(self, before: FlightState, result: ModalResult, taken: float) -> StrikeRecord:
         """Return the record of a strike that began with a vibration ``taken``, J."""
-        followed, after = self.followed, self._after(before, result)
-        corner = followed.shape.corners[followed.shape.lowest(before.alpha, before.Omega)]
-        place = corner.place(before.alpha)
         p, q = (float(one) for one in result.contacts[:, 2:].sum(axis=0))
-        record = followed.record(
+        record = self.followed.record(
             "modal",
-            *(before, after, place, corner.arms(before.alpha), (p, q)),
-            part=followed.part_of(place, 0.0, before.alpha),
+            *(self.followed.lowest(before), self._after(before, result), (p, q)),
             force=result.force,
             friction=result.friction,
             plastic=result.plastic,

@@ -60,21 +60,12 @@ WITHIN = 1.0  # cells beyond what may touch, within which a strike counts as on 
 
 
 def with_sites(case: Case, count: int) -> Case:
-    """Return a case whose rod has fine cells wherever the first ``count`` strikes are expected."""
+    """Return a case whose rod has fine cells wherever the first ``count`` strikes are expected.
+
+    They are those of the rigid and, where it holds the scene, of the reduced model.
+    """
     if count < 2:
         return case
-    edges = case.zones.tip_size, case.zones.barrier_size
-    first = case.record or expected_record(case.bodies, *edges)
-    later = [expected_record(_bodies(case, one), *edges).rod for one in _expected(case, count)]
-    return Case(case.scene, "solid", replace(first, rod=joined([first.rod, *later])))
-
-
-def _bodies(case: Case, later: LaterStrike) -> Bodies:
-    return Bodies(case.scene, case.active, later)
-
-
-def _expected(case: Case, count: int) -> list[LaterStrike]:
-    """Return the strikes after the first by the rigid and, where it holds the scene, by the reduced model."""
     rigid = Followed.of(case)
     rigid.upto = count
     rigid.go_on(rigid.coming)
@@ -84,11 +75,15 @@ def _expected(case: Case, count: int) -> list[LaterStrike]:
         modal.upto = count
         ModalCourse.at_first(modal.case, modal).to_the_end()
         courses.append(modal)
-    return [
-        course.later(FlightState(one.time, 0.0, one.along, one.alpha, one.v_n, one.v_t, one.omega))
-        for course in courses
-        for one in course.each[1:]
-    ]
+    later = [course.later(course.struck_as(one)) for course in courses for one in course.each[1:]]
+    edges = case.zones.tip_size, case.zones.barrier_size
+    first = case.record or expected_record(case.bodies, *edges)
+    rods = [expected_record(_bodies(case, one), *edges).rod for one in later]
+    return Case(case.scene, "solid", replace(first, rod=joined([first.rod, *rods])))
+
+
+def _bodies(case: Case, later: LaterStrike) -> Bodies:
+    return Bodies(case.scene, case.active, later)
 
 
 def _by_modes(case: Case) -> Case | str:
@@ -178,7 +173,8 @@ class SolidCourse:
         """Follow the rod: hard strikes by finite elements, what lies between them as a rigid body."""
         body = self.body
         while body.missing != 0:
-            touch = self._touch()
+            at = next_touch(body.shape, self.state, body.pull.g_n)
+            touch = at and self.state.flown(at[0], body.pull.g_n, body.pull.g_t)
             if touch is None or not body.hard(touch):
                 state, finish = body.go_on(self.state, WEAKEST)
                 self.swing_on(state)
@@ -229,11 +225,6 @@ class SolidCourse:
         self.flight = replace(self.flight, a=a, b=rate / modes.omega)
         self.damped += held - self.vibration
         self.state = state
-
-    def _touch(self) -> FlightState | None:
-        """Return the rigid motion in which the rod touches next."""
-        touch = next_touch(self.body.shape, self.state, self.body.pull.g_n)
-        return None if touch is None else self.state.flown(touch[0], self.body.pull.g_n, self.body.pull.g_t)
 
     def _beside(self, later: LaterStrike) -> float:
         """Return how far, m, a place lies beside what may touch of the rod's mesh; 0 or less on it."""
@@ -330,15 +321,13 @@ class SolidCourse:
     ) -> StrikeRecord:
         """Return the record of a strike that began with a vibration ``taken``, J."""
         body, accounts = self.body, end.accounts
-        corner = body.shape.corners[body.shape.lowest(before.alpha, before.Omega)]
         p, q = (float(part) for part in end.model.book.table[:, 2:].sum(axis=0))
         fell = -accounts["gravity"]
         body.gravity += fell
         read = readings(end)
         record = body.record(
             "solid",
-            *(before, after, corner.place(before.alpha), corner.arms(before.alpha), (p, q)),
-            part=body.part_of(corner.place(before.alpha), 0.0, before.alpha),
+            *(body.lowest(before), after, (p, q)),
             force=end.peak_force,
             dent=or_none(read.dent_depth),
             gauge=(or_none(read.gauge_highest), or_none(read.gauge_lowest)),

@@ -145,7 +145,6 @@ class Followed:
         for number, one in enumerate(self.each, 1):
             if one.plastic <= 0.0:
                 continue
-            begin = self.touching(one.alpha, one.v_n, one.v_t, one.omega)
             count += (
                 one.fidelity != "solid"
                 and number not in self.again
@@ -154,7 +153,7 @@ class Followed:
                     for old, half in dents
                 )
             )
-            dents.append((one, self.later(begin).contact.estimate.a_t))
+            dents.append((one, self.later(self.struck_as(one)).contact.estimate.a_t))
         return count
 
     def kinetic(self, state: FlightState) -> float:
@@ -170,8 +169,8 @@ class Followed:
 
     def comes(self, state: FlightState) -> tuple[float, float]:
         """Return the speed, m/s, at which the body comes down on what is lowest, and its arm d_c, m."""
-        d_c = self.shape.corners[self.shape.lowest(state.alpha, state.Omega)].arms(state.alpha)[0]
-        return max(SLOWEST, -state.V_n - d_c * state.Omega), d_c
+        strike = self.lowest(state)
+        return max(SLOWEST, -strike.normal), strike.d_c
 
     def hard(self, state: FlightState) -> bool:
         """Return whether a strike is hard enough for a model that is finer than a rigid body."""
@@ -184,13 +183,17 @@ class Followed:
         """The most kinetic energy, J, before a strike so far."""
         return max((one.before for one in self.each), default=0.0)
 
+    def lowest(self, state: FlightState) -> Approach:
+        """Return the body as it strikes in a state, with what is lowest of it."""
+        number = self.shape.lowest(state.alpha, state.Omega)
+        corner = self.shape.corners[number]
+        return Approach(state, number, corner.place(state.alpha), *corner.arms(state.alpha), 0.0)
+
     def later(self, state: FlightState) -> LaterStrike:
         """Return how the body touches in a state, for a mesh that has it so."""
-        number = self.shape.lowest(state.alpha, state.Omega)
-        corner, body = self.shape.corners[number], self.case.contact.body
-        x, z = place = corner.place(state.alpha)
-        pair = self._pair(Approach(state, number, place, *corner.arms(state.alpha), 0.0))
-        return LaterStrike(pair, state.alpha, (x + body.x_c, z + body.z_c))
+        strike, body = self.lowest(state), self.case.contact.body
+        x, z = strike.place
+        return LaterStrike(self._pair(strike), state.alpha, (x + body.x_c, z + body.z_c))
 
     def work(self, start: FlightState, end: FlightState) -> float:
         """Return the work of gravity, J, on the way from one state to another."""
@@ -199,8 +202,12 @@ class Followed:
 
     def touching(self, alpha: float, v_n: float, v_t: float, omega: float) -> FlightState:
         """Return a body that touches at an inclination."""
-        height = self.shape.corners[self.shape.lowest(alpha, omega)].arms(alpha)[1]
-        return FlightState(0.0, height, 0.0, alpha, v_n, v_t, omega)
+        state = FlightState(0.0, 0.0, 0.0, alpha, v_n, v_t, omega)
+        return state._replace(height=self.lowest(state).d_d)
+
+    def struck_as(self, one: StrikeRecord) -> FlightState:
+        """Return a body that touches as one did before a strike."""
+        return self.touching(one.alpha, one.v_n, one.v_t, one.omega)
 
     def leave_dent(self, state: FlightState) -> FlightState:
         """Return a body after a strike as its flight brings it level with the surface beside its dent.
@@ -296,12 +303,10 @@ class Followed:
 
     def _record(self, strike: Strike) -> StrikeRecord:
         """Return the record of one strike of the rigid body."""
-        mass, before = self.case.contact.body.mass, strike.before
-        loss, arms = self.losses[before.state], (before.d_c, before.d_d)
+        mass, loss = self.case.contact.body.mass, self.losses[strike.before.state]
         return self.record(
             "rigid",
-            *(before.state, strike.after, before.place, arms, (mass * strike.p, mass * strike.q)),
-            part=self.part_of(before.place, before.line, before.state.alpha),
+            *(strike.before, strike.after, (mass * strike.p, mass * strike.q)),
             friction=mass * strike.friction,
             plastic=mass * loss.plastic * strike.normal,
             damping=mass * loss.viscous * strike.normal,
@@ -311,13 +316,10 @@ class Followed:
     def record(
         self,
         fidelity: str,
-        before: FlightState,
+        strike: Approach,
         after: FlightState,
-        place: tuple[float, float],
-        arms: tuple[float, float],
         impulse: tuple[float, float],
         *,
-        part: str,
         friction: float,
         plastic: float,
         damping: float,
@@ -330,29 +332,27 @@ class Followed:
     ) -> StrikeRecord:
         """Return the record of a strike.
 
-        ``place`` (x, z), m, and ``arms``, d_c and d_d, m, are those of the contact from the mass centre,
         ``impulse``, N s, is that along n and t, ``gauge`` the largest and the smallest strain; the rest is as
         in `StrikeRecord`, J.
         """
-        (d_c, d_d), body = arms, self.case.contact.body
-        comes, leaves = (one.V_n + d_c * one.Omega for one in (before, after))
+        before, (x, z), body = strike.state, strike.place, self.case.contact.body
         return StrikeRecord(
             time=before.time,
             fidelity=fidelity,
-            part=part,
-            x=place[0] + body.x_c,
-            z=place[1] + body.z_c,
-            along=before.along - d_c + self.case.contact.arms[0],
+            part=self.part_of(strike),
+            x=x + body.x_c,
+            z=z + body.z_c,
+            along=before.along - strike.d_c + self.case.contact.arms[0],
             alpha=before.alpha,
-            approach=-comes,
-            sliding=before.V_t - d_d * before.Omega,
+            approach=-strike.normal,
+            sliding=strike.sliding,
             v_n=before.V_n,
             v_t=before.V_t,
             omega=before.Omega,
             V_n=after.V_n,
             V_t=after.V_t,
             Omega=after.Omega,
-            e=-leaves / comes,
+            e=-(after.V_n + strike.d_c * after.Omega) / strike.normal,
             mu=impulse[1] / impulse[0] if impulse[0] else 0.0,  # a touch that presses nothing has no friction
             impulse_n=impulse[0],
             impulse_t=impulse[1],
@@ -371,11 +371,11 @@ class Followed:
             **{f"{name}_phase": 0.0 for name in PHASED},
         )
 
-    def part_of(self, place: tuple[float, float], line: float, alpha: float) -> str:
-        """Return what strikes at a place (x, z), m, from the mass centre: an end, a line, a ball."""
+    def part_of(self, strike: Approach) -> str:
+        """Return what of the body strikes: an end, a line, a ball."""
         if len(self.shape.corners) == 1:
             return "surface"
-        if line:
-            return "face" if abs(remainder(alpha, pi)) < 0.25 * pi else "side"
+        if strike.line:
+            return "face" if abs(remainder(strike.state.alpha, pi)) < 0.25 * pi else "side"
         body = self.case.contact.body
-        return "tip" if place[1] + body.z_c < 0.5 * body.length else "tail"
+        return "tip" if strike.place[1] + body.z_c < 0.5 * body.length else "tail"
