@@ -5,6 +5,7 @@ from collections.abc import Collection
 from dataclasses import replace
 
 from fem_impact.case.bodies import Bodies
+from fem_impact.case.effects.registry import is_wanted
 from fem_impact.case.layers import flows_below
 from fem_impact.case.plates import is_wider, thin_plate
 from fem_impact.case.shaft import coned, gives_elsewhere, lands_on_ridge, part_flows
@@ -67,11 +68,12 @@ def scene_limitations(bodies: Bodies, meshed_through: bool) -> tuple[Limitation,
         _sliding(bodies),
     )
     missing = [name for name in ("friction", "rod-plasticity", "barrier-elastoplastic") if name not in active]
+    masses = [mesh.masses(own)[1] for own in (True, False)] if mesh is not None else []
     idealised = limitations(
         "model",
         ELASTIC_SEGMENTS if scene.projectile.segments else "",
         FACETS if mesh is not None else "",
-        *(_masses(mesh) if mesh is not None else ()),
+        *(f"left out of the body: {one}" for one in masses if one),
         BONDED_LAYERS if scene.barrier.layers else "",
         thin_plate(bodies, meshed_through),
         coned(bodies),
@@ -99,12 +101,6 @@ def assumed_part(mesh: OwnMesh | None) -> str:
         f'projectile.mesh_symmetry is not stated. State mesh_symmetry = "{part}", or "whole" if the file '
         "holds all of the body."
     )
-
-
-def _masses(mesh: OwnMesh) -> list[str]:
-    """Return which masses without volume of the file of a mesh the body lacks."""
-    told = [mesh.masses(own)[1] for own in (True, False)]
-    return [f"left out of the body: {one}" for one in told if one]
 
 
 def _sliding(bodies: Bodies) -> str:
@@ -259,8 +255,7 @@ def require_first_part(bodies: Bodies) -> None:
 def require_elastic_parts(bodies: Bodies) -> None:
     """Refuse a later segment that would yield: in both models it stays elastic (SceneError)."""
     number, stress = part_flows(bodies)
-    effects = {*bodies.scene.effects}
-    if number and "-rod-plasticity" not in effects and effects & {"auto", "rod-plasticity"}:
+    if number and is_wanted("rod-plasticity", bodies.scene.effects):
         metal = bodies.rod.segments[number - 1].material
         over = f"{stress / 1e6:.3g} MPa (estimated) over {metal.yield_stress / 1e6:.3g} MPa"
         raise SceneError(

@@ -7,6 +7,7 @@ from fem_impact.case.bodies import Bodies
 from fem_impact.case.effects.heating import number as flash_number
 from fem_impact.case.effects.heating import thermal
 from fem_impact.case.effects.plasticity import hardening_of
+from fem_impact.case.effects.registry import is_wanted
 from fem_impact.case.elastic_only import left_out
 from fem_impact.errors import SceneError
 from fem_impact.physics.hardening import TABOR_STRAIN, rate_gain, rate_law, tabor_stress
@@ -71,13 +72,12 @@ def _metals(bodies: Bodies) -> dict[str, materials.Material]:
 
 
 def _body(body: str, metal: materials.Material, bodies: Bodies) -> str:
-    used, effects = body == "rod" or bodies.contact.compliant, bodies.scene.effects
-    if used and not metal.yields:
+    if not metal.yields and (body == "rod" or bodies.contact.compliant):
         lost = left_out(metal, "contact-loss" in bodies.effects)
         breaks = _breaking(metal, bodies.estimate.pressure)
         return f"The {body} ({metal.name}) has no yield stress and stays elastic. {lost}{breaks}"
-    rate_wanted = "rate-hardening" in effects or ("auto" in effects and "-rate-hardening" not in effects)
-    if YIELDS[body] in bodies.effects and rate_wanted and rate_law(metal) is None:
+    hardens = YIELDS[body] in bodies.effects and is_wanted("rate-hardening", bodies.scene.effects)
+    if hardens and rate_law(metal) is None:
         return (
             f"The {body} ({metal.name}) has no rate data: its flow stress does not grow with the strain "
             "rate, and no other metal's law takes its place. e and the force may be too low, dents too deep."
@@ -175,37 +175,33 @@ def _friction(bodies: Bodies) -> str:
 
 
 def _heat(bodies: Bodies) -> str:
+    """Return what the heat of the contact lacks, or that nothing follows it up to an ignition as stated."""
+    heating, effects = bodies.scene.heating, bodies.scene.effects
     missing = [key for key, value in thermal(bodies).items() if value is None]
     if "friction" not in bodies.effects:
         return ""
-    if not missing:
-        if "contact-heating" not in bodies.effects:
-            return _unheated(bodies)
-        metals, known = _metals(bodies), melting(bodies.scene)
-        unmelted = [body for body in metals if body not in known]
-        if not unmelted or flash_number(bodies) < HOT:
-            return ""
-        names = " and ".join(dict.fromkeys(metals[body].name for body in unmelted))
+    if missing:
+        own = " and ".join(dict.fromkeys(key.split("_", 1)[1] for key in missing))
         return (
-            f"The melting point of {names} is not known: a flash temperature above it is too high. State "
-            f"{' and '.join(f'heating.{body}_melting' for body in unmelted)}."
+            "The heat of the contact is not known: neither [heating] of the scene states "
+            f"{' and '.join(missing)} nor a material its {own}."
         )
-    own = " and ".join(dict.fromkeys(key.split("_", 1)[1] for key in missing))
-    return (
-        "The heat of the contact is not known: neither [heating] of the scene states "
-        f"{' and '.join(missing)} nor a material its {own}."
-    )
-
-
-def _unheated(bodies: Bodies) -> str:
-    """Say that nothing is compared with the ignition temperature that a scene states, and what would be."""
-    heating, effects = bodies.scene.heating, bodies.scene.effects
-    if heating.ignition == Heating().ignition or "-contact-heating" in effects:
+    if "contact-heating" not in bodies.effects:
+        if heating.ignition == Heating().ignition or "-contact-heating" in effects:
+            return ""
+        return (
+            f"The heat of the contact is not followed: its rise is expected to be {flash_number(bodies):.2g} "
+            f"of that to heating.ignition, {format_quantity(heating.ignition, 'temperature')}. With "
+            f"effects = {json.dumps([*effects, 'contact-heating'])} finite elements follow it."
+        )
+    metals, known = _metals(bodies), melting(bodies.scene)
+    unmelted = [body for body in metals if body not in known]
+    if not unmelted or flash_number(bodies) < HOT:
         return ""
+    names = " and ".join(dict.fromkeys(metals[body].name for body in unmelted))
     return (
-        f"The heat of the contact is not followed: its rise is expected to be {flash_number(bodies):.2g} of "
-        f"that to heating.ignition, {format_quantity(heating.ignition, 'temperature')}. With "
-        f"effects = {json.dumps([*effects, 'contact-heating'])} finite elements follow it."
+        f"The melting point of {names} is not known: a flash temperature above it is too high. State "
+        f"{' and '.join(f'heating.{body}_melting' for body in unmelted)}."
     )
 
 
@@ -238,25 +234,21 @@ def _law(place: str, metal: materials.Material, bodies: Bodies) -> str:
 
 def _curve(metal: materials.Material) -> str:
     """Return the flow curve in words."""
-    start = f"yields at {_MPa(metal.yield_stress)}"
+    start = f"yields at {_MPa(metal.yield_stress)},"
     if metal.plastic_modulus is not None:
         linear = f"then hardens by {_MPa(metal.plastic_modulus)} a unit of plastic strain (bilinear)"
-        return f"{start}, {linear if metal.plastic_modulus else 'perfectly plastic'}"
-    if metal.flow is not None:
-        return f"{start}, {_flow(metal.flow)}"
+        return f"{start} {linear if metal.plastic_modulus else 'perfectly plastic'}"
+    match metal.flow:
+        case materials.TableFlow(points):
+            return f"{start} along a table of {len(points)} points, flat behind {points[-1][0]:g}"
+        case materials.RambergOsgoodFlow(n):
+            return f"{start} its .2 % proof stress, by Ramberg and Osgood with n {n:g}"
+        case materials.JohnsonCookFlow(B, n, m):
+            heat = "softened by the heat that stays" if m is not None else "without temperature"
+            return f"{start} by Johnson and Cook with B {_MPa(B)}, n {n:g}, {heat}"
     if metal.law == "hardness":
-        return f"{start}, power law through the flow stress of HV {metal.hardness:g} at 8 %"
-    return f"{start}, power law through the ultimate stress {_MPa(metal.ultimate_stress)}"
-
-
-def _flow(flow: materials.Flow) -> str:
-    if isinstance(flow, materials.TableFlow):
-        return f"along a table of {len(flow.points)} points, flat behind {flow.points[-1][0]:g}"
-    if isinstance(flow, materials.RambergOsgoodFlow):
-        return f"its .2 % proof stress, by Ramberg and Osgood with n {flow.n:g}"
-    assert isinstance(flow, materials.JohnsonCookFlow)
-    heat = ", softened by the heat that stays" if flow.m is not None else ", without temperature"
-    return f"by Johnson and Cook with B {_MPa(flow.B)}, n {flow.n:g}{heat}"
+        return f"{start} power law through the flow stress of HV {metal.hardness:g} at 8 %"
+    return f"{start} power law through the ultimate stress {_MPa(metal.ultimate_stress)}"
 
 
 def _rate(rate: materials.Rate | None) -> str:

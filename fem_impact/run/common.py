@@ -7,7 +7,7 @@ from math import atan2, cos, hypot, inf, pi, sin
 import rigid
 from fem_impact.arrays import Array
 from fem_impact.case.case import Case
-from fem_impact.case.effects.registry import AUTO
+from fem_impact.case.effects.registry import is_wanted
 from fem_impact.case.shaft import gives_elsewhere
 from fem_impact.outcome.groups import ArmCoefficients, BarrierMotion, Restitution, RodMotion
 from fem_impact.outcome.keys import Num, Unknown, known, unknown
@@ -46,8 +46,7 @@ ROUND_OFF = 1e-6  # a moment impulse over that of the normal impulse at arm d_d:
 
 def gravity_of(scene: Scene) -> float:
     """Return the gravity, m/s2, of flights: 0 only where the scene leaves the effect out."""
-    named = "gravity" in scene.effects or (AUTO in scene.effects and "-gravity" not in scene.effects)
-    return rigid.GRAVITY if named else 0.0
+    return rigid.GRAVITY if is_wanted("gravity", scene.effects) else 0.0
 
 
 def next_strike(case: Case, V_n: float, Omega: float) -> float | None:

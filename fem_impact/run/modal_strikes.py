@@ -10,7 +10,7 @@ from fem_impact.arrays import Array
 from fem_impact.case.bodies import WEAKEST
 from fem_impact.case.case import PERIODS, Case
 from fem_impact.case.effects.damping import loss_factor, states_loss
-from fem_impact.case.effects.registry import AUTO
+from fem_impact.case.effects.registry import is_wanted
 from fem_impact.modal.dents import Dent
 from fem_impact.modal.impact import Arrival, ModalResult
 from fem_impact.modal.motion import AT
@@ -47,9 +47,7 @@ SMOOTH = "A rod that leaves its dent touches nothing until it is above the surfa
 
 def modal_loss(case: Case) -> float:
     """Return the loss factor of the modes in flight: 0 only where the scene leaves their damping out."""
-    effects = case.scene.effects
-    named = "material-damping" in effects or (AUTO in effects and "-material-damping" not in effects)
-    return loss_factor(case.bodies) if named else 0.0
+    return loss_factor(case.bodies) if is_wanted("material-damping", case.scene.effects) else 0.0
 
 
 def loss_told(case: Case, loss: float) -> str:

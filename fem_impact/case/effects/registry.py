@@ -76,6 +76,11 @@ def with_prerequisites(names: Sequence[str]) -> list[str]:
     return [name for name in names if not EFFECTS[name].needs or set(names) & set(EFFECTS[name].needs)]
 
 
+def is_wanted(name: str, stated: Sequence[str]) -> bool:
+    """Return whether a scene names an effect, or leaves it to its number."""
+    return name in stated or (AUTO in stated and f"-{name}" not in stated)
+
+
 def check_effects(names: Sequence[str]) -> None:
     """Refuse what a scene states of its effects.
 
@@ -84,13 +89,22 @@ def check_effects(names: Sequence[str]) -> None:
     SceneError
         For an unknown or repeated name, no barrier or two, or an effect without what it needs.
     """
+    auto = AUTO in names
+    allowed = (*NAMES, *((AUTO, *(f"-{n}" for n in NAMES if n not in BARRIERS)) if auto else ()))
     for name in names:
-        _check_known(name, AUTO in names)
+        if name in allowed:
+            continue
+        hint = did_you_mean(name, allowed, _REMEDY)
+        if not auto and name.removeprefix("-") in NAMES:
+            hint = f'Only a list with "auto" leaves effects out: write ["auto", "{name}"].'
+        if name.removeprefix("-") in BARRIERS:
+            hint = "There is always a barrier: name the one wanted."
+        raise SceneError("is not an effect.", key="effects", value=name, remedy=hint)
     plain = [name.removeprefix("-") for name in names]
     if len(set(plain)) < len(plain):
         raise SceneError("names an effect twice.", key="effects", value=list(names))
     barriers = [name for name in names if name in BARRIERS]
-    if len(barriers) > 1 or not (barriers or AUTO in names):
+    if len(barriers) > 1 or not (barriers or auto):
         raise SceneError(
             f"names {len(barriers)} barriers and needs exactly one.",
             key="effects",
@@ -98,10 +112,9 @@ def check_effects(names: Sequence[str]) -> None:
             remedy=f"Choose one of {', '.join(BARRIERS)}.",
         )
     # refuse a named effect whose prerequisites are switched off, or not named in a list without auto
-    barrier = next((name for name in names if name in BARRIERS), None)
+    off = [n for n in NAMES if f"-{n}" in names or (barriers and n in BARRIERS and n not in barriers)]
     for name, needs in ((effect.name, effect.needs) for effect in EFFECTS.values() if effect.needs):
-        excluded = [n for n in needs if f"-{n}" in names or (n in BARRIERS and barrier not in (None, n))]
-        missing = excluded if AUTO in names else [n for n in needs if n not in names]
+        missing = [n for n in needs if (n in off if auto else n not in names)]
         if name in names and len(missing) == len(needs):
             raise SceneError(
                 f'names "{name}", which means nothing without {" or ".join(needs)}.',
@@ -109,15 +122,3 @@ def check_effects(names: Sequence[str]) -> None:
                 value=list(names),
                 remedy=f'Leave out "{name}", or add {" or ".join(needs)}.',
             )
-
-
-def _check_known(name: str, auto: bool) -> None:
-    allowed = (*NAMES, *((AUTO, *(f"-{n}" for n in NAMES if n not in BARRIERS)) if auto else ()))
-    if name in allowed:
-        return
-    hint = did_you_mean(name, allowed, _REMEDY)
-    if not auto and name.removeprefix("-") in NAMES:
-        hint = f'Only a list with "auto" leaves effects out: write ["auto", "{name}"].'
-    if name.removeprefix("-") in BARRIERS:
-        hint = "There is always a barrier: name the one wanted."
-    raise SceneError("is not an effect.", key="effects", value=name, remedy=hint)
