@@ -153,8 +153,16 @@ class Reduction:
         of_result = limitations("result", *shown, gravity, next_one, f"{near}." * bool(near))
         outcome = Outcome(
             provenance=origin,
-            validity=_validity(
-                end, failed, named_again, unmeshed, case.said((*limited, *case.limitations, *of_result))
+            validity=groups.Validity(
+                finished=over,
+                stopped_because=f"{failed or end.reason} {named_again}".rstrip(),
+                limitations=case.said((*limited, *case.limitations, *of_result)),
+                accuracy_target=NO_TARGET,
+                achieved_error=NO_TARGET,
+                achieved_wall=NO_TARGET,
+                mesh_limit=Unknown(unmeshed),
+                mesh_band=Unknown(unmeshed),
+                model_band=NOT_REDUCED,
             ),
             motion=self.motion,
             barrier=self.barrier,
@@ -174,23 +182,6 @@ class Reduction:
         )
         outcome = without(outcome, Unknown(withheld)) if withheld else outcome
         return without_end(outcome, cut) if cut else outcome
-
-
-def _validity(
-    end: ImpactEnd, failed: str, again: str, unmeshed: str, limited: tuple[Limitation, ...]
-) -> groups.Validity:
-    """Return how far to trust one run, which may have ``failed`` for a reason or strike ``again``."""
-    return groups.Validity(
-        finished=end.finished and not failed,
-        stopped_because=f"{failed or end.reason} {again}".rstrip(),
-        limitations=limited,
-        accuracy_target=NO_TARGET,
-        achieved_error=NO_TARGET,
-        achieved_wall=NO_TARGET,
-        mesh_limit=Unknown(unmeshed),
-        mesh_band=Unknown(unmeshed),
-        model_band=NOT_REDUCED,
-    )
 
 
 def _intervals(contacts: Array | None, why: str) -> tuple[groups.ContactInterval, ...] | Unknown:

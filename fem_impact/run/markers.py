@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fem_impact.arrays import Array, Ints
+from fem_impact.arrays import Array
 from fem_impact.outcome.groups import Markers
 
 if TYPE_CHECKING:
@@ -35,15 +35,14 @@ def replay(result: SolidResult, V_n: float, V_t: float) -> Markers:
     ``V_n`` and ``V_t`` are the velocities of the mass centre, m/s, without gravity, as is the result.
     """
     alpha, turn = result.case.scene.impact.angle, result.motion.Omega * WINDOW
-    axis, across = (
-        np.array([np.sin(alpha), 0.0, np.cos(alpha)]),
-        np.array([np.cos(alpha), 0.0, -np.sin(alpha)]),
-    )
+    axis = np.array([np.sin(alpha), 0.0, np.cos(alpha)])
+    across = np.array([np.cos(alpha), 0.0, -np.sin(alpha)])
     arm = -lever_of(result.case.scene.projectile.length) * axis
-    points = result.model.geometry.rod_points[~result.model.geometry.rod.mesh.is_hanging]
+    free = ~result.model.geometry.rod.mesh.is_hanging
+    points, unknowns = result.model.geometry.rod_points[free], result.model.layout.rod[free]
     centre = result.view.mass @ points / result.view.mass.sum() * [1.0, 0.0, 1.0]
-    rows = np.stack([_nearest(centre, result), _nearest(centre + arm, result)])
-    u = result.flight.displacement(rows.ravel(), np.array([0.0, WINDOW]))
+    nearest = [((points - place) ** 2).sum(axis=1).argmin() for place in (centre, centre + arm)]
+    u = result.flight.displacement(unknowns[nearest].ravel(), np.array([0.0, WINDOW]))
     by_vibration = (u[:, 1] - u[:, 0]).reshape(-1, 3) / WINDOW  # (markers, 3) m/s
     upper = np.array([V_t, 0.0, V_n]) + by_vibration[0]
     lower = np.array([V_t, 0.0, V_n]) + by_vibration[1] + (_turned(arm, turn) - arm) / WINDOW
@@ -63,10 +62,3 @@ def _turned(arm: Array, angle: float) -> Array:
     """Return a vector turned from n towards t."""
     c, s = np.cos(angle), np.sin(angle)
     return np.array([c * arm[0] + s * arm[2], 0.0, c * arm[2] - s * arm[0]])
-
-
-def _nearest(place: Array, result: SolidResult) -> Ints:
-    """Return the unknowns (3,) of the free node nearest to a place in the start position."""
-    free = ~result.model.geometry.rod.mesh.is_hanging
-    distance = ((result.model.geometry.rod_points[free] - place) ** 2).sum(axis=1)
-    return np.asarray(result.model.layout.rod[free][np.argmin(distance)])

@@ -66,7 +66,7 @@ def closed(
 def reduce(case: Case, result: ModalResult) -> Outcome:
     """Return the Outcome of a modal impact."""
     barrier, base = case.scene.barrier, (result.V_bn, result.V_bt)
-    turns = barrier.inertia is not None
+    turns, flows = barrier.inertia is not None, case.contact.rod_yields or case.contact.barrier_yields
     omitted, strange = common.flow_omitted(case), [_too_light(case), _unlike_layer(case), _lossy(case)]
     strange.append(bends_beyond(case.bodies, float(result.energies.max(initial=0.0))))
     end = ImpactEnd(
@@ -98,7 +98,7 @@ def reduce(case: Case, result: ModalResult) -> Outcome:
         limited=limitations(
             "model",
             *ASSUMPTIONS,
-            *_dent(case),
+            DENTED.format("tip" if common.rod_flows(case) else "barrier") if flows else "",
             LAYERED if case.scene.barrier.layers else "",
             omitted,
             *strange,
@@ -187,7 +187,12 @@ def _energy(case: Case, result: ModalResult) -> Energy:
     E_0, vibration = result.E_0, result.vibration / result.E_0
     floor = abs(result.residual) / E_0
     plastic_rod, plastic_barrier = (work / E_0 for work in plastic_works(case, result))
-    skin, skin_rod, skin_barrier = _skins(case, result.skin / E_0, result.friction / E_0)
+    sheared: Num = result.skin / E_0
+    skin_rod: Num = common.UNSHEARED if case.contact.rod_yields else 0.0
+    skin_barrier: Num = result.skin / E_0 - result.friction / E_0
+    if common.rod_flows(case):
+        sheared = skin_rod = SOFT_ROD
+        skin_barrier = common.UNSHEARED if case.contact.barrier_yields else 0.0
     return Energy(
         E_0=E_0,
         rigid=result.kinetic / E_0,
@@ -196,7 +201,7 @@ def _energy(case: Case, result: ModalResult) -> Energy:
         vibration_floor=floor,
         below_floor=bool(vibration < floor),
         friction=result.friction / E_0,
-        skin=skin,
+        skin=sheared,
         skin_rod=skin_rod,
         skin_barrier=skin_barrier,
         plastic_rod=plastic_rod,
@@ -250,6 +255,7 @@ LAYERED = (
     "The barrier's layers count as one material, with the stiffness and strength that they have under the "
     "estimated contact; waves in layers are left out."
 )
+DENTED = "A later contact of the same strike meets the dent that the first one left in the {}."
 ASSUMPTIONS = (
     "Contact force by Hertz' law; where a body yields, by Tabor's hardness of the softer body over the "
     "groove that the tip presses into it. The elliptic contact is replaced by a circular one of the radius "
@@ -260,18 +266,3 @@ ASSUMPTIONS = (
     "first is pressed in alone; their strengths share the plastic work. W_skin lacks that in the surface of "
     "the other one, .01 and .03 of E_0 in two scenes of steel by finite elements.",
 )
-
-
-def _dent(case: Case) -> list[str]:
-    """Return which body keeps the dent; none where neither yields."""
-    if not (case.contact.rod_yields or case.contact.barrier_yields):
-        return []
-    where = "tip" if common.rod_flows(case) else "barrier"
-    return [f"A later contact of the same strike meets the dent that the first one left in the {where}."]
-
-
-def _skins(case: Case, sheared: float, friction: float) -> tuple[Num, Num, Num]:
-    """Return friction and plastic work of the surface, and that work of rod and barrier alone."""
-    if common.rod_flows(case):
-        return SOFT_ROD, SOFT_ROD, common.UNSHEARED if case.contact.barrier_yields else 0.0
-    return sheared, common.UNSHEARED if case.contact.rod_yields else 0.0, sheared - friction

@@ -99,7 +99,7 @@ class ModalCourse:
     @property
     def vibration(self) -> float:
         """Energy of the modes, J."""
-        return _energy(self.rod, self.q, self.rate)
+        return float(self.rod.energies(self.q, self.rate).sum())
 
     @property
     def told(self) -> tuple[str, ...]:
@@ -231,7 +231,7 @@ class ModalCourse:
             friction=result.friction,
             plastic=result.plastic,
             damping=result.viscous + self.damped,
-            vibration=_energy(result.rod, result.last.q, result.last.rate),
+            vibration=result.vibration,
             taken=taken,
         )
         spent = record.vibration + result.friction + result.plastic + result.viscous
@@ -245,8 +245,3 @@ def swung(omega: Array, loss: float, dt: float, q: Array, rate: Array) -> tuple[
     drive = (rate + slow * q) / free
     swinging = decay * (c * q + s * drive)
     return swinging, decay * (free * (c * drive - s * q)) - slow * swinging
-
-
-def _energy(rod: ModalRod, q: Array, rate: Array) -> float:
-    """Return the energy of modes of given amplitudes and rates, J."""
-    return float(0.5 * (rate**2 + (rod.omega * q) ** 2).sum())

@@ -13,14 +13,13 @@ from fem_impact.outcome.groups import Energy, Heat, Markers, RodMotion, RunCost,
 from fem_impact.outcome.keys import Num, Unknown, known, unknown
 from fem_impact.outcome.record import Outcome
 from fem_impact.physics.contact import ContactPair
-from fem_impact.physics.contact_law import ContactLaw, contact_law
+from fem_impact.physics.contact_law import contact_law
 from fem_impact.physics.contact_law import restitution as thornton
 from fem_impact.physics.flash import closed_form
 from fem_impact.physics.viscous import viscous_restitution
 from fem_impact.run.assemble import ImpactEnd, Reduction
 from fem_impact.run.common import MASSIVE, after, flow_omitted, plastic_shares
 from fem_impact.run.heated import heat
-from fem_impact.scene.sliding import SpeedTable
 
 STIFF_PLATE = "Bending of the plate, which takes energy and lowers e, is left out."
 MEAN_HEAT = (
@@ -39,13 +38,17 @@ ASSUMPTIONS = (
 
 def rigid_outcome(case: Case) -> Outcome:
     """Return the outcome by rigid impulse-momentum theory; what the theory does not give is unknown."""
-    rod = case.bodies.body
-    loss = normal_loss(case, case.contact)
-    path, wall, cpu = _timed_path(case.contact, loss.e, case.slots.friction_over_speed)
+    rod, pair = case.bodies.body, case.contact
+    loss, (d_c, d_d), (_, k2) = normal_loss(case, pair), pair.arms, pair.reduced
+    over = case.slots.friction_over_speed
+    resolve = partial(rigid.path_over_speed, over=over) if over else rigid.sliding_path
+    wall, cpu = time.perf_counter(), time.process_time()
+    path = resolve(pair.v_n, pair.v_t, omega=pair.omega, e=loss.e, f=pair.f, d_c=d_c, d_d=d_d, k2=k2)
+    wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
     V_n, V_t, Omega = (float(velocity) for velocity in path.motion)
     # the velocity, m/s, that a free barrier gains where V_n, V_t is the rod's relative to it
-    mass, before = case.bodies.body.mass, case.scene.relative
-    share = 0.0 if case.scene.barrier.mass is None else mass / (mass + case.scene.barrier.mass)
+    before, struck = case.scene.relative, case.scene.barrier.mass
+    share = 0.0 if struck is None else rod.mass / (rod.mass + struck)
     base = -share * (V_n - before.v_n), -share * (V_t - before.v_t)
     reduction = Reduction.of(
         case,
@@ -68,7 +71,7 @@ def rigid_outcome(case: Case) -> Outcome:
     crushed = _sharp(case)
     if case.slots.heat:
         friction_work = known(energy.friction) * energy.E_0
-        closed = closed_form(case.contact, friction_work, halves(case.bodies))
+        closed = closed_form(pair, friction_work, halves(case.bodies))
         thermal = heat(case, *closed, Unknown(UNKNOWN))
         if crushed:
             open_still = dict.fromkeys(("rise", "temperature", "time_above_ignition"), Unknown(CRUSHED))
@@ -96,21 +99,6 @@ def _sharp(case: Case) -> str:
         f"The edge that touches, at most {radius * 1e3:.2g} mm in radius, is sharper than the dent is deep, "
         f"{depth * 1e3:.2g} mm: it is crushed itself, of which the law of restitution knows nothing."
     )
-
-
-def _timed_path(
-    pair: ContactPair, e: float, over: SpeedTable | None
-) -> tuple[rigid.SlidingPath, float, float]:
-    """Return the relative motion in an impact of energetic restitution e; wall and processor time, s.
-
-    ``over`` is the factor of friction over the sliding speed.
-    """
-    k2, (d_c, d_d) = pair.reduced[1], pair.arms
-    resolve = partial(rigid.path_over_speed, over=over) if over else rigid.sliding_path
-    moving = partial(resolve, pair.v_n, pair.v_t, omega=pair.omega)
-    wall, cpu = time.perf_counter(), time.process_time()
-    path = moving(e=e, f=pair.f, d_c=d_c, d_d=d_d, k2=k2)
-    return path, time.perf_counter() - wall, time.process_time() - cpu
 
 
 class NormalLoss(NamedTuple):
@@ -149,20 +137,18 @@ def normal_loss(case: Case, pair: ContactPair) -> NormalLoss:
     plastic = thornton(law, pair.effective_mass, pair.approach) if flows else 1.0
     e = plastic * viscous_restitution(loss or 0.0)
     viscous = (plastic**2 - e**2) / (1 - e**2) if loss else 0.0
-    return NormalLoss(e, 1.0 - viscous, viscous, _told(e, law, loss))
-
-
-def _told(e: float, law: ContactLaw, loss: float | None) -> str:
-    """Return where a restitution comes from."""
-    thorntons = (
-        "by Thornton's law (1997, doi:10.1115/1.2787319) with the limiting "
-        f"pressure {law.limit / 1e6:.0f} MPa, 2.8 times the softer yield stress"
-    )
-    viscous = f"by the viscous loss of the contact, loss factor {loss:.3g} (Willert 2020)" if loss else ""
-    if isinf(law.limit) and not loss:
-        return "Restitution 1: no body of the scene may yield, and Hertz' contact loses nothing."
-    ways = [thorntons] * (not isinf(law.limit)) + [viscous] * bool(loss)
-    return f"Restitution {e:.3f} (energetic) {', and '.join(ways)}."
+    ways = []
+    if flows:
+        ways.append(
+            "by Thornton's law (1997, doi:10.1115/1.2787319) with the limiting "
+            f"pressure {law.limit / 1e6:.0f} MPa, 2.8 times the softer yield stress"
+        )
+    if loss:
+        ways.append(f"by the viscous loss of the contact, loss factor {loss:.3g} (Willert 2020)")
+    source = f"Restitution {e:.3f} (energetic) {', and '.join(ways)}."
+    if not ways:
+        source = "Restitution 1: no body of the scene may yield, and Hertz' contact loses nothing."
+    return NormalLoss(e, 1.0 - viscous, viscous, source)
 
 
 def _energy(

@@ -124,22 +124,16 @@ def _compute(case: Case, options: RunOptions) -> tuple[Outcome, ContactRecord | 
     # as the command does: on a busy machine further threads of the linear algebra wait for each other, and a
     # run takes four times the processor time
     with threadpool_limits(1, "blas"):
-        case = _held_ready(case)
+        if case.scene.impact.until != FIRST:
+            from fem_impact.run.solid_strikes import with_sites
+
+            count = case.scene.strikes.stages("solid")[0][1] or MOST
+            case = with_sites(case, min(count, case.scene.impact.most_strikes or MOST))
         end = solve(case, replace(options, stamp=stamp(case.scene)))
         outcome = _followed(case, reduce(end), end, options)
     sentences = texts(outcome.validity.limitations, "resolution")
     resolved = not any(sentence.startswith(NOT_RESOLVED) for sentence in sentences)
     return outcome, replace(end.record, resolved=resolved)
-
-
-def _held_ready(case: Case) -> Case:
-    """Return a case whose rod has fine cells for all strikes by finite elements."""
-    count = case.scene.strikes.stages("solid")[0][1] or MOST
-    if case.scene.impact.until == FIRST or count == 1:
-        return case
-    from fem_impact.run.solid_strikes import with_sites
-
-    return with_sites(case, min(count, case.scene.impact.most_strikes or MOST))
 
 
 def _followed(

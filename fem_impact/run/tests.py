@@ -186,9 +186,15 @@ def doubtful_tests(scene: Scene) -> list[str]:
     The first such test is named, with both its values. Energy is that seen from the barrier.
     """
     file = scene.measured or ""
-    if not file.endswith(OWN):
-        return _other_metals(scene) if file else []
-    if holds_means(file):
+    if file and not file.endswith(OWN):
+        published = library.stated(file)
+        tested = {body: published[body]["material"] for body in scene.materials}
+        return [
+            f"{body}.material is {metal.name}, but {file} was measured with {tested[body]}."
+            for body, metal in scene.materials.items()
+            if metal.name.removesuffix(library.CHANGED) != tested[body]
+        ]
+    if not file or holds_means(file):
         return []
     camera = read_camera(file)
     seen, warnings = seen_tests(scene, camera), other_impacts(scene, camera)
@@ -201,17 +207,6 @@ def doubtful_tests(scene: Scene) -> list[str]:
             f"{_named(camera, gained)} has more kinetic energy after than before the impact: {both}."
         )
     return warnings
-
-
-def _other_metals(scene: Scene) -> list[str]:
-    """Return a sentence on each body whose metal has another name than that of the published set."""
-    name = scene.measured or ""
-    tested = {body: library.stated(name)[body]["material"] for body in scene.materials}
-    return [
-        f"{body}.material is {metal.name}, but {name} was measured with {tested[body]}."
-        for body, metal in scene.materials.items()
-        if metal.name.removesuffix(library.CHANGED) != tested[body]
-    ]
 
 
 def other_impacts(scene: Scene, camera: Camera) -> list[str]:
