@@ -108,18 +108,13 @@ class Case:
         limits.require_shallow(self.bodies)
         if fidelity == "modal" and slots.vibrating:
             require_mesh(scene.projectile, scene.across)  # its modes are those of a mesh
-        if fidelity == "solid":
-            followed.require_carried(scene, slots)
-            self._require_mesh(slots)
-        if fidelity == "solid" and "modal" in dict(scene.strikes.stated):
-            Case.of(scene, "modal")  # which computes later strikes
-
-    def _require_mesh(self, slots: ModelSpec) -> None:
-        """Refuse what cannot be meshed, or needs more memory than there is (SceneError)."""
+        if fidelity != "solid":
+            return
+        followed.require_carried(scene, slots)
         if self.record is None:
             require_fine_zone(self.bodies)
-        require_mesh(self.scene.projectile, self.scene.across)
-        require_gauge(self.scene)
+        require_mesh(scene.projectile, scene.across)
+        require_gauge(scene)
         if self.meshed_through:
             require_plate_mesh(self.bodies, self.zones.base, block_of(self.bodies, self.zones))
         if slots.meshed_barrier:
@@ -127,6 +122,8 @@ class Case:
         if not slots.vibrating:
             require_rest(self.bodies, self._estimated)
         self.require_memory()
+        if "modal" in dict(scene.strikes.stated):
+            Case.of(scene, "modal")  # which computes later strikes
 
     def require_memory(self) -> None:
         """Refuse a mesh that needs more memory than there is (SceneError)."""

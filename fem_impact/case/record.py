@@ -6,7 +6,6 @@ from hashlib import sha256
 from io import BytesIO
 from math import cos, pi, sin
 from pathlib import Path
-from typing import Any
 from zipfile import BadZipFile
 
 import numpy as np
@@ -188,12 +187,9 @@ SITE = ("start", "end", "impulse_n", "impulse_t", "low_t", "low_b", "high_t", "h
 
 def _body(held: Mapping[str, Array], name: str) -> BodyRecord:
     """Return the record of a body from the arrays of the file (KeyError: some are missing)."""
-    return BodyRecord(*(_plain(held[f"{name}_{key}"]) for key in BODY))
-
-
-def _plain(value: Array) -> Any:
-    """Return an array as it is, one without axes as a number."""
-    return value if value.ndim else float(value)
+    touched, flowed, strain, *lengths = (held[f"{name}_{key}"] for key in BODY)
+    edge, reach, spread = map(float, lengths)
+    return BodyRecord(touched, flowed, strain, edge, reach, spread)
 
 
 def expected_record(bodies: Bodies, rod_edge: float, barrier_edge: float) -> ContactRecord:

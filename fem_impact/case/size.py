@@ -85,9 +85,9 @@ class RunSize:
 def run_size(slots: ModelSpec, bodies: Bodies, zones: Zones) -> RunSize:
     """Return about what a run of these bodies takes with these fine zones."""
     # the elements of half the rod, without slices if it cannot vibrate
-    boxes, end = zones.rod_boxes, bodies.rod.length
-    rod = _coarse_elements(bodies, end if slots.vibrating else min(_body_start(bodies, zones, boxes), end))
-    for edge, lowest, highest in _split_boxes(zones.rod_base, boxes):
+    end = bodies.rod.length
+    rod = _coarse_elements(bodies, end if slots.vibrating else min(_body_start(bodies, zones), end))
+    for edge, lowest, highest in _split_boxes(zones.rod_base, zones.rod_boxes):
         rod += SPLIT * _inside_rod(bodies, lowest, highest)[1] / edge**3
     barrier = _block_elements(bodies, zones) if slots.meshed_barrier else 0.0
     yielding = _yielding_rod(bodies, zones) if slots.rod_law else 0.0
@@ -139,33 +139,26 @@ def machine_memory() -> float:
 
 def require_memory(slots: ModelSpec, bodies: Bodies, zones: Zones) -> None:
     """Refuse a mesh that needs more memory than the machine has, or too large a factor (SceneError)."""
-    size, there = run_size(slots, bodies, zones), machine_memory()
-    if slots.vibrating:
-        _require_factor(bodies, size.rod)
+    size, there, mesh = run_size(slots, bodies, zones), machine_memory(), bodies.rod.own_mesh
+    entries = _own_factor(mesh, size.rod) / ENTRY if mesh is not None and slots.vibrating else 0.0
+    if mesh is not None and entries > MOST_ENTRIES:
+        problem = (
+            f"makes about {about(size.rod)} elements, whose modes need a factor of some {entries:.2g} "
+            f"entries; the solver numbers {MOST_ENTRIES:.2g} of them at most."
+        )
+        raise SceneError(problem, key="projectile.mesh", value=mesh.path, remedy=LARGER)
     if size.memory <= there:
         return
     problem = (
         f"makes about {about(size.rod + size.barrier)} elements, which take some {about(size.memory / 1e9)} "
         f"GB of memory; this machine has {about(there / 1e9)} GB."
     )
-    finest, mesh = _finest_that_fits(slots, bodies, zones, there), bodies.rod.own_mesh
+    finest = _finest_that_fits(slots, bodies, zones, there)
     if mesh is not None and not finest:
         raise SceneError(problem, key="projectile.mesh", value=mesh.path, remedy=LARGER)
     none = "No tip size fits: give a smaller rod, accuracy.across or accuracy.block_margin."
     value = format_quantity(zones.tip_size, "length")
     raise SceneError(problem, key="accuracy.tip_size", value=value, remedy=finest or none)
-
-
-def _require_factor(bodies: Bodies, rod: int) -> None:
-    """Refuse a user's mesh of so many elements that vibrate that the solver cannot number their factor."""
-    mesh = bodies.rod.own_mesh
-    if mesh is None or (entries := _own_factor(mesh, rod) / ENTRY) <= MOST_ENTRIES:
-        return
-    problem = (
-        f"makes about {about(rod)} elements, whose modes need a factor of some {entries:.2g} entries; the "
-        f"solver numbers {MOST_ENTRIES:.2g} of them at most."
-    )
-    raise SceneError(problem, key="projectile.mesh", value=mesh.path, remedy=LARGER)
 
 
 def _memory(bodies: Bodies, vibrates: bool, rod: float, barrier: float) -> float:
@@ -187,10 +180,7 @@ def _own_factor(mesh: OwnMesh, rod: float) -> float:
 def require_rest(bodies: Bodies, zones: Zones) -> None:
     """Refuse a user's mesh that cannot vibrate and is all nose (SceneError)."""
     body = bodies.rod.body()
-    if (
-        isinstance(body, Faceted)
-        and not (body.parts[:, 0] >= _body_start(bodies, zones, zones.rod_boxes)).any()
-    ):
+    if isinstance(body, Faceted) and not (body.parts[:, 0] >= _body_start(bodies, zones)).any():
         raise no_rest()
 
 
@@ -222,20 +212,14 @@ def _finest_that_fits(slots: ModelSpec, bodies: Bodies, zones: Zones, there: flo
 
 def _step(bodies: Bodies, zones: Zones, slots: ModelSpec) -> float:
     """Return about the stable step, s, with the scene's safety factor."""
-    shares = {"rod": bodies.rod.material}
+    crossing = SMALLEST["rod"] * zones.tip_size / _wave_speed(bodies.rod.material)
     if slots.meshed_barrier:
-        shares["barrier"] = max((m for _, m in bodies.barrier.strata), key=_wave_speed)
-    sizes = {"rod": zones.tip_size, "barrier": zones.barrier_size * _flat(bodies, zones)}
-    crossing = (SMALLEST[body] * sizes[body] / _wave_speed(steel) for body, steel in shares.items())
-    return bodies.scene.accuracy.step / 0.9 * sqrt(bodies.scene.accuracy.mass_scaling) * min(crossing)
-
-
-def _flat(bodies: Bodies, zones: Zones) -> float:
-    """Return the height of the cells of a plate that is meshed through over their width, at most 1."""
-    if not zones.edges:
-        return 1.0
-    before, after = moved_rows(bodies, zones)
-    return min(1.0, float(after[-1] / before[-1]))
+        fastest, height = max(_wave_speed(metal) for _, metal in bodies.barrier.strata), zones.barrier_size
+        if zones.edges:  # the cells of a plate that is meshed through may be flatter than wide
+            before, after = moved_rows(bodies, zones)
+            height *= min(1.0, float(after[-1] / before[-1]))
+        crossing = min(crossing, SMALLEST["barrier"] * height / fastest)
+    return bodies.scene.accuracy.step / 0.9 * sqrt(bodies.scene.accuracy.mass_scaling) * crossing
 
 
 def _wave_speed(steel: Material) -> float:
@@ -279,14 +263,14 @@ def _coarse_elements(bodies: Bodies, end: float) -> float:
     return float(end * np.mean(cells * across / (2 * radius)))
 
 
-def _body_start(bodies: Bodies, zones: Zones, boxes: list[tuple[Array, Array]]) -> float:
+def _body_start(bodies: Bodies, zones: Zones) -> float:
     """Return about the height, m, at which the slices begin: a cell above all that is split."""
     alpha, foot, edge = bodies.mesh_inclination, float(bodies.lowest_point[2]), body_cell(bodies)
     tops = (
         high[2] * cos(alpha)
         + max(-low[0], high[0]) * abs(sin(alpha))
         + float(reach(1.4 * edge, 1, level, BUFFER))
-        for level, (low, high) in enumerate(boxes, 1)
+        for level, (low, high) in enumerate(zones.rod_boxes, 1)
     )
     return max(foot + max(tops, default=0.0) + 1.5 * edge, bodies.rod.diameter / 3)
 

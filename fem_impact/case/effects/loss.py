@@ -39,13 +39,17 @@ def require_closed_form(bodies: Bodies, spec: ModelSpec, fidelity: str) -> None:
     Finite elements have viscous cells of a rod of one material that does not yield, on a barrier that is not
     viscous; the reduced model has no contact that is viscous and flows.
     """
-    flows = bool(spec.rod_law or spec.barrier_law)
+    flows, where = bool(spec.rod_law or spec.barrier_law), ""
     if spec.contact_loss is None or fidelity == "rigid":
         return
     if fidelity == "modal":
-        where = "a contact that yields in the reduced model" if flows else ""
-    else:
-        where = _unheld(bodies, spec)
+        where = "a contact that yields in the reduced model" * flows
+    elif any(metal.loss_factor for _, metal in bodies.barrier.strata) and bodies.contact.compliant:
+        where = "a barrier of finite elements"
+    elif spec.rod_law is not None:
+        where = "a rod of finite elements that yields"
+    elif len(bodies.rod.materials) > 1:
+        where = "a rod of several materials of finite elements"
     if not where:
         return
     metals = [*bodies.rod.materials, *(metal for _, metal in bodies.barrier.strata)]
@@ -58,12 +62,3 @@ def require_closed_form(bodies: Bodies, spec: ModelSpec, fidelity: str) -> None:
         value=", ".join(f"{metal.loss_factor:g}" for metal in lossy.values()),
         remedy=f'Use fidelity rigid{other}, or add "-contact-loss" to effects.',
     )
-
-
-def _unheld(bodies: Bodies, spec: ModelSpec) -> str:
-    """Return what of a viscous contact finite elements do not hold, empty where they hold it."""
-    if any(metal.loss_factor for _, metal in bodies.barrier.strata) and bodies.contact.compliant:
-        return "a barrier of finite elements"
-    if spec.rod_law is not None:
-        return "a rod of finite elements that yields"
-    return "a rod of several materials of finite elements" if len(bodies.rod.materials) > 1 else ""

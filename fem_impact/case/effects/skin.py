@@ -31,9 +31,7 @@ def skin_of(metal: Material) -> Skin | None:
     assert metal.hardness is not None and spec.load is not None, "the material refuses a load without these"
     try:
         test = HardnessTest(metal.hardness, spec.load)
-        return Skin(
-            skin_depth(metal.E, hardening_of(metal), test, spec.factor, spec.shape), spec.factor, spec.shape
-        )
+        depth = skin_depth(metal.E, hardening_of(metal), test, spec.factor, spec.shape)
     except ValueError as error:
         raise SceneError(
             str(error),
@@ -41,6 +39,7 @@ def skin_of(metal: Material) -> Skin | None:
             value=f"factor {spec.factor:g}, load {spec.load:g} kgf",
             remedy="`fem-impact hardness SCENE` prints the factors that can; or give skin.depth.",
         ) from None
+    return Skin(depth, spec.factor, spec.shape)
 
 
 def number(bodies: Bodies) -> float:
