@@ -231,16 +231,19 @@ def solve(
     start, modes = start_of(case, rod), Modes(rod.omega)
     rows, over = MOST_ROWS if recorded else 0, case.slots.friction_over_speed
     course = Course.of(len(rod.sites.along_t), _arriving(case, rod, arrival), rows, over)
-    E_0 = _kinetic(rod, *course.now.rigid[:3]) + float(_energies(rod, course.now).sum())
-    slowest, rate, touching = _approach(rod, course.now), 0.0, _touching(rod, course.now)
-    ends = np.array([_of_tail(case, rod, s) for s in range(len(rod.sites.along_t))])
+    now, rate, touching = course.now, 0.0, _touching(rod, course.now)
+    E_0 = _kinetic(rod, *now.rigid[:3]) + float(rod.energies(now.q, now.rate).sum())
+    low_t, _ = lowest_place(rod.sites, now.rigid[AT.turn], now.q)
+    slowest = float(now.rigid[AT.Omega] * low_t - now.rigid[AT.V_n])  # approach of what is lowest, m/s
+    middle, places = 0.5 * case.bodies.body.length, range(len(rod.sites.along_t))
+    ends = np.array([in_body(case, *skin(rod.sites, s, 0.0))[1] > middle for s in places])
     sites = rod.sites._replace(apart=ends != ends[touching[0]]) if alone else rod.sites
     along, dents = (arrival.along, arrival.dents) if arrival else (0.0, ())
     met: list[Dent] = []
 
     def lawful(s: int, begins: bool = False) -> float:
-        swing = give_law(case, rod, course.now, course.held, s, E_0, slowest, begins)
-        dent, again = meet(dents, start, sites, course.now, course.held, s, along)
+        swing = give_law(case, rod, now, course.held, s, E_0, slowest, begins)
+        dent, again = meet(dents, start, sites, now, course.held, s, along)
         met.extend([dent] if dent else [])
         return max(swing, again)
 
@@ -262,7 +265,7 @@ def solve(
         rate = hypot(rate, lawful(touched))
         bounds = bounds._replace(step=min(bounds.step, step * FASTEST / rate))
     wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
-    kept = (Dent.of(course.held, s, sites, course.now, along) for s in range(len(ends)))
+    kept = (Dent.of(course.held, s, sites, now, along) for s in places)
     left = tuple(dent for dent in kept if dent)
     return _result(case, rod, course, touched, E_0, bounds, (wall, cpu), (left, tuple(met)))
 
@@ -292,22 +295,6 @@ def _touching(rod: ModalRod, now: ModalState) -> list[int]:
     return sorted(low, key=lambda s: -Omega * skin(rod.sites, s, float(now.rigid[AT.turn]))[0])
 
 
-def _of_tail(case: Case, rod: ModalRod, s: int) -> bool:
-    """Return whether a site is of the half that lies behind."""
-    return in_body(case, *skin(rod.sites, s, 0.0))[1] > 0.5 * case.bodies.body.length
-
-
-def _approach(rod: ModalRod, now: ModalState) -> float:
-    """Return the speed, m/s, at which what is lowest of the rigid rod comes towards the barrier."""
-    low_t, _ = lowest_place(rod.sites, now.rigid[AT.turn], now.q)
-    return float(now.rigid[AT.Omega] * low_t - now.rigid[AT.V_n])
-
-
-def _energies(rod: ModalRod, now: ModalState) -> Array:
-    """Return the energy of each mode (k,), J."""
-    return np.asarray(0.5 * (now.rate**2 + (rod.omega * now.q) ** 2))
-
-
 @kernel
 def _spent(held: Touched, work_t: Array) -> tuple[float, float, float, float]:
     """Return `spent`, kept on disk: what is inlined would be compiled anew, 2 s, in each process."""
@@ -330,7 +317,7 @@ def _result(
     """
     over = ended != CUT
     scene, now, tally, clock = case.scene, course.now, course.tally, course.clock
-    motion, energies = now.rigid[:3], _energies(rod, now)
+    motion, energies = now.rigid[:3], rod.energies(now.q, now.rate)
     plastic, friction, held_n, held_t = _spent(course.held, course.held.work_t)
     viscous, waves = tally[SUM.viscous], float(course.held.flats.works[:, 3].sum())
     laid = bool((course.held.flats.deepest > 0.0).any())

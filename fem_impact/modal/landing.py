@@ -176,10 +176,8 @@ def _set_side(
 ) -> None:
     """Enter the law of a side that lies down along its length."""
     (x, z), (u, w) = ends
-    length, R = (
-        float(np.hypot(u - x, w - z)),
-        0.5 * (abs(x) + abs(u)) * float(np.hypot(u - x, w - z)) / abs(w - z),
-    )
+    length = float(np.hypot(u - x, w - z))
+    R = 0.5 * (abs(x) + abs(u)) * length / abs(w - z)
     held.flats.share[f] = (np.arange(CELLS) + 0.5) / CELLS
     hardness = FULLY_PLASTIC * flow.yield_stress
     if np.isfinite(hardness):
@@ -208,11 +206,7 @@ def _set_row(
     """
     sheared = 0.5 * pair.shear_stiffness / pair.modulus  # tangential over normal stiffness
     cell, share = stiffness * size, max(flexibility(case) * pair.modulus, RIGID)
+    springs = cell / (1 - share), cell / share, sheared * cell
     leaves = pair.compliant and not (case.scene.barrier.mass or case.slots.plate)
-    each = (
-        cell / (1 - share),
-        cell / share,
-        sheared * cell,
-        impedance(case.scene.barrier.material) if leaves else 0.0,
-    )
-    held.flats.law[f] = *each, hardness, flow.skin, flow.friction, size, widens, 1.0
+    waves = impedance(case.scene.barrier.material) if leaves else 0.0
+    held.flats.law[f] = *springs, waves, hardness, flow.skin, flow.friction, size, widens, 1.0

@@ -53,6 +53,10 @@ class ModalRod:
         """(t, n), m, from the mass centre to what touches first."""
         return skin(self.sites, self.first, 0.0)
 
+    def energies(self, q: Array, rate: Array) -> Array:
+        """Return the energy of each mode (k,), J, of amplitudes, sqrt(kg) m, and rates, sqrt(kg) m/s."""
+        return np.asarray(0.5 * (rate**2 + (self.omega * q) ** 2))
+
     @property
     def flexibility(self) -> float:
         """Of the modes under a force along n at what touches first, m/N."""
@@ -104,8 +108,12 @@ def modal_rod(bodies: Bodies, vibrating: bool = True) -> ModalRod:
     alpha, side = abs(pair.angle), pair.side
     rounds = body.curves(side) if isinstance(body, Faceted) else body.rounds()
     places = nearest_skin(rounds, alpha)
-    own = side if isinstance(body, Faceted) else 1.0
-    omega, moved = _moved(bodies, places, own) if vibrating else (np.zeros(0), np.zeros((len(places), 2, 0)))
+    omega, moved = np.zeros(0), np.zeros((len(places), 2, 0))
+    if vibrating:
+        own = side if isinstance(body, Faceted) else 1.0  # at -1 all is of the mirror image of the rod
+        spec, across = _elastic(bodies.rod), bodies.scene.across
+        of_rod = np.array([_moved_place(spec, across, own * x, z) for x, z in places.tolist()])
+        omega, moved = _modes(spec, across)[2], of_rod * np.array([[own], [1.0]])
     sites = sites_of(rounds, (body.x_c, body.z_c), pair.angle, *rotated(alpha, moved[:, 0], moved[:, 1]))
     first = -1
     if not pair.lands_flat:
@@ -153,16 +161,6 @@ def _with_edges(bodies: Bodies, omega: Array, sites: Sites) -> tuple[Array, Site
         t[s, k], n[s, k] = moved_t, moved_n
     t, n = np.hstack([sites.along_t, t]), np.hstack([sites.along_n, n])
     return np.append(omega, np.full(len(modes), highest)), sites._replace(along_t=t, along_n=n)
-
-
-def _moved(bodies: Bodies, places: Array, side: float) -> tuple[Array, Array]:
-    """Return omega (k,), and what each mode moves places (m, 2) by, (m, 2, k), kg^-1/2; all (x, z).
-
-    At a ``side`` of -1 all are of the mirror image of the rod.
-    """
-    rod, across = _elastic(bodies.rod), bodies.scene.across
-    moved = [_moved_place(rod, across, side * x, z) for x, z in places.tolist()]
-    return _modes(rod, across)[2], np.array(moved) * np.array([[side], [1.0]])
 
 
 @lru_cache(maxsize=256)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from math import degrees, inf
 from typing import TYPE_CHECKING
 
@@ -239,7 +239,10 @@ def levels_told(levels: Sequence[Strikes]) -> str:
 
 def strikes_table(strikes: Strikes, most: int | None = None) -> Table:
     """Return a row for each of the first strikes, numbers with their half-widths."""
-    rows = [_row(strikes, number, one) for number, one in enumerate(known(strikes.each)[:most], 1)]
+    rows = []
+    for number, one in enumerate(known(strikes.each)[:most], 1):
+        numbers = (_number(strikes, number, key.path[-1], scale) for key, scale in ROW.items())
+        rows.append((str(number), one.part, *numbers, one.fidelity))
     return Table.of(HEAD, rows, left=(1, 9))
 
 
@@ -254,11 +257,6 @@ def spread_table(spread: Sequence[StrikeSpread]) -> Table:
         for one in spread
     ]
     return Table.of(SPREAD, rows)
-
-
-def _row(strikes: Strikes, number: int, one: StrikeRecord) -> tuple[str, ...]:
-    told = (_number(strikes, number, key.path[-1], scale) for key, scale in ROW.items())
-    return (str(number), one.part, *told, one.fidelity)
 
 
 def _number(strikes: Strikes, number: int, field: str, scale: float = 1.0) -> str:
@@ -306,19 +304,15 @@ def _hardest(strikes: Strikes) -> list[str]:
     where there are any.
     """
     each, certain = known(strikes.each), or_none(strikes.certain)
-    by_energy, by_force, by_heat = (
-        ("energy", strikes.hardest_energy, strikes.hardest_agree),
-        ("force", strikes.hardest_force, strikes.force_agree),
-        ("friction heat", strikes.hardest_heat, strikes.heat_agree),
-    )
-    sizes: tuple[tuple[Callable[[StrikeRecord], float], str], ...] = (
-        (lambda one: one.lost, "rigid motion from {before} J to {after} J"),
-        (lambda one: one.force or 0.0, "{force} N"),
-        (lambda one: one.friction, "{friction} J"),
-    )
-    told = []
-    for (name, number, agree), (size, what) in zip((by_energy, by_force, by_heat), sizes, strict=True):
-        if isinstance(number, Unknown) or size(each[number - 1]) <= ROUND_OFF * each[0].before:
+    lost, rubbed = [one.lost for one in each], [one.friction for one in each]
+    forces, told = [one.force or 0.0 for one in each], []
+    motion = "rigid motion from {before} J to {after} J"
+    for name, number, agree, sizes, what in (
+        ("energy", strikes.hardest_energy, strikes.hardest_agree, lost, motion),
+        ("force", strikes.hardest_force, strikes.force_agree, forces, "{force} N"),
+        ("friction heat", strikes.hardest_heat, strikes.heat_agree, rubbed, "{friction} J"),
+    ):
+        if isinstance(number, Unknown) or sizes[number - 1] <= ROUND_OFF * each[0].before:
             continue  # no strike has any
         first, same = "", "" if isinstance(agree, Unknown) else f", the hardest in {agree} of 64 sequences"
         if not isinstance(agree, Unknown) and agree < AGREED:
@@ -329,21 +323,12 @@ def _hardest(strikes: Strikes) -> list[str]:
             first = " not certain;"
             if certain:
                 first, same = f" not certain (strike {number} of this path{same}); of the certain ones", ""
-                number = 1 + max(range(certain), key=lambda at: size(each[at]))
+                number = hardest(sizes[:certain])
         fields = ("approach", "before", "after", "friction", *(["force"] if name == "force" else []))
         numbers = {field: _number(strikes, number, field) for field in fields}
         strike = f"strike {number}, {each[number - 1].part} at {numbers['approach']} m/s"
         told.append(f"Hardest by {name}:{first} {strike}: {what.format(**numbers)}{same}.")
     return told
-
-
-def _time_error(strikes: Strikes) -> str:
-    """Return the error of the time to the rest, or that it has none."""
-    if strikes.end != "rests":
-        return ""
-    if isinstance(strikes.time_factor, Unknown):
-        return f" (error not known: {strikes.time_factor.reason})"
-    return f" (within a factor of {strikes.time_factor:.2g})"
 
 
 def _totals(strikes: Strikes) -> str:
@@ -360,7 +345,12 @@ def _totals(strikes: Strikes) -> str:
     least = ROUND_OFF * before
     half, heat = or_none(strikes.friction_half) or 0.0, or_none(strikes.friction) or 0.0
     rubbed = f" Friction with its error: {with_band(heat, half, 0.0)} J." if half > least else ""
-    time = "" if isinstance(strikes.time, Unknown) else f" after {strikes.time:.4g} s{_time_error(strikes)}"
+    factor, error = strikes.time_factor, ""
+    if strikes.end == "rests" and isinstance(factor, Unknown):
+        error = f" (error not known: {factor.reason})"
+    elif strikes.end == "rests":
+        error = f" (within a factor of {factor:.2g})"
+    time = "" if isinstance(strikes.time, Unknown) else f" after {strikes.time:.4g} s{error}"
     gave = or_none(strikes.gravity) or 0.0
     came = f"{before:.3g} J before the first strike"
     came += f" and {gave:.3g} J from gravity" if abs(gave) > least else ""
