@@ -98,6 +98,13 @@ class Bodies:
             spans=self.spans,
         )
 
+    def metal_at(self, z: float) -> tuple[Material, bool]:
+        """Return the projectile's material at ``z``, m, from its tip, and whether it may yield there."""
+        parts = [part for part in self.rod.segments if z <= part.to] or list(self.rod.segments[-1:])
+        if not parts or parts[0] == self.rod.segments[0]:
+            return self.contact.rod, self.contact.rod_yields
+        return parts[0].material, False
+
     @cached_property
     def friction(self) -> float:
         """The Coulomb coefficient of the face that touches first, whether friction acts or not."""

@@ -43,21 +43,21 @@ def all_effects(scene_effects: Sequence[str]) -> tuple[str, ...]:
     if AUTO not in scene_effects:
         return tuple(name for name in NAMES if name in scene_effects)
     barrier = next((name for name in scene_effects if name in BARRIERS), BARRIERS[-1])
-    wanted = set(_weighed(scene_effects)) - set(BARRIERS) - _forced_off(scene_effects) | {barrier}
-    return _in_order(wanted)
+    return _with_barrier(set(_weighed(scene_effects)) - _forced_off(scene_effects), barrier)
 
 
 def decide(whole: Bodies) -> Decision:
     """Return what is decided of the effects of a scene, from bodies with `all_effects` in force."""
     scene_effects = whole.scene.effects
     number = {name: EFFECTS[name].number(whole) for name in _weighed(scene_effects)}
-    needed = _with_one_barrier({name for name in number if number[name] > EFFECTS[name].threshold})
+    above = {name for name in number if number[name] > EFFECTS[name].threshold}
+    strongest = next((name for name in reversed(BARRIERS) if name in above), BARRIERS[0])
+    needed = set(_with_barrier(above, strongest))
     if AUTO not in scene_effects:
         return Decision(number, needed, set(scene_effects))
     wanted = (needed | set(scene_effects)) - _forced_off(scene_effects) - {AUTO}
-    barrier = next((name for name in scene_effects if name in BARRIERS), None)
-    barrier = barrier or next(name for name in reversed(BARRIERS) if name in needed)
-    return Decision(number, needed, _with_one_barrier(wanted - set(BARRIERS) | {barrier}))
+    barrier = next((name for name in scene_effects if name in BARRIERS), strongest)
+    return Decision(number, needed, set(_with_barrier(wanted, barrier)))
 
 
 def choices(scene: Scene, decision: Decision) -> tuple[EffectChoice, ...]:
@@ -101,14 +101,10 @@ def _forced_off(scene_effects: Sequence[str]) -> set[str]:
     return {name for name in NAMES if f"-{name}" in scene_effects}
 
 
-def _with_one_barrier(wanted: set[str]) -> set[str]:
-    """Keep the strongest barrier, a rigid one for want of others, and drop what lacks its prerequisites."""
-    barrier = next((name for name in reversed(BARRIERS) if name in wanted), BARRIERS[0])
-    return set(_in_order(wanted - set(BARRIERS) | {barrier}))
-
-
-def _in_order(wanted: set[str]) -> tuple[str, ...]:
-    return tuple(with_prerequisites([name for name in NAMES if name in wanted]))
+def _with_barrier(wanted: set[str], barrier: str) -> tuple[str, ...]:
+    """Return effects in order, with this barrier alone and without what lacks its prerequisites."""
+    names = wanted - set(BARRIERS) | {barrier}
+    return tuple(with_prerequisites([name for name in NAMES if name in names]))
 
 
 def _is_forced(name: str, scene_effects: Sequence[str]) -> bool:

@@ -187,10 +187,11 @@ def require_shallow(bodies: Bodies) -> None:
     scene = bodies.scene
     depth, radius = bodies.estimate.depth, scene.projectile.diameter / 2
     if depth > radius:
+        way = scene.impact.stated[0]
         raise SceneError(
             f"would press the tip {depth * 1e3:.2g} mm deep, more than the rod's radius "
             f"({radius * 1e3:.3g} mm): the whole end would flow and break, which the model does not hold.",
-            key=f"impact.{(way := scene.impact.stated[0])}",
+            key=f"impact.{way}",
             value=f"{getattr(scene.impact, way):.4g} {'m' if way == 'height' else 'm/s'}",
             remedy="Give a lower speed or stronger materials.",
         )
@@ -223,12 +224,7 @@ def require_point(bodies: Bodies, fidelity: str) -> None:
         return
     law = f"{fidelity} takes the contact law of a round tip"
     follows = "one mesh is fine about one point" if fidelity == "solid" else law
-    raise SceneError(
-        f"is that of {flat_part(bodies)}, but {follows}.",
-        key="impact.angle",
-        value=_angle(bodies),
-        remedy=_any_part(fidelity),
-    )
+    raise _of_angle(bodies, f"is that of {flat_part(bodies)}, but {follows}.", _any_part(fidelity))
 
 
 def require_first_part(bodies: Bodies) -> None:
@@ -284,12 +280,8 @@ def _require_no_flank(bodies: Bodies, body: Turned, fidelity: str) -> None:
     found = [f"{at} deg" for side in (-1, 1) if (at := _pointed(bodies, body, side)) is not None]
     told = f"Give an angle of {' or '.join(found)}."
     slower = f"Give a lower speed or stronger materials: the tip is pressed in by {deep * 1e3:.2g} mm."
-    raise SceneError(
-        f"{laid}: a line would touch, not a point.",
-        key="impact.angle",
-        value=_angle(bodies),
-        remedy=f"{told if found and FLAT * deep < length else slower} {_any_part(fidelity)}",
-    )
+    remedy = f"{told if found and FLAT * deep < length else slower} {_any_part(fidelity)}"
+    raise _of_angle(bodies, f"{laid}: a line would touch, not a point.", remedy)
 
 
 def _lays_flank(bodies: Bodies, body: Turned) -> bool:
@@ -317,12 +309,12 @@ def _require_tip(bodies: Bodies, body: Faceted, fidelity: str) -> None:
     remedy = f"Give another angle, or change the mesh. {_any_part(fidelity)}"
     if angle == 0 and body.off_axis() > BESIDE_AXIS * body.diameter:
         problem = f"stands the body on a tip {body.off_axis() * 1e3:.3g} mm beside its mass centre's axis."
-        raise SceneError(problem, key="impact.angle", value=_angle(bodies), remedy=remedy)
+        raise _of_angle(bodies, problem, remedy)
     back, ahead, _ = body.spread(angle, FLAT * size.depth, (size.R1, size.R2))
     flank = back if angle < 0 else ahead
     if flank > 2 * size.a_t:
         problem = f"lays {flank * 1e3:.3g} mm of the mesh's side along the barrier: no tip would touch."
-        raise SceneError(problem, key="impact.angle", value=_angle(bodies), remedy=remedy)
+        raise _of_angle(bodies, problem, remedy)
 
 
 def _any_part(fidelity: str) -> str:
@@ -332,8 +324,10 @@ def _any_part(fidelity: str) -> str:
     return f"Use fidelity solid{', or state restitution' if fidelity == 'rigid' else ''}."
 
 
-def _angle(bodies: Bodies) -> str:
-    return f"{math.degrees(bodies.scene.impact.angle):.4g} deg"
+def _of_angle(bodies: Bodies, problem: str, remedy: str) -> SceneError:
+    """Return the refusal of the angle of an impact."""
+    value = f"{math.degrees(bodies.scene.impact.angle):.4g} deg"
+    return SceneError(problem, key="impact.angle", value=value, remedy=remedy)
 
 
 def flat_part(bodies: Bodies) -> str:
@@ -359,8 +353,7 @@ def require_own_mesh(bodies: Bodies, fidelity: str) -> None:
         return
     if fidelity == "modal" and lands_on_ridge(bodies):
         problem = "lands along a ridge, an edge of the mesh, of which the reduced model has no law."
-        remedy = "Use fidelity solid, or another angle."
-        raise SceneError(problem, key="impact.angle", value=_angle(bodies), remedy=remedy)
+        raise _of_angle(bodies, problem, "Use fidelity solid, or another angle.")
     if fidelity == "solid" and "machined-skin" in bodies.effects and bodies.contact.rod.skin:
         problem = "has a hardened layer, but how deep a node lies under a mesh's facets is not computed."
         remedy = 'Add "-machined-skin" to effects.'

@@ -10,6 +10,7 @@ from fem_impact.case.effects.barrier import compliance_share
 from fem_impact.errors import SceneError
 from fem_impact.physics.contact import pressure_speed
 from fem_impact.physics.plate import contact_time, least_span, plate_waves, zener_number
+from fem_impact.scene.barrier import Barrier
 from fem_impact.tables.text import plain
 
 # of e, by a half-space under the contact: above it that is told, and finite elements mesh the plate through
@@ -87,16 +88,19 @@ def thin_plate(bodies: Bodies, meshed_through: bool) -> str:
     )
 
 
+def pressed_part(barrier: Barrier) -> tuple[str, float | None]:
+    """Return what of a barrier a dent is in, and its thickness, m, None of a massive one."""
+    return ("first layer", barrier.layers[0].thickness) if barrier.layers else ("plate", barrier.thickness)
+
+
 def too_thin(bodies: Bodies, meshed: bool) -> tuple[str, ...]:
     """Tell where a dent is deep beside the plate, or the wall of a tube thin, and what that leaves out.
 
     Without a mesh the wall behind a contact that is wider than it counts as massive.
     """
-    size, barrier, rod = bodies.estimate, bodies.barrier, bodies.rod
-    first = barrier.layers[0].thickness if barrier.layers else barrier.thickness
+    size, rod, (part, first) = bodies.estimate, bodies.rod, pressed_part(bodies.barrier)
     dent, told = f"the estimated dent is {size.depth * 1e3:.2g} mm deep", []
     if first is not None and size.depth > DEEP * first:
-        part = "first layer" if barrier.layers else "plate"
         told.append(
             f"left out: {dent}, {size.depth / first:.2g} of the {part}'s {first * 1e3:.2g} mm: that it "
             "thins, tears or is pierced"

@@ -20,9 +20,8 @@ from rigid import Faceted, Projectile
 
 AROUND = 16  # places of half a round surface at which its height is looked at
 ABOVE = 0.35  # of a cell, within which skin of the lowest point may touch in a run on such cells
-BESIDE = (
-    1.05  # cells beside a line of a user's nodes: in a single row that is split every face has hanging nodes
-)
+# cells beside a line of a user's nodes: in a single row that is split every face has hanging nodes
+BESIDE = 1.05
 MOST = 1_000_000  # places of skin that may touch: no machine holds a mesh with cells for more of them
 DEEP = 1.5  # radii of the estimated contact, and cells, up to which metal may flow from where it may touch
 

@@ -17,7 +17,6 @@ from fem_impact.modal.tip import ROUND, Flank, half_length
 from fem_impact.modal.touch import LAID
 from fem_impact.physics.contact import ContactPair
 from fem_impact.physics.contact_law import ContactLaw, FlowLaw, contact_law, flow_law
-from fem_impact.scene.material import Material
 
 BESIDE = 1e-4  # rad, that a law is at least away from the ends of its site's range of normals
 STEADIER = 30.0  # times as many steps where a whole row of cells touches and leaves at once
@@ -47,7 +46,7 @@ def pair_at(case: Case, rod: ModalRod, now: ModalState, s: int, slowest: float) 
     v_n = float(rigid[AT.V_n] - rigid[AT.V_bn] + along @ now.rate)
     t, n = skin(rod.sites, s, rigid[AT.turn])
     offset = -float(rigid[AT.away_t] + c * t + sn * n)
-    metal, yields = _metal(case, rod, s, float(rigid[AT.turn]))
+    metal, yields = case.bodies.metal_at(in_body(case, t, n)[1])
     pair = replace(
         first,
         body=body,
@@ -210,12 +209,3 @@ def _slope(lean: float) -> float:
     """Return the slope of a straight part that leans by an angle, rad, over the barrier; inf if it hangs."""
     lean = (lean + 0.5 * pi) % (2 * pi) - 0.5 * pi
     return tan(min(max(lean, FLATTEST), UPRIGHT)) if lean < 0.5 * pi else inf
-
-
-def _metal(case: Case, rod: ModalRod, s: int, turn: float) -> tuple[Material, bool]:
-    """Return the material of the rod at a site, and whether it may yield: only that of the tip may."""
-    spec, (_, z) = case.scene.projectile, in_body(case, *skin(rod.sites, s, turn))
-    parts = [part for part in spec.segments if z <= part.to] or list(spec.segments[-1:])
-    if not parts or parts[0] == spec.segments[0]:
-        return case.contact.rod, case.contact.rod_yields
-    return parts[0].material, False

@@ -178,9 +178,9 @@ def _by_stored(case: Case, body: Followed, begin: FlightState, one: StrikeRecord
     (d_c, d_d), k2 = pair.arms, body.pull.k2
     stops = critical_ratio(pair.v_n, pair.v_t, e=one.e, d_c=d_c, d_d=d_d, k2=k2, omega=pair.omega)
     place = np.array(modal_error.place_at(pair, case.bodies.bending_period, float(stops)))
-    table, columns = modal_error.stored(), (*modal_error.TOLD, *modal_error.FACTORS)
+    table = modal_error.stored()
     e, mu, friction, vibration, force = (
-        table.half_width(place, columns.index(name), table.far(place))
+        table.half_width(place, modal_error.COLUMNS.index(name), table.far(place))
         for name in ("e_edge", "mu", "W_friction_over_E_0", modal_error.VIBRATION, "peak_force_N")
     )
     vibrates = max(one.vibration, modal_error.LEAST_VIBRATION * one.before)

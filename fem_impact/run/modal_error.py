@@ -49,6 +49,8 @@ PLASTIC = ("E_plastic_rod_over_E_0", "E_plastic_barrier_over_E_0")
 CARRIED = ("W_radiated_over_E_0", "W_plate_over_E_0", "W_damping_over_E_0")
 FACTORS = ("peak_force_N", "dent_m", "flash_rise_K")
 """Numbers that are held against limits; their errors are natural logarithms of the ratio of both models."""
+COLUMNS = (*TOLD, *FACTORS)
+"""Numbers whose errors are stored, in the order of `Stored.errors`."""
 
 
 class Place(NamedTuple):
@@ -216,15 +218,17 @@ def half_widths(place: Place, outcome: Outcome, approach: float, last: float = 0
     that of the contact point; ``last`` the part of the plastic work that the body takes which yields last.
     """
     at, table, far = np.array(place), stored(), farness(place, outcome)
+    told = {key: or_none(KEY_TABLE[key].of(outcome)) for key in (*TOLD, *PLASTIC, *CARRIED)}
+    values = {key: value for key, value in told.items() if value is not None}
     halves = {
         key: table.half_width(at, of, far) * scale_of(key, outcome)
         for of, key in enumerate(TOLD)
-        if or_none(KEY_TABLE[key].of(outcome)) is not None
+        if key in values
     }
     if "e_edge" in halves:
         halves["e_edge"] *= widened_by(unit_of("V_n_m_per_s", outcome), approach)
     # the plastic work is what the other shares leave
-    plastic = [key for key in PLASTIC if or_none(KEY_TABLE[key].of(outcome))]
+    plastic = [key for key in PLASTIC if values.get(key)]
     if not outcome.motion.friction:  # nothing rubs; along an elastic body nothing pushes at all
         halves["W_friction_over_E_0"] = 0.0
         if not plastic and "V_n_m_per_s" in halves:  # which an impact that was cut off does not know
@@ -232,16 +236,15 @@ def half_widths(place: Place, outcome: Outcome, approach: float, last: float = 0
             turned = halves["V_n_m_per_s"] * arm
             halves |= {"mu": 0.0, "V_t_m_per_s": 0.0, "Omega_rad_per_s": turned}
     others = sum(halves.get(key, 0.0) for key in TOLD[-3:])
-    whole = sum(known(KEY_TABLE[key].of(outcome)) for key in plastic)
+    whole = sum(values[key] for key in plastic)
     for key in plastic:
-        halves[key] = others * known(KEY_TABLE[key].of(outcome)) / whole + SPLIT * last * whole
+        halves[key] = others * values[key] / whole + SPLIT * last * whole
     for key in CARRIED:  # no stored scene tells their errors: what all others leave open
-        if or_none(KEY_TABLE[key].of(outcome)):
+        if values.get(key):
             halves[key] = others
     for key in (*TOLD[-3:], *plastic, *CARRIED):  # shares lie between 0 and 1
         if key in halves:
-            share = known(KEY_TABLE[key].of(outcome))
-            halves[key] = min(halves[key], max(share, 1.0 - share))
+            halves[key] = min(halves[key], max(values[key], 1.0 - values[key]))
     beyond = _beyond_friction(outcome)
     if digs_in(outcome):
         halves["mu"] = max(halves["mu"], beyond)
@@ -321,7 +324,7 @@ def factor_of(place: Place, name: str, far: float) -> float:
 
     It is wider of a scene that lies ``far``, 0 to 1, beyond the stored ones.
     """
-    return exp(stored().half_width(np.array(place), len(TOLD) + FACTORS.index(name), far))
+    return exp(stored().half_width(np.array(place), COLUMNS.index(name), far))
 
 
 def unlike(place: Place, outcome: Outcome, table: Stored | None = None) -> tuple[str, ...]:
@@ -368,4 +371,4 @@ def sentence(place: Place, outcome: Outcome) -> str:
 @cache
 def stored() -> Stored:
     """Return the stored scenes."""
-    return Stored.of(reduced_pairs(), (*TOLD, *FACTORS))
+    return Stored.of(reduced_pairs(), COLUMNS)

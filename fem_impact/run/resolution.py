@@ -21,9 +21,8 @@ if TYPE_CHECKING:
 T = TypeVar("T", "ArmCoefficients", "BarrierMotion", "Energy", "Heat", "RodMotion")
 ARM_LENGTHS = ("d_c", "d_d")
 NOT_RESOLVED = "the contact was not resolved:"
-LOST = (
-    0.02  # of E_0, at most lost in closing: the measured sets lose 0.0001 to 0.0006, drawn scenes up to 0.004
-)
+# of E_0, at most lost in closing: the measured sets lose 0.0001 to 0.0006, drawn scenes up to 0.004
+LOST = 0.02
 AFTER, AFTER_BARRIER = ("V_n", "V_t", "Omega"), ("V_bn", "V_bt", "Omega_b")
 LEDGER = ("E_0", "vibration_floor", "below_floor", "residual")  # valid without a resolved contact
 

@@ -158,16 +158,15 @@ class SolidCourse:
     @property
     def limits(self) -> list[str]:
         """What limits trust in them."""
+        if self.body.upto == 1:
+            return self.told
         met = sorted(self.body.again)
         struck = AGAIN.format(", ".join(map(str, met))) if met else FRESH
-        loss = loss_told(self.case, self.loss)
-        several, by_modes = (
-            [TOLD.format(len(self.body.each), struck, len(self.flight.a), loss)],
-            _by_modes(self.case),
-        )
+        loss, by_modes = loss_told(self.case, self.loss), _by_modes(self.case)
+        several = [TOLD.format(len(self.body.each), struck, len(self.flight.a), loss)]
         if isinstance(by_modes, str):
             several.append(ALONE.format(by_modes))
-        return [*(several if self.body.upto != 1 else []), *self.told]
+        return [*several, *self.told]
 
     def to_the_end(self, options: RunOptions) -> Finish:
         """Follow the rod: hard strikes by finite elements, what lies between them as a rigid body."""

@@ -246,11 +246,7 @@ class Followed:
             angle = remainder(middle + min(max(remainder(angle - middle, 2.0 * pi), -half), half), 2.0 * pi)
         if abs(angle) > 0.5 * pi:
             body, angle = self._turned_over, angle - copysign(pi, angle)
-        segments, z = self.case.scene.projectile.segments, strike.place[1] + first.body.z_c
-        part = next((part for part in segments if z <= part.to), None)
-        metal, yields = first.rod, first.rod_yields
-        if part is not None and part != segments[0]:
-            metal, yields = part.material, False  # only the first segment may yield
+        metal, yields = self.case.bodies.metal_at(strike.place[1] + first.body.z_c)
         return replace(
             first,
             body=body,

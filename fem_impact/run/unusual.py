@@ -1,7 +1,7 @@
 """Sentences on numbers of an outcome that an impact on a resting barrier does not give by itself."""
 
 from fem_impact.case.case import Case
-from fem_impact.case.plates import DEEP
+from fem_impact.case.plates import DEEP, pressed_part
 from fem_impact.case.record import ContactRecord
 from fem_impact.outcome.groups import Energy, Provenance, Restitution, RodMotion
 from fem_impact.outcome.keys import or_none
@@ -24,9 +24,7 @@ def unusual(
 
 def pierced(case: Case, record: ContactRecord, dent: float) -> str:
     """Say how far a dent, m deep, and flow reach through a plate or first layer; nothing if hardly."""
-    barrier = case.scene.barrier
-    part = "first layer" if barrier.layers else "plate"
-    thick = barrier.layers[0].thickness if barrier.layers else barrier.thickness
+    part, thick = pressed_part(case.scene.barrier)
     if thick is None or record.barrier is None or dent <= DEEP * thick:
         return ""
     deep = min(float(-record.barrier.flowed[:, 2].min(initial=0.0)) / thick, 1.0)
