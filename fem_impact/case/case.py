@@ -242,11 +242,13 @@ class Case:
         of_mesh = (
             *limitations("input", *neglected(self.choices)),
             *limitations("model", thin_layer(self.bodies)),
-            # a record shows how wide the contact is
-            *limitations("resolution", coarse_tip(self.bodies) if self.record is None else ""),
-            *limitations("resolution", thin_cells(self.scene.projectile)),
-            # of levels only a mesh that follows a record is known
-            *limitations("resolution", *(unresolved_skins(self.slots, self.zones) if one_mesh else ())),
+            *limitations(
+                "resolution",
+                coarse_tip(self.bodies) if self.record is None else "",  # a record shows its width
+                thin_cells(self.scene.projectile),
+                # of levels only a mesh that follows a record is known
+                *(unresolved_skins(self.slots, self.zones) if one_mesh else ()),
+            ),
         )
         return self.said((*of_scene, *of_mesh, *unstated))
 

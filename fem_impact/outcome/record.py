@@ -265,8 +265,10 @@ def _plain(key: Key, value: Any) -> Any:
         return None
     if key.kind == "entries":
         return [{one.name: _plain(one, one.of(entry)) for one in key.entries} for entry in value]
-    if isinstance(value, tuple | Mapping):
-        return dict(value) if isinstance(value, Mapping) else list(value)
+    if isinstance(value, Mapping):
+        return dict(value)
+    if isinstance(value, tuple):
+        return list(value)
     return value.tolist() if hasattr(value, "tolist") else value
 
 

@@ -150,6 +150,12 @@ class Reduction:
         near = open_end(case, end.contacts, end.leaving, end.Omega, end.other_end) if over else ""
         named_again = named(again) if alone and end.other_end == inf else ""
         next_one = named_again or (end.reason if alone and again else "")
+        intervals: tuple[groups.ContactInterval, ...] | Unknown = Unknown(unmeshed)
+        if end.contacts is not None:
+            intervals = tuple(
+                groups.ContactInterval(start=start, end=stop, impulse_n=normal, impulse_t=tangential)
+                for start, stop, normal, tangential in end.contacts.tolist()
+            )
         of_result = limitations("result", *shown, gravity, next_one, f"{near}." * bool(near))
         outcome = Outcome(
             provenance=origin,
@@ -169,7 +175,7 @@ class Reduction:
             restitution=self.restitution,
             energy=energy,
             contact=groups.Contact(
-                intervals=_intervals(end.contacts, unmeshed),
+                intervals=intervals,
                 sites=sites,
                 strikes_again=(Unknown(near) if near else bool(again)) if end.finished else CUT_OFF,
                 peak_force=peak_force,
@@ -182,15 +188,6 @@ class Reduction:
         )
         outcome = without(outcome, Unknown(withheld)) if withheld else outcome
         return without_end(outcome, cut) if cut else outcome
-
-
-def _intervals(contacts: Array | None, why: str) -> tuple[groups.ContactInterval, ...] | Unknown:
-    if contacts is None:
-        return Unknown(why)
-    return tuple(
-        groups.ContactInterval(start=start, end=end, impulse_n=normal, impulse_t=tangential)
-        for start, end, normal, tangential in contacts.tolist()
-    )
 
 
 def _open_ledger(share: float, fidelity: str) -> str:

@@ -109,16 +109,11 @@ def readings(result: SolidResult) -> Readings:
     contact, depth, volume = result.model.contact, 0.0, 0.0
     if isinstance(contact, SurfaceContact) and "barrier-elastoplastic" in result.case.active:
         depth, volume = dent(contact.barrier, result.state.x)
-    shown = result.strain
-    if shown is None:
-        reason = Unknown(UNGAUGED if result.case.scene.save.gauge is None else NO_SECTIONS)
-        return Readings(dent_depth=depth, dent_volume=volume, gauge_highest=reason, gauge_lowest=reason)
-    return Readings(
-        dent_depth=depth,
-        dent_volume=volume,
-        gauge_highest=float(shown.max()),
-        gauge_lowest=float(shown.min()),
-    )
+    highest: Num = Unknown(UNGAUGED if result.case.scene.save.gauge is None else NO_SECTIONS)
+    lowest = highest
+    if result.strain is not None:
+        highest, lowest = float(result.strain.max()), float(result.strain.min())
+    return Readings(dent_depth=depth, dent_volume=volume, gauge_highest=highest, gauge_lowest=lowest)
 
 
 def _held(reduction: Reduction, case: Case) -> str:

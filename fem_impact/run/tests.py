@@ -49,7 +49,7 @@ def _contact_time(outcome: Outcome) -> Estimate:
     intervals = outcome.contact.intervals
     if isinstance(intervals, Unknown):
         return intervals, None
-    return sum(one.end - one.start for one in intervals), None
+    return sum(one.duration for one in intervals), None
 
 
 def _depth(outcome: Outcome) -> Estimate:
