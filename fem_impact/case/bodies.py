@@ -98,6 +98,11 @@ class Bodies:
             spans=self.spans,
         )
 
+    @property
+    def metals(self) -> dict[str, Material]:
+        """The materials that touch, by body."""
+        return {"rod": self.contact.rod, "barrier": self.contact.barrier}
+
     def metal_at(self, z: float) -> tuple[Material, bool]:
         """Return the projectile's material at ``z``, m, from its tip, and whether it may yield there."""
         parts = [part for part in self.rod.segments if z <= part.to] or list(self.rod.segments[-1:])

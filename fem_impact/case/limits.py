@@ -1,7 +1,6 @@
 """Say where a scene leaves what was measured, so that nobody reads a prediction as a comparison."""
 
 import math
-from collections.abc import Collection
 from dataclasses import replace
 
 from fem_impact.case.bodies import Bodies
@@ -51,23 +50,23 @@ def scene_limitations(bodies: Bodies, meshed_through: bool) -> tuple[Limitation,
 
     ``meshed_through`` says whether a plate that bends is meshed through its thickness.
     """
-    scene, active = bodies.scene, bodies.effects
-    mesh = scene.projectile.own_mesh
+    scene, mesh = bodies.scene, bodies.scene.projectile.own_mesh
     speed = round(math.hypot(scene.relative.v_n, scene.relative.v_t), 3)
     unmeasured = limitations(
         "range",
-        _outside(scene.projectile.length, LENGTHS, "length", "length"),
+        _outside(scene.projectile.length, LENGTHS, "length"),
         _section(scene),
-        _outside(speed, SPEEDS, "speed", "speed"),
-        _outside(abs(scene.impact.angle), ANGLES, "angle", "angle"),
+        _outside(speed, SPEEDS, "speed"),
+        _outside(abs(scene.impact.angle), ANGLES, "angle"),
         _fall(scene),
         TURNING if scene.impact.omega else "",
         _steels(scene),
         _barrier(scene),
-        _surface(scene, active),
+        _surface(bodies),
         _sliding(bodies),
     )
-    missing = [name for name in ("friction", "rod-plasticity", "barrier-elastoplastic") if name not in active]
+    needed = "friction", "rod-plasticity", "barrier-elastoplastic"
+    missing = [name for name in needed if name not in bodies.effects]
     masses = [mesh.masses(own)[1] for own in (True, False)] if mesh is not None else []
     idealised = limitations(
         "model",
@@ -121,13 +120,15 @@ def _sliding(bodies: Bodies) -> str:
     return f"beyond the law of friction, whose last value is used: {', '.join(beyond)}" if beyond else ""
 
 
-def _outside(value: float, ends: tuple[float, float], name: str, dimension: str) -> str:
+def _outside(value: float, ends: tuple[float, float], dimension: str) -> str:
     low, high = (format_quantity(end, dimension) for end in ends)
     slack = 1e-9 * abs(ends[1])
     if ends[0] - slack <= value <= ends[1] + slack:
         return ""
     number, unit = format_quantity(value, dimension).split(" ", 1)
-    return f"outside the measured range: {name} {plain(float(number), 4)} {unit}, measured {low} to {high}"
+    return (
+        f"outside the measured range: {dimension} {plain(float(number), 4)} {unit}, measured {low} to {high}"
+    )
 
 
 def _section(scene: Scene) -> str:
@@ -172,13 +173,12 @@ def _barrier(scene: Scene) -> str:
     return f"outside the measured range: {' or '.join(unlike)}" if unlike else ""
 
 
-def _surface(scene: Scene, active: Collection[str]) -> str:
-    known = library.surfaces().values()
-    bare = replace(scene.surface, sliding_law=None)
-    told = bare in known or scene.surface.state == "pair"  # of which an input says more
-    if told or "friction" not in active:
+def _surface(bodies: Bodies) -> str:
+    stated = bodies.scene.surface
+    known = replace(stated, sliding_law=None) in library.surfaces().values()
+    if known or stated.state == "pair" or "friction" not in bodies.effects:  # of a pair an input says more
         return ""
-    f, source = scene.surface.friction, scene.surface.source
+    f, source = stated.friction, stated.source
     return f"friction f = {f:g} is not the value of a shipped state of the surface ({source})"
 
 

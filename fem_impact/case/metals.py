@@ -31,7 +31,7 @@ def flow_stresses(bodies: Bodies) -> dict[str, list[float]]:
     """Return the flow stress, Pa, of each body that yields, at `TABOR_STRAIN`: at rest and at ``RATES``."""
     return {
         body: [float(flow) * (1 + gain) for gain in (0.0, *(rate_gain(metal, rate) for rate in RATES))]
-        for body, metal in _metals(bodies).items()
+        for body, metal in bodies.metals.items()
         if YIELDS[body] in bodies.effects
         for flow in [hardening_of(metal).flow_stress(TABOR_STRAIN)]
     }
@@ -40,7 +40,7 @@ def flow_stresses(bodies: Bodies) -> dict[str, list[float]]:
 def unknowns(bodies: Bodies) -> tuple[str, ...]:
     """Return what materials do not say and the model would use, a sentence each; heat, one number, last."""
     under = [("barrier", metal) for _, metal in bodies.barrier.strata[1:]]
-    of_metals = [_body(body, metal, bodies) for body, metal in (*_metals(bodies).items(), *under)]
+    of_metals = [_body(body, metal, bodies) for body, metal in (*bodies.metals.items(), *under)]
     stated = materials_of(bodies.scene).items()
     unlikely = [ask(key, metal) for key, metal in stated for ask in (_unlike_solids, _unlike_hardness)]
     ambient = _ambient(bodies.scene.heating)
@@ -65,10 +65,6 @@ def _ambient(heating: Heating) -> str:
         "stated, those of shipped materials at 20 degC, so that forces, dents and e at that temperature are "
         "not known. State strengths and E of that temperature."
     )
-
-
-def _metals(bodies: Bodies) -> dict[str, materials.Material]:
-    return {"rod": bodies.contact.rod, "barrier": bodies.contact.barrier}
 
 
 def _body(body: str, metal: materials.Material, bodies: Bodies) -> str:
@@ -150,7 +146,7 @@ def _breaking(metal: materials.Material, pressure: float) -> str:
 
 def _friction(bodies: Bodies) -> str:
     """Return where a friction comes from that the scene does not state, or is of another pair."""
-    surface, metals = bodies.scene.surface, _metals(bodies)
+    surface, metals = bodies.scene.surface, bodies.metals
     if "friction" not in bodies.effects or surface.state == "custom":
         return ""
     low, high = surface.friction_low, surface.friction_high
@@ -194,7 +190,7 @@ def _heat(bodies: Bodies) -> str:
             f"of that to heating.ignition, {format_quantity(heating.ignition, 'temperature')}. With "
             f"effects = {json.dumps([*effects, 'contact-heating'])} finite elements follow it."
         )
-    metals, known = _metals(bodies), melting(bodies.scene)
+    metals, known = bodies.metals, melting(bodies.scene)
     unmelted = [body for body in metals if body not in known]
     if not unmelted or flash_number(bodies) < HOT:
         return ""

@@ -8,10 +8,9 @@ from fem_impact.physics.flash import Half, Halves, expected_rise
 
 def thermal(bodies: Bodies) -> dict[str, float | None]:
     """Return conductivity and heat capacity of both bodies by the key of [heating] that overrides them."""
-    metals = {"rod": bodies.contact.rod, "barrier": bodies.contact.barrier}
     of_metals = {
         f"{body}_{key}": getattr(metal, key)
-        for body, metal in metals.items()
+        for body, metal in bodies.metals.items()
         for key in ("conductivity", "heat_capacity")
     }
     of_scene = {key: getattr(bodies.scene.heating, key) for key in of_metals}
@@ -28,9 +27,7 @@ def halves(bodies: Bodies) -> Halves:
     """
     values = thermal(bodies)
     if missing := [key for key, value in values.items() if value is None]:
-        forced = (
-            ", or leave contact-heating out of effects" if "contact-heating" in bodies.scene.effects else ""
-        )
+        forced = ", or leave contact-heating out of effects" * ("contact-heating" in bodies.scene.effects)
         problem = "is not known: the material states none."
         wanted = (f"{key}, {'J/(kg K)' if key.endswith('capacity') else 'W/(m K)'}" for key in missing)
         remedy = f"State {' and '.join(wanted)}, in [heating]{forced}."
