@@ -32,6 +32,16 @@ def upside_down(line: FloatArray) -> FloatArray:
     return np.stack([line[::-1, 0], line[-1, 1] - line[::-1, 1]], axis=1)
 
 
+def without_shoulders(
+    line: FloatArray, bore: FloatArray, across: int
+) -> tuple[FloatArray, FloatArray, list[float]]:
+    """Return both surfaces, (k, 2) and (j, 2) (rho, z), m, with cones for shoulders, and the heights, m, of these."""
+    beside = np.interp(bore[:, 1], line[:, 1], line[:, 0])
+    outer, of_outline = eased(line, 2.0 * line[:, 0] / across)
+    inner, of_bore = eased(bore, 2.0 * beside / across)
+    return outer, inner, [*of_outline, *of_bore]
+
+
 def _sharp(line: FloatArray, pitch: float) -> FloatArray:
     """Return the outline without the rounding at the edge of the face at z = 0, if there is one."""
     first = int(np.flatnonzero(line[:, 1] <= 0.0)[-1])
@@ -181,7 +191,7 @@ def revolved(line: FloatArray, bore: FloatArray | None, across: int) -> Revolved
     Parameters
     ----------
     line, bore : (k, 2) float64, m
-        Outer and inner surface; a shoulder of the outer one becomes a cone, see `meshes.shoulders.eased`.
+        Outer and inner surface; their shoulders become cones, see `meshes.shoulders.eased`.
     across : int
         Cells over the diameter, at least: a stack, see `is_stack`, has as many as make cells about as wide as
         half its thickness, and as make it round beside its layers and its wall.
@@ -205,8 +215,8 @@ def revolved(line: FloatArray, bore: FloatArray | None, across: int) -> Revolved
         )
     face, tail = line[:, 1] <= 0.0, line[:, 1] >= line[-1, 1]
     line = np.concatenate([line[:1], line[face][1:][-1:], line[~face & ~tail], line[tail][:1]])
-    line, _ = eased(line, across)
     inner = np.zeros((0, 2)) if bore is None else np.array(bore, np.float64)
+    line, inner, _ = without_shoulders(line, inner, across)
     exact, radius = line, float(line[:, 0].max())
     if line[-1, 0] > 0.0 and line[-1, 1] < (2.0 / 3.0 + 0.6 / across) * radius:  # no nose fits in
         line = without_roundings(line, 2.0 * radius / across)

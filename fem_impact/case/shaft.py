@@ -9,7 +9,7 @@ from fem_impact.case.bodies import Bodies
 from fem_impact.physics.beam import prongs
 from fem_impact.physics.contact import section_frequency
 from fem_impact.physics.stepped_beam import sections
-from meshes import shoulders
+from meshes.revolved import without_shoulders
 from rigid import Faceted, Turned
 
 RIDGE = 0.25  # of the diameter, length of the shortest edge of a mesh that lands along a line
@@ -138,12 +138,14 @@ def rings_through(bodies: Bodies) -> str:
 
 def coned(bodies: Bodies) -> str:
     """Say where meshes have a cone in place of a shoulder; empty of a body without one."""
-    if not isinstance(bodies.body, Turned):
+    body = bodies.body
+    if not isinstance(body, Turned):
         return ""
-    _, heights = shoulders.eased(bodies.body.outline, bodies.scene.across)
+    bore = np.zeros((0, 2)) if body.bore is None else body.bore
+    *_, heights = without_shoulders(body.outline, bore, bodies.scene.across)
     places = " and ".join(f"{z * 1e3:.3g} mm" for z in heights)
     are = ("shoulder {} from the tip is a cone", "shoulders {} from the tip are cones")[len(heights) > 1]
-    return f"in a mesh the {are.format(places)} of 63 degrees" if places else ""
+    return f"in a mesh the {are.format(places)} of 63 degrees or less" if places else ""
 
 
 def lands_on_ridge(bodies: Bodies) -> bool:

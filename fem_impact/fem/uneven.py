@@ -21,6 +21,7 @@ def uneven(meshed: MeshedBodies) -> str:
     side = "behind" if off > 0 else "before"
     return (
         f"the mass centre of the mesh lies {1e3 * abs(off):.2g} mm {side} that of the body: its cells do not "
-        "follow a step of the outline or bore, and the mass that they miss is put at the tip. Slope the step "
-        "over two cells or more, or give the body as a mesh (projectile.mesh)."
+        "follow a collar, groove or step of the outline or bore, and the mass that they miss is put at the "
+        "tip. Make it longer, take more cells (accuracy.across), or give the body as a mesh "
+        "(projectile.mesh)."
     )
