@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 from math import ceil, log2
 from typing import Any, Protocol, TypeVar
 
-from fem_impact.answers.refine.chain import MOST_FINER, LevelChain
+from fem_impact.answers.refine.chain import LevelChain
 from fem_impact.answers.refine.forecast import about_s, for_levels_s, turns
 from fem_impact.answers.refine.level import LevelRun
 from fem_impact.answers.refine.level_meshes import LevelMeshes
@@ -122,6 +122,7 @@ def by_levels(
     return estimated, *_open(levels, over, before_s, needed)
 
 
+FAR = 1e6  # times too large: as far as an error is told to be
 NO_ANSWER = "Finite elements have no answer here"
 STOPPED = "It was stopped by hand after {} levels of finite elements; those count."
 
@@ -149,7 +150,7 @@ def _open(levels: LevelChain, over: float | None, before_s: float, needed: int) 
 
 def halvings(over: float) -> int:
     """Return how many levels bring down an error so many times too large: each about halves it."""
-    return ceil(log2(min(max(2.0, over), 2.0**MOST_FINER)))
+    return ceil(log2(min(max(2.0, over), FAR)))
 
 
 def with_budget(budget_s: int | None) -> Means:

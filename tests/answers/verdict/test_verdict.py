@@ -738,6 +738,18 @@ def test_an_error_far_too_large_asks_for_as_many_levels_as_bring_it_down(monkeyp
     assert found.more == {"fidelity": "solid", "budget_s": budget_s}
 
 
+@pytest.mark.long
+def test_a_change_on_the_limit_is_no_reason_for_a_larger_budget(monkeypatch):
+    """It named 16000 s, after which the answer would be as open as before."""
+    meshed(monkeypatch, [0.0, 0.03])
+    monkeypatch.setattr(LevelChain, "_next", property(lambda chain: 2 if len(chain.done) < 2 else None))
+    found = assess(load("t5b"), "solid", tolerance=0.0663, budget_s=1e5)
+    assert found.answer == "undecided" and found.more == {}
+    (note,) = found.notes
+    assert re.fullmatch(r"No levels that can be made decide: each .* to be halved 1\d times\.", note)
+    assert "which no model tells here; or a change of" in found.missing
+
+
 def test_inclinations_without_an_answer_are_named_and_leave_the_worst_open(monkeypatch):
     real = vibration.modal_pair
 
