@@ -35,7 +35,7 @@ def upside_down(line: FloatArray) -> FloatArray:
 def without_shoulders(
     line: FloatArray, bore: FloatArray, across: int
 ) -> tuple[FloatArray, FloatArray, list[float]]:
-    """Return both surfaces, (k, 2) and (j, 2) (rho, z), m, with cones for shoulders, and the heights of these."""
+    """Return both surfaces, (k, 2) and (j, 2) (rho, z), m, with cones for shoulders, and their heights."""
     beside = np.interp(bore[:, 1], line[:, 1], line[:, 0])
     outer, of_outline = eased(line, 2.0 * line[:, 0] / across)
     inner, of_bore = eased(bore, 2.0 * beside / across)
