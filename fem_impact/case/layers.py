@@ -29,6 +29,7 @@ Layers of the barrier's own material change e of a steel rod on aluminium by at 
 AROUND = 1.5
 # share of a free barrier's mass that its block has at most, and how many times smaller its margin is tried
 MOST_OF_BARRIER, SMALLER = 0.5, 0.8
+MOST_CELLS = 3e5  # largest number of cells of a block before refinement: about 1 GB
 UNDER = 2.0  # rows of the base's cells under the last layer, at least
 
 
@@ -151,6 +152,9 @@ def require_layers(bodies: Bodies, fidelity: str) -> None:
         share = float((np.diff(after) / np.diff(before)).min())
         if share < FLATTEST:
             raise _too_thin(bodies, zones, share)
+        low, high = block_of(bodies, zones)
+        if (count := float(np.prod((high - low) / zones.base))) > MOST_CELLS:
+            raise _too_deep(bodies, zones.base, count)
 
 
 def _too_thin(bodies: Bodies, zones: AnyZones, share: float) -> SceneError:
@@ -163,6 +167,19 @@ def _too_thin(bodies: Bodies, zones: AnyZones, share: float) -> SceneError:
         key=f"barrier.layers[{thin + 1}].thickness",
         value=f"{thickness * 1e3:.3g} mm",
         remedy=f"Give accuracy.across = {max(across, bodies.scene.across + 2)}, or a thicker layer.",
+    )
+
+
+def _too_deep(bodies: Bodies, base: float, count: float) -> SceneError:
+    number, last = len(bodies.barrier.layers), bodies.barrier.layers[-1]
+    depth, wide = 1e3 * float(interfaces(bodies)[-1]), 2e3 * bodies.estimate.radius
+    return SceneError(
+        f"makes a block of {count:.1g} cells, {base * 1e3:.3g} mm wide, down to the base under the layers, "
+        f"{depth:.3g} mm deep.",
+        key=f"barrier.layers[{number}].thickness",
+        value=f"{1e3 * last.thickness:.3g} mm",
+        remedy=f'Give "{last.material.name}" as barrier.material and leave this layer out: a contact of about '
+        f"{wide:.2g} mm does not feel what lies so deep. Or give a thinner layer.",
     )
 
 

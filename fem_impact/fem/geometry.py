@@ -10,7 +10,7 @@ import meshes
 from fem_impact.arrays import Array, Bools, Ints
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.cells import body_cell
-from fem_impact.case.layers import block_of, moved_rows
+from fem_impact.case.layers import MOST_CELLS, block_of, moved_rows
 from fem_impact.case.plates import widening
 from fem_impact.case.recorded import AnyZones, RecordedZones
 from fem_impact.case.size import no_rest
@@ -22,7 +22,6 @@ from rigid import Projectile, Turned
 
 POINTS = 2  # mass points that replace the cylinder behind the nose of a rigid rod
 _OTHERWISE = "Give a longer rod, another accuracy.tip_size or a larger accuracy.across."
-MOST_CELLS = 3e5  # largest number of cells of a block before refinement: about 1 GB
 
 
 @dataclass(frozen=True, slots=True)

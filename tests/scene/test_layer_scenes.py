@@ -65,6 +65,11 @@ def test_a_written_scene_reads_back_equal_and_layers_are_part_of_it():
             {},
             r"layers\[1\].thickness = .0.3 mm.: fits no row of .* cells, 2.38 mm wide: .*across = \d+",
         ),
+        (
+            [PLATE, {**PLATE, "thickness": "120 mm"}],
+            {},
+            r"layers\[2\].thickness = .120 mm.: makes a block .* 122 mm deep. Give .steel-4340. as barrier.material",
+        ),
     ],
 )
 def test_what_cannot_be_layered_is_refused_with_what_to_do(layers, more, reason):
