@@ -178,8 +178,8 @@ def _too_deep(bodies: Bodies, base: float, count: float) -> SceneError:
         f"{depth:.3g} mm deep.",
         key=f"barrier.layers[{number}].thickness",
         value=f"{1e3 * last.thickness:.3g} mm",
-        remedy=f'Give "{last.material.name}" as barrier.material and leave this layer out: a contact of about '
-        f"{wide:.2g} mm does not feel what lies so deep. Or give a thinner layer.",
+        remedy=f'Give "{last.material.name}" as barrier.material and leave this layer out: a contact of '
+        f"about {wide:.2g} mm does not feel what lies so deep. Or give a thinner layer.",
     )
 
 
