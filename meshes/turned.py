@@ -5,6 +5,7 @@ a lid, a short pin. Chamfers are rows of their own.
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -36,6 +37,7 @@ def turned(
     planes: Sequence[float] = (),
     contact: FloatArray | None = None,
     buffer: int = 2,
+    flush: bool = False,
 ) -> RodMesh:
     """Mesh half a body of revolution.
 
@@ -56,6 +58,9 @@ def turned(
     contact : (3,) float64, m, optional
         Point of the surface, by default the centre of the last zone: where its shape allows it, it lies in
         the middle of a finest cell.
+    flush : bool
+        Whether the line of nodes in y = 0 on the side of the contact lies on the surface along all of the
+        body. Elsewhere sections have the area of the circle, so that their nodes stand out over it.
 
     Raises
     ------
@@ -77,6 +82,10 @@ def turned(
     exact = ((-np.inf, start), (low, high), (tail_start, np.inf))
     nodes = len(body.half.unit)
     points, cells, layer_of = _sections(body, heights, exact)
+    if flush and contact is not None:
+        (x, y), side = body.half.unit.T, np.sign(contact[0])
+        line = (body.half.radius > 1.0 - SAME) & (y == 0.0) & (x * side > 0.0)
+        points.reshape(len(heights), nodes, 3)[:, line, 0] = side * body.radius(heights)[:, None]
     for edge, row in ((body.line[1], 0), (body.line[-1], len(heights) - 1)):
         if body.is_stack and np.linalg.norm(closest_on(body.exact, edge[None]) - edge) > SAME * edge[0]:
             rim = row * nodes + np.flatnonzero(body.half.radius > 1.0 - SAME)  # it stands for a rounding
@@ -93,7 +102,8 @@ def turned(
                 below = below[:, TURNED]
             points = np.concatenate([points, more])
             parts.append((below, np.full(len(below), len(heights) if flipped else -1)))
-    return _finished(body, points, parts, heights, exact, zones, buffer)
+    made = _finished(body, points, parts, heights, exact, zones, buffer)
+    return replace(made, on_surface=((-np.inf, np.inf),)) if flush else made
 
 
 def contact_radius(

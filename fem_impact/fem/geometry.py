@@ -20,6 +20,7 @@ from fem_impact.scene.projectile import ProjectileSpec
 from meshes import Cloud, HexMesh, RodMesh, Zone
 from rigid import Projectile, Turned
 
+AHEAD = 1e-6  # of a cell of the body, by how much a node may lie lower than the place that touches first
 POINTS = 2  # mass points that replace the cylinder behind the nose of a rigid rod
 _OTHERWISE = "Give a longer rod, another accuracy.tip_size or a larger accuracy.across."
 
@@ -118,6 +119,8 @@ def _mesh(bodies: Bodies, zones: AnyZones, vibrating: bool) -> RodMesh:
     """Return the mesh of the rod, of its nose alone if it cannot vibrate."""
     turn, lowest = to_barrier_frame(bodies.mesh_inclination), bodies.lowest_point
     rod = _rod(bodies, lowest, zones.in_rod(lowest, turn))
+    if not bodies.rod.own_mesh and _lowest(rod, lowest, turn) < -AHEAD * body_cell(bodies):
+        rod = _rod(bodies, lowest, zones.in_rod(lowest, turn), flush=True)
     if isinstance(zones, RecordedZones) and zones.rod_rows:
         part = zones.pressed(rod.mesh, turn) & (material_numbers(bodies.rod, rod.mesh) == 0)
         rod = replace(rod, mesh=meshes.with_thin_rows(rod.mesh, part, zones.tip_size, zones.rod_rows))
@@ -162,8 +165,19 @@ def rest_points(x: float, z: float, k2: float) -> Array:
     return np.array([[x, 0.0, z - sqrt(k2)], [x, 0.0, z + sqrt(k2)]])
 
 
-def _rod(bodies: Bodies, lowest: Array, zones: Sequence[Zone | Cloud]) -> RodMesh:
-    """Return the mesh of the rod; raise SceneError where it is too short or thin for its cells."""
+def _lowest(rod: RodMesh, contact: Array, turn: Array) -> float:
+    """Return the height, m, of the lowest node of the rod over the place that touches first."""
+    return float(((rod.mesh.points - contact) @ turn[2]).min())
+
+
+def _rod(bodies: Bodies, lowest: Array, zones: Sequence[Zone | Cloud], flush: bool = False) -> RodMesh:
+    """Return the mesh of the rod, its side ``flush`` with the exact one where that nearly touches.
+
+    Raises
+    ------
+    SceneError
+        It is too short or thin for its cells.
+    """
     body, across = bodies.body, bodies.scene.across
     try:
         if own := bodies.rod.own_mesh:
@@ -179,14 +193,15 @@ def _rod(bodies: Bodies, lowest: Array, zones: Sequence[Zone | Cloud]) -> RodMes
                 planes=[end for end, _ in body.density],
                 contact=lowest,
                 buffer=BUFFER,
+                flush=flush,
             )
         assert isinstance(body, Projectile), "a body with facets has a mesh of its own"
-        if all(zone.corners()[:, 2].max() < body.z_side + body.diameter for zone in zones):
+        if not flush and all(zone.corners()[:, 2].max() < body.z_side + body.diameter for zone in zones):
             return meshes.rod(
                 body.meridian(), body.length, across, None, zones, contact=lowest, buffer=BUFFER
             )
         side = np.vstack([body.meridian(), [body.diameter / 2, body.length]])
-        return meshes.turned(side, across, zones, contact=lowest, buffer=BUFFER)
+        return meshes.turned(side, across, zones, contact=lowest, buffer=BUFFER, flush=flush)
     except meshes.MeshError as error:
         raise SceneError(f"cannot be meshed: {error}.", key="projectile", remedy=_OTHERWISE) from None
 
@@ -198,7 +213,7 @@ def _require_tip_first(points: Array, base: float, on_feet: bool) -> None:
     """
     tip = np.hypot(points[:, 0], 0.0 if on_feet else points[:, 1]) < 1.5 * base
     ahead = float(points[tip, 2].min() - points[:, 2].min())
-    if ahead > 1e-6 * base:
+    if ahead > AHEAD * base:
         raise SceneError(
             f"lets the meshed rod's side, a polygon, strike {ahead * 1e6:.2g} um before its tip.",
             key="impact.angle",
