@@ -25,11 +25,10 @@ class Separation:
 
     The free flight, rigid drift plus all modes, must keep the rod above the barrier for the ``horizon``, s.
     As long as its surface may be lower than the barrier's highest node, the tip in flight is compared with
-    the barrier's surface, with its crater, node by node. Where only the tip can touch in the model, ``tail``
-    (k, 3), m, holds the corners of the other end at the start: their strike is another impact. Where all of
-    the rod can touch, ``behind`` (m,) marks nodes of the rim in the half of the other end: its strike is
-    another impact as long as none of it has ``touched`` in this one. ``other_end`` is how much later, s, it
-    comes.
+    the barrier's surface, with its crater, node by node. Where the tail cannot touch in the model, ``tail``
+    (k, 3), m, holds the corners of the other end at the start: their strike is another impact. Where it can,
+    ``behind`` (m,) marks nodes of the rim in the half of the other end: its strike is another impact as long
+    as none of it has ``touched`` in this one. ``other_end`` is how much later, s, it comes.
     """
 
     moving: ClassVar[tuple[str, ...]] = ()
@@ -71,7 +70,9 @@ class Separation:
         flight = self.view.flight(state, self.model)
         half = self._half_strikes(state, motion, flight)
         ahead = min(self.horizon, self._tail_strikes(state, motion), half)
-        if not self._stays_away(state, motion, flight, max(ahead, self._sample)):
+        if not self._stays_away(
+            state, motion, flight, max(ahead, self._sample), half == ahead < self.horizon
+        ):
             return False
         self.finished = True
         self.reason = (
@@ -105,11 +106,14 @@ class Separation:
         alone = down[self.behind, first].any() and not down[~self.behind, first].any()
         return float(t[first]) if alone else np.inf
 
-    def _stays_away(self, state: State, motion: RigidMotion, flight: FreeVibration, until: float) -> bool:
-        """Return whether the flight of the next ``until``, s, has no contact."""
+    def _stays_away(
+        self, state: State, motion: RigidMotion, flight: FreeVibration, until: float, but_behind: bool
+    ) -> bool:
+        """Return whether the flight of the next ``until``, s, has no contact but that of the half behind."""
         t, contact = np.arange(0.0, until, self._sample), self.model.contact
         ground, x = self.model.ground, state.x
-        lowest, risen = self._rim_heights(state, motion, flight, t).min(axis=0), ground.risen(x)
+        rim, risen = self._rim_heights(state, motion, flight, t), ground.risen(x)
+        lowest = rim.min(axis=0)
         if not isinstance(contact, SurfaceContact):
             return bool(lowest.min() > risen)
         surface = contact.barrier.places
@@ -118,7 +122,9 @@ class Separation:
         carried = 0.0 if self.model.in_plate_frame else ground.rate(state.v, x, surface)
         margin = self.quiet * float(np.abs(state.v[surface[:, 2]] - carried).max())
         top = max(risen - base, float(ground.levelled(x[surface[:, 0]], x[surface[:, 2]], x).max()))
-        deep = t[lowest - base <= top + margin + contact.rod.sag]
+        near = top + margin + contact.rod.sag
+        closed = (rim[self.behind].min(axis=0) - base <= near) if but_behind else np.zeros(len(t), bool)
+        deep = t[(lowest - base <= near) & ~np.logical_or.accumulate(closed)]
         places, spin = contact.rod.places, ground.spin(state.v)
 
         def clearance(s: float) -> float:

@@ -142,7 +142,7 @@ class Watchers:
         stop = Separation(model, view, case.max_time, case.one_impact)
         if isinstance(model.contact, SurfaceContact) or model.rod_stiffness is None:
             stop.tail = _far_tail(case, model)
-        elif scene.impact.until == FIRST:  # all of the rod may touch; strikes of a followed body go on
+        if len(stop.tail) < 2 and scene.impact.until == FIRST:  # it may touch; a followed body goes on
             z, middle = model.geometry.rod.mesh.points[:, 2], 0.5 * case.bodies.body.length
             stop.behind = z[nodes_of(model.layout.rod, view.rim)] > middle
             stop.touched = lambda: bool((z[contact.rod[contact.last >= 0.0]] > middle).any())
