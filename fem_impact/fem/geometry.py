@@ -217,7 +217,7 @@ def _require_tip_first(points: Array, base: float, on_feet: bool) -> None:
         raise SceneError(
             f"lets the meshed rod's side, a polygon, strike {ahead * 1e6:.2g} um before its tip.",
             key="impact.angle",
-            remedy="Give a smaller angle or a larger accuracy.across.",
+            remedy="Give a smaller accuracy.tip_size, a smaller angle or a larger accuracy.across.",
         )
 
 

@@ -104,9 +104,7 @@ def test_a_face_that_lies_flat_is_meshed_as_a_whole(tmp_path):
 def test_a_rod_that_comes_down_nearly_flat_ends_before_its_tail_strikes(tmp_path):
     assert run_case("angle-89-block", tmp_path).verdict == "closed"
     assert Outcome.read(tmp_path / "angle-89-block" / "outcome.json").contact.strikes_again is True
-    coarse = run_case("angle-89-coarse", tmp_path)
-    assert coarse.verdict == "refused"
-    assert "before its tip" in coarse.reason
+    assert run_case("angle-89-coarse", tmp_path).verdict == "closed"
 
 
 @pytest.mark.parametrize("angle", [0.0, 0.5, 1.5, 1.57, -0.9, 3.0])
