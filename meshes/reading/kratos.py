@@ -21,7 +21,6 @@ SURFACES = (
     "QUADRI",
     "TRIANGLE",
 )
-REORDERED = {kind: ENDS_APART[kind] for kind in ("hexahedron20", "hexahedron27")}
 
 
 def kratos(path: Path) -> StoredMesh:
@@ -70,7 +69,7 @@ def kratos(path: Path) -> StoredMesh:
         elif kind is None:
             found.add_face(f"{len(nodes)} nodes that fills no volume", found.at(nodes), *named)
         else:
-            nodes = [nodes[k] for k in REORDERED.get(kind, range(len(nodes)))]
+            nodes = [nodes[k] for k in ENDS_APART.get(kind, range(len(nodes)))]
             found.solid(kind, nodes, f"a cell {number}", properties, *named)
     for number, (name, nodes) in conditions.items():
         found.add_face(name, found.at(nodes), *members["Conditions"].get(number, []))

@@ -12,6 +12,7 @@ import meshes
 from meshes import MeshError, own_body, read_own
 from meshes.fallen import as_they_are
 from meshes.hexahedra import as_hexahedra
+from meshes.quality import corner_jacobians
 from meshes.reading.read import stored_mesh
 from meshes.reading.stored import StoredMesh
 from meshes.reading.text import included
@@ -723,3 +724,20 @@ def test_a_wedge_given_as_a_hexahedron_of_20_nodes_keeps_the_middles_of_its_edge
     places = [np.unique(one.points[one.cells].reshape(-1, 3).round(9), axis=0) for one in (found, plain)]
     assert places[0] == pytest.approx(places[1])
     assert (found.points[:, 0].min(), len(found.cells)) == (-0.3, 6)
+
+
+def test_a_kratos_prism_of_15_nodes_has_its_upright_edges_before_the_upper_ones(tmp_path):
+    """As `Prism3D15` of Kratos lists them; in the order of VTK a straight prism was folded (-0.89)."""
+    corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [0, 1, 1]], float)
+    pairs = [(0, 1), (1, 2), (2, 0), (0, 3), (1, 4), (2, 5), (3, 4), (4, 5), (5, 3)]
+    points = [*corners, *(corners[list(pair)].mean(axis=0) for pair in pairs)]
+    nodes = "\n".join(f"{number} {x} {y} {z}" for number, (x, y, z) in enumerate(points, 1))
+    prism = " ".join(str(number) for number in range(1, 16))
+    path = tmp_path / "prism.mdpa"
+    path.write_text(
+        f"Begin Nodes\n{nodes}\nEnd Nodes\n"
+        f"Begin Elements SmallDisplacementElement3D15N\n1 0 {prism}\nEnd Elements\n"
+    )
+    found = stored_mesh(path)
+    cells = as_hexahedra(found.points, found.blocks)
+    assert corner_jacobians(cells.points[cells.cells]).min() > 0.5
