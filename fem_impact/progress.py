@@ -98,7 +98,8 @@ class CellMeter:
     def __call__(self, progress: Progress | CaseProgress | Notice) -> None:
         """Write over the line, at most five times a second; a notice gets a line of its own."""
         if isinstance(progress, Notice):
-            self._over(f"{progress.text}\n")
+            self._over(progress.text)
+            self._stream.write("\n")
             self._shown = ""
         elif self._clock() >= self._next:
             self._next = self._clock() + 0.2

@@ -144,3 +144,12 @@ def test_a_short_call_shows_nothing_in_a_notebook_and_a_long_one_clears_its_line
     )
     meter.close()
     assert screen.getvalue().split("\r")[-2:] == [" " * len(describe(CaseProgress("a", 1, 2, 3.0))), ""]
+
+
+def test_a_notice_in_a_notebook_leaves_nothing_of_the_line_before():
+    screen = io.StringIO()
+    meter = CellMeter(screen, first_s=0.0, clock=lambda: 1.0)
+    meter(CaseProgress("a long name", 1, 2, 100.0))
+    shown = screen.getvalue()
+    meter(Notice("hi"))
+    assert screen.getvalue()[len(shown) :] == f"\r{'hi':<{len(shown) - 1}}\n"
