@@ -17,10 +17,13 @@ def expected_shares(active: Iterable[str]) -> dict[str, float]:
     """Return the share of a step of each of the effects in a model that was measured.
 
     What each effect added to a step of t5b at its default mesh (``tests/benchmarks/effect_cost.py``) over the
-    sum of what the effects of this model added, and the rigid rod's nose: so about for other meshes.
+    sum of what the effects of this model added, and the rigid rod's nose: so about for other meshes. They are
+    added in the order of their names: a set has another one in each process.
     """
     added = _added()
-    took = {name: added[name] + added.get(UNDER.get(name, ""), 0.0) for name in active if name in added}
+    took = {
+        name: added[name] + added.get(UNDER.get(name, ""), 0.0) for name in sorted(active) if name in added
+    }
     whole = added["nose"] + sum(took.values())
     return {name: time / whole for name, time in took.items()}
 

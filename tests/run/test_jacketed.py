@@ -8,6 +8,7 @@ from own_bodies import box
 
 import meshes
 from fem_impact.case.case import Case
+from fem_impact.case.effects import damping
 from fem_impact.errors import SceneError
 from fem_impact.fem.body import MeshedBodies
 from fem_impact.physics.beam import bending_period, stretching_period
@@ -57,6 +58,13 @@ def closed_form(stated):
     pull = jacket.E * (area - inner) + core.E * inner
     bending = 4.730041**2 / (2 * np.pi * LENGTH**2) * np.sqrt(bend / line)
     return line * LENGTH, bending, np.sqrt(pull / line) / (2 * LENGTH)
+
+
+def test_a_core_that_states_a_loss_factor_damps_the_bar(tmp_path):
+    """It was damped as iron: only segments and the material that touches were asked."""
+    core = {"name": "viscous", "E": "70 GPa", "nu": 0.3, "rho": "2700 kg/m3", "loss_factor": 0.1}
+    bodies = Case.of(scene(jacketed(tmp_path, (6, 3, 20)), {"CORE": core}), "rigid").bodies
+    assert damping.states_loss(bodies) and damping.loss_factor(bodies) == 0.1
 
 
 @pytest.mark.long

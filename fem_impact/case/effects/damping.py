@@ -22,9 +22,7 @@ def states_loss(bodies: Bodies) -> bool:
 
 def _stated(bodies: Bodies) -> list[float]:
     """Return the loss factors that the rod's materials state."""
-    rod = bodies.rod
-    metals = [part.material for part in rod.segments] or [rod.material]
-    return [metal.loss_factor for metal in metals if metal.loss_factor is not None]
+    return [metal.loss_factor for metal in bodies.rod.materials if metal.loss_factor is not None]
 
 
 def number(bodies: Bodies) -> float:
