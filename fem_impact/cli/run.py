@@ -22,7 +22,7 @@ from fem_impact.outcome.ground import moves, on_the_ground
 from fem_impact.outcome.groups import WRONG_NUMBERS
 from fem_impact.outcome.keys import Key, Unknown, or_none, why_unknown
 from fem_impact.outcome.record import KEY_TABLE, Outcome
-from fem_impact.outcome.said import HEATING, errors_said, floor_said, heat_said
+from fem_impact.outcome.said import HEATING, MOTION, errors_said, floor_said, heat_said
 from fem_impact.outcome.shares import ABOVE, ADDED, HEATS, IF_ON, EnergyShare, above_modes, shares
 from fem_impact.outcome.strikes import SHOWN, spread_table, strikes_table, told
 from fem_impact.progress import clock_text
@@ -34,7 +34,6 @@ from fem_impact.tables.text import plain, wrapped
 if TYPE_CHECKING:
     from fem_impact.answers.friction_spread import FrictionSpread
     from fem_impact.case.case import Case
-    from fem_impact.case.size import RunSize
     from fem_impact.outcome.groups import Energy
 
 
@@ -59,9 +58,12 @@ def run(options: Options) -> int:
         problem = "is for several meshes, and the scene asks for one."
         raise UsageError(problem, key="--budget", remedy="Leave it out, or accuracy.levels.")
     case = compiled(scene, options.fidelity or scene.strikes.first)
-    if case.fidelity == "solid" and not options.quiet:
-        sys.stderr.write(_long_run(case.size))
-    out = checked_out(options.out or Path("results") / _usual_name(scene, options))
+    if case.fidelity == "solid" and not options.quiet and case.size.time > LONG:
+        takes = f"{clock_text(case.size.time)} ({size_text(case.size)})"
+        sys.stderr.write(f"This run takes about {takes}; a larger tip_size is quicker.\n")
+    name = f"{scene.id}-{digest(scene)[:8]}" if options.changes else scene.id
+    name += f"-{options.fidelity}" if options.fidelity not in ("", "solid") else ""
+    out = checked_out(options.out or Path("results") / name)
     if options.resume and not is_resumable(out):
         sys.stderr.write(f"fem-impact: {out} holds no checkpoint: the run starts at the beginning\n")
     try:
@@ -131,30 +133,9 @@ def _say_screening(case: Case, options: Options) -> None:
     changes = [word for change in options.changes for word in ("--set", change)]
     bodies = Case(case.scene).bodies if case.fidelity == "modal" else case.bodies
     titled = screening_lines(screening(bodies), shlex.join([options.scene, *changes]))
-    lines = lines_of(titled, indent="")
-    sys.stdout.write("\n".join(lines) + "\n")
+    sys.stdout.write("\n".join(lines_of(titled, indent="")) + "\n")
 
 
-def _long_run(size: RunSize) -> str:
-    if size.time <= LONG:
-        return ""
-    return (
-        f"This run takes about {clock_text(size.time)} ({size_text(size)}); a larger tip_size is quicker.\n"
-    )
-
-
-def _usual_name(scene: Scene, options: Options) -> str:
-    """Return the id, with 8 digits of the digest of a changed scene and the fidelity if not solid."""
-    name = f"{scene.id}-{digest(scene)[:8]}" if options.changes else scene.id
-    return name if options.fidelity in ("", "solid") else f"{name}-{options.fidelity}"
-
-
-_MOTION = (
-    ("impulse ratio mu", "mu", ""),
-    ("V_n after", "V_n_m_per_s", "m/s"),
-    ("V_t after", "V_t_m_per_s", "m/s"),
-    ("Omega after", "Omega_rad_per_s", "rad/s"),
-)
 _BARRIER = (
     ("V_n of the barrier after", "V_bn_m_per_s", "m/s"),
     ("V_t of the barrier after", "V_bt_m_per_s", "m/s"),
@@ -177,20 +158,18 @@ def print_outcome(
     ``spread``: what the interval of friction changes, told beside each number. ``named`` calls the body of a
     label what it is.
     """
-    lines = (
-        [*wrapped(f"At the right, in the unit of its line: {spread.said}"), ""]
-        if spread and spread.said
-        else []
-    )
-    rows = _motion_rows(outcome, own_tests)
-    lines += [_motion_line(outcome, *row, spread) for row in rows]
+    lines = []
+    if spread and spread.said:
+        lines = [*wrapped(f"At the right, in the unit of its line: {spread.said}"), ""]
+    motion = [(label, KEY_TABLE[name], unit) for label, name, unit in _motion_rows(outcome, own_tests)]
+    lines += [_line(label, outcome.told(key), unit, _changed(spread, key)) for label, key, unit in motion]
     wrong = [one for one in outcome.validity.limitations if one.kind in WRONG_NUMBERS]
     lines += ["", *limitation_lines(wrong)] if wrong else []
     of = "" if isinstance(outcome.validity.mesh_limit, Unknown) else ", extrapolated from the levels"
     gravity = or_none(ADDED.of(outcome.energy))
     added = "" if gravity is None else f", to which gravity added {outcome.told(ADDED.key, 100.0)} %"
     seen = " as seen from the barrier" if moves(outcome) else ""
-    lines += ["", *wrapped(f"of the initial energy{seen}, E_0 = {_number(outcome.energy.E_0)} J{added}{of}:")]
+    lines += ["", *wrapped(f"of the initial energy{seen}, E_0 = {outcome.energy.E_0:.4g} J{added}{of}:")]
     # the keys of the listed shares of E_0 by their labels
     energy = outcome.energy
     listed = {
@@ -216,8 +195,9 @@ def print_outcome(
         _line(label, outcome.told(key), key.unit, _changed(spread, key)) for label, key in contact.items()
     ]
     lines += [f"  {sentence}" for sentence in floor_said(outcome)]
-    lines += _accuracy_lines(outcome, target_of)
-    told = {**{label: KEY_TABLE[name] for label, name, _ in rows}, **listed, HEATING: HEATS, **contact}
+    if said := errors_said(outcome, target_of):
+        lines += ["", *wrapped(said[0]), *(f"  {sentence}" for sentence in said[1:])]
+    told = {**{label: key for label, key, _ in motion}, **listed, HEATING: HEATS, **contact}
     if not isinstance(outcome.heat.power, Unknown):  # the heat was followed
         told["flash temperature"] = FLASH
     notes = why_unknown({label: key.of(outcome) for label, key in told.items()})
@@ -232,7 +212,7 @@ def _motion_rows(outcome: Outcome, own_tests: bool) -> list[tuple[str, str, str]
     """Return label, key and unit of what is told of the motion; of the barrier's only if it moves."""
     stated = outcome.restitution.tests_state_arms
     arms, key = ("tests'" if own_tests else "paper's", "e_paper") if stated else ("tip's", "e_edge")
-    rows = [(f"restitution e ({arms} arms)", key, ""), *_MOTION]
+    rows = [(f"restitution e ({arms} arms)", key, ""), *MOTION]
     barrier = outcome.barrier
     if any(or_none(v) != 0 for v in (barrier.v_bn, barrier.v_bt, barrier.V_bn, barrier.V_bt)):
         rows += _BARRIER
@@ -248,25 +228,14 @@ def _label(share: EnergyShare, energy: Energy) -> str:
     return f"elastic energy left in {body}" if elastic else share.label
 
 
-def _accuracy_lines(outcome: Outcome, target_of: str | None) -> list[str]:
-    """Return the sentences on the errors, after an empty line; nothing where there are none."""
-    said = errors_said(outcome, target_of)
-    return ["", *wrapped(said[0]), *(f"  {sentence}" for sentence in said[1:])] if said else []
-
-
-def _motion_line(outcome: Outcome, label: str, name: str, unit: str, spread: FrictionSpread | None) -> str:
-    key = KEY_TABLE[name]
-    return _line(label, outcome.told(key), unit, _changed(spread, key))
-
-
 def _share(outcome: Outcome, key: Key) -> str:
     """Return a share in per cent as text."""
     value, band = outcome.estimate(key)
-    tiny = not isinstance(value, Unknown) and band is None and 0 < abs(value) < 1e-5
-    if tiny:
+    if not isinstance(value, Unknown) and band is None and 0 < abs(value) < 1e-5:
         return "under 0.001"
-    told = outcome.told(key, 100.0)
-    return plain(100 * value, 2) if key is RESIDUAL and not isinstance(value, Unknown) else told
+    if key is RESIDUAL and not isinstance(value, Unknown):
+        return plain(100 * value, 2)
+    return outcome.told(key, 100.0)
 
 
 def _changed(spread: FrictionSpread | None, key: Key, scale: float = 1.0) -> str:
@@ -277,10 +246,6 @@ def _line(label: str, told: str, unit: str, spread: str = "") -> str:
     """Return a line of a number, its unit, and what friction changes of it."""
     unit = "" if told == "not known" else unit
     return f"  {label:<31}{told:>19} {unit:<6}{spread}".rstrip()
-
-
-def _number(value: float) -> str:
-    return f"{value:.4g}"
 
 
 def print_strikes(outcome: Outcome, options: Options) -> None:

@@ -36,10 +36,16 @@ def live(picture: Picture) -> dict[str, Any]:
     format; ``legend`` holds a sign, its colour and a label for each name; ``columns`` and ``caption`` are
     those of the picture. Labels are HTML.
     """
+    named = {
+        series.label: [LOOKS[series.drawn]["sign"], colour_of(series.colour, at), markup(series.label)]
+        for panel in reversed(picture.panels)
+        for at, series in reversed([*enumerate(panel.series)])
+        if series.label
+    }
     return {
         "caption": markup(picture.caption),
         "columns": max(1, min(picture.columns, len(picture.panels))),
-        "legend": _legend(picture),
+        "legend": [*reversed(named.values())] if len(named) > 1 else [],
         "panels": [
             {
                 "title": markup(panel.title),
@@ -56,16 +62,6 @@ def live(picture: Picture) -> dict[str, Any]:
     }
 
 
-def _legend(picture: Picture) -> list[list[str]]:
-    named = {
-        series.label: [LOOKS[series.drawn]["sign"], colour_of(series.colour, at), markup(series.label)]
-        for panel in reversed(picture.panels)
-        for at, series in reversed([*enumerate(panel.series)])
-        if series.label
-    }
-    return [*reversed(named.values())] if len(named) > 1 else []
-
-
 def _height(panel: Panel) -> int:
     if panel.rows:
         return 28 * len(panel.rows) + (90 if panel.x else 66)
@@ -73,8 +69,7 @@ def _height(panel: Panel) -> int:
 
 
 def _trace(series: Series, at: int, panel: Panel) -> dict[str, Any]:
-    colour = colour_of(series.colour, at)
-    label = markup(series.label)
+    colour, label = colour_of(series.colour, at), markup(series.label)
     trace: dict[str, Any] = {"x": numbers(series.x, DIGITS), "y": numbers(series.y, DIGITS), "name": label}
     trace |= {"hovertemplate": _hover(label, series, panel), "showlegend": False}
     if series.drawn == "bars":
@@ -91,16 +86,14 @@ def _trace(series: Series, at: int, panel: Panel) -> dict[str, Any]:
     if series.drawn == "area":
         trace |= {"fillcolor": colour}
     if series.band is not None:
-        pairs = zip(
-            numbers(series.x if panel.horizontal else series.y), numbers(half_widths(series)), strict=True
-        )
+        values, halves = series.x if panel.horizontal else series.y, half_widths(series)
         trace["customdata"] = [
             ""
             if value is None
             else plain(value, 4)
             if half is None
             else with_band(value, half, *series.ends).replace("+-", "±")
-            for value, half in pairs
+            for value, half in zip(numbers(values), numbers(halves), strict=True)
         ]
         below, above = (numbers(side, DIGITS) for side in error_bars(series, panel.horizontal))
         band: dict[str, Any] = {"type": "data", "array": above, "color": colour}
@@ -128,7 +121,6 @@ def _curves(panel: Panel) -> bool:
 
 
 def _map(shaded: ShadedMap, panel: Panel) -> dict[str, Any]:
-    hover = f"{markup(panel.x)}: %{{x:.4g}}<br>{markup(panel.y)}: %{{y:.4g}}<br>%{{z}}<extra></extra>"
     return {
         "type": "heatmap",
         "x": numbers(shaded.x, DIGITS),
@@ -142,16 +134,15 @@ def _map(shaded: ShadedMap, panel: Panel) -> dict[str, Any]:
             "thickness": 12,
             "outlinewidth": 0,
         },
-        "hovertemplate": hover,
+        "hovertemplate": f"{markup(panel.x)}: %{{x:.4g}}<br>{markup(panel.y)}: %{{y:.4g}}<br>%{{z}}"
+        "<extra></extra>",
     }
 
 
 def _layout(panel: Panel) -> dict[str, Any]:
     # the least and the largest x that the panel shows
-    places = [np.asarray(series.x, float) for series in panel.series] + [
-        np.array([mark.at for mark in panel.marks])
-    ]
-    x = np.concatenate(places)
+    at_marks = np.array([mark.at for mark in panel.marks])
+    x = np.concatenate([*(np.asarray(series.x, float) for series in panel.series), at_marks])
     x = x[np.isfinite(x)]
     low, high = (float(x.min()), float(x.max())) if len(x) else (0.0, 1.0)
     shapes = [_line("x", mark.at) for mark in panel.marks] + [_line("y", level.at) for level in panel.levels]
@@ -167,11 +158,8 @@ def _layout(panel: Panel) -> dict[str, Any]:
         "plot_bgcolor": "#fff",
         "barmode": "stack",
         "hovermode": "x unified" if _curves(panel) else "closest",
-        "xaxis": _axis(panel.x, panel.x_range, panel) | _names("x", panel) | _decades("x", panel),
-        "yaxis": _axis(panel.y, panel.y_range, panel)
-        | _names("y", panel)
-        | _decades("y", panel)
-        | ({"scaleanchor": "x"} if panel.equal else {}),
+        "xaxis": _axis("x", panel),
+        "yaxis": _axis("y", panel) | ({"scaleanchor": "x"} if panel.equal else {}),
         "shapes": shapes,
         "annotations": [
             *(
@@ -191,9 +179,10 @@ def _layout(panel: Panel) -> dict[str, Any]:
     }
 
 
-def _axis(label: str, ends: tuple[float, float] | None, panel: Panel) -> dict[str, Any]:
+def _axis(of: str, panel: Panel) -> dict[str, Any]:
+    """Return the axis ``of`` x or y."""
     axis: dict[str, Any] = {
-        "title": {"text": markup(label), "font": {"color": INK}},
+        "title": {"text": markup(getattr(panel, of)), "font": {"color": INK}},
         "automargin": True,
         "gridcolor": GRID,
         "linecolor": QUIET,
@@ -202,9 +191,10 @@ def _axis(label: str, ends: tuple[float, float] | None, panel: Panel) -> dict[st
         "zeroline": False,
         "exponentformat": "power",
     }
-    if ends:
+    if ends := getattr(panel, f"{of}_range"):
         axis["range"] = list(ends)
-    return axis | ({"type": "log"} if panel.logarithmic else {})
+    axis |= {"type": "log"} if panel.logarithmic else {}
+    return axis | _names(of, panel) | _decades(of, panel)
 
 
 def _decades(of: str, panel: Panel) -> dict[str, Any]:

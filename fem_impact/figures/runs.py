@@ -244,7 +244,10 @@ def waves_picture(waves: Waves) -> Picture:
         panel = Panel(title, ALONG, "time, µs", (front,), levels=levels, shaded=shaded)
         x_range, y_range = (0.0, 1e3 * waves.length), (0.0, 1e6 * float(times[-1]))
         panels.append(replace(panel, x_range=x_range, y_range=y_range))
-    return Picture("waves", CAPTION, tuple(panels), 2, _numbers(times, waves.position, *parts))
+    columns = (*np.meshgrid(times, waves.position, indexing="ij"), *parts)
+    rows = zip(*(column.ravel() for column in columns), strict=True)
+    numbers = Table.of(WAVE_COLUMNS, [[float(f"{x:.6g}") for x in row] for row in rows])
+    return Picture("waves", CAPTION, tuple(panels), 2, numbers)
 
 
 def draw_waves(result_dir: str | Path, out: str | Path | None = None) -> Path:
@@ -271,13 +274,6 @@ def _front(waves: Waves, words: str, speed: float, passes: int) -> Series:
     turns = np.arange(passes + 1)
     place, time = 1e3 * waves.length * (turns % 2), 1e6 * waves.length / speed * turns
     return Series(f"{words}, {speed:.0f} m/s", place, time, "dashed", "ink")
-
-
-def _numbers(times: np.ndarray, position: np.ndarray, stretch: np.ndarray, bending: np.ndarray) -> Table:
-    time, place = np.meshgrid(times, position, indexing="ij")
-    columns = (time, place, stretch, bending)
-    rows = zip(*(column.ravel() for column in columns), strict=True)
-    return Table.of(WAVE_COLUMNS, [[float(f"{x:.6g}") for x in row] for row in rows])
 
 
 UNSEEN = 1e-5

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from fem_impact.figures.panels import LOOKS, Mark, Panel, Picture, Series, ShadedMap, error_bars
+from fem_impact.figures.panels import LOOKS, Mark, Panel, Picture, Series, error_bars
 from fem_impact.files.atomic import atomic_path, write_text
 from fem_impact.tables.table import Cell, Table
 from fem_impact.tables.text import formula, plain
@@ -195,8 +195,12 @@ def _height(panel: Panel) -> float:
 def _panel(axes: Axes, panel: Panel) -> None:
     title = formula(panel.title).replace(" in ", "\nin ") if panel.rows else formula(panel.title)
     axes.set(title=title, xlabel=formula(panel.x), ylabel=formula(panel.y))
-    if panel.shaded:
-        _shade(axes, panel.shaded)
+    if shaded := panel.shaded:
+        colours: dict[str, Any] = {"cmap": "RdBu_r", "rasterized": True, "shading": "nearest"}
+        colours |= {"vmin": -shaded.limit, "vmax": shaded.limit}
+        drawn = axes.pcolormesh(shaded.x, shaded.y, shaded.values, **colours)
+        bar = axes.figure.colorbar(drawn, ax=axes, extend="both", pad=0.02)
+        bar.set_label(formula(shaded.label), color=QUIET)
     below = np.zeros(max(1, len(panel.rows)))
     for at, series in enumerate(panel.series):
         below = _series(axes, series, colour_of(series.colour, at), below, panel.horizontal)
@@ -253,14 +257,6 @@ def _series(axes: Axes, series: Series, colour: str, below: np.ndarray, horizont
         bands: dict[str, Any] = {"xerr" if horizontal else "yerr": error_bars(series, horizontal)}
         axes.errorbar(series.x, series.y, **bands, color=colour, label=label, **ERROR | look)
     return below
-
-
-def _shade(axes: Axes, shaded: ShadedMap) -> None:
-    look: dict[str, Any] = {"cmap": "RdBu_r", "rasterized": True, "shading": "nearest"}
-    look |= {"vmin": -shaded.limit, "vmax": shaded.limit}
-    drawn = axes.pcolormesh(shaded.x, shaded.y, shaded.values, **look)
-    bar = axes.figure.colorbar(drawn, ax=axes, extend="both", pad=0.02)
-    bar.set_label(formula(shaded.label), color=QUIET)
 
 
 def _logarithmic(axes: Axes) -> None:

@@ -6,6 +6,13 @@ from fem_impact.outcome.shares import heat_ends
 
 HEATING = "friction + top 0.1 mm of both"
 """Label of the work that can heat the contact."""
+MOTION = (
+    ("impulse ratio mu", "mu", ""),
+    ("V_n after", "V_n_m_per_s", "m/s"),
+    ("V_t after", "V_t_m_per_s", "m/s"),
+    ("Omega after", "Omega_rad_per_s", "rad/s"),
+)
+"""Label, key and unit of what is told of the motion after the restitution."""
 
 
 def errors_said(outcome: Outcome, target_of: str | None) -> list[str]:

@@ -225,10 +225,13 @@ def write_all(results: Path, out: Path) -> Path:
         html.sources({name for study in studies for name in study.sources}),
     ]
     failed = sum(len(study.failures) for study in studies)
+    footer = "Versions and dates of the runs stand in the ledger."
+    if row := next((row for study in studies for row in study.rows), None):
+        versions = html.versions_text(row.provenance.versions)
+        footer = f"Computed with {versions}; dates of the runs stand in the ledger."
     counts = f"{len(studies)} studies, {len(ledger)} runs, {failed} of them failed."
     lead = f"{counts} First what each study asks, and its answer; the rest is folded below."
-    text = html.page(TITLE, "All studies", lead, _footer(studies), body)
-    return write_text(out / "report.html", text)
+    return write_text(out / "report.html", html.page(TITLE, "All studies", lead, footer, body))
 
 
 def _answer(study: StudyRecord) -> html.Markup:
@@ -277,14 +280,6 @@ def _markdown(studies: Iterable[StudyRecord], concluded: str) -> str:
         text = text.replace("](figures/", f"](../{study.folder.name}/figures/")
         parts.append(text.replace("# ", "## ", 1))  # one heading level lower
     return "\n\n".join(part for part in parts if part) + "\n"
-
-
-def _footer(studies: Sequence[StudyRecord]) -> str:
-    row = next((row for study in studies for row in study.rows), None)
-    if row is None:
-        return "Versions and dates of the runs stand in the ledger."
-    versions = html.versions_text(row.provenance.versions)
-    return f"Computed with {versions}; dates of the runs stand in the ledger."
 
 
 class Conclusion(NamedTuple):

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from html import escape
 from math import cos, sin
 from pathlib import Path
@@ -83,11 +84,6 @@ def write_verdict(scene: Scene, document: dict[str, Any], out: Path, picture: Pi
         figures = make_directory(out / "figures")
         draw(picture, figures / f"{picture.name}.png")
         charted = (html.section("This scene among other rods", html.figure(picture, figures)),)
-    return write_text(out / "verdict.html", _verdict_page(scene, document, charted))
-
-
-def _verdict_page(scene: Scene, document: dict[str, Any], charted: Iterable[html.Markup]) -> str:
-    """Return the page: verdict and what it rests on, chart, inputs with sources, what it does not cover."""
     basis = (
         html.Markup(f"<strong>{markup(title)}</strong>: {markup(sentence)}")
         for title, sentence in document["basis"]
@@ -105,7 +101,8 @@ def _verdict_page(scene: Scene, document: dict[str, Any], charted: Iterable[html
     )
     versions = html.versions_text(document["versions"])
     footer = f"Computed {utc_now()} with {versions}. Digest of the scene {document['scene_digest']}."
-    return html.page(f"{document['box'][0][0]} {scene.id}", "verdict", f"{scene.title}.", footer, body)
+    text = html.page(f"{document['box'][0][0]} {scene.id}", "verdict", f"{scene.title}.", footer, body)
+    return write_text(out / "verdict.html", text)
 
 
 def _keys(*path: str) -> list[Key]:
@@ -139,11 +136,17 @@ def run_page(folder: Path) -> str:
         outcome.json is missing or damaged.
     """
     outcome = Outcome.read(folder / "outcome.json")
-    scene = _stated(folder)
+    try:
+        scene = read_toml(folder / "scene.toml")
+    except (SceneError, UsageError):  # the file is missing, or no scene
+        scene = None
     rigid = rigid_theory(outcome, scene)
     shares = html.figure(sections.named(partition_picture(outcome), scene), folder / "figures")
     stop = "" if outcome.validity.finished else ": at the stop of this unfinished run"
     costs = sections.key_table(outcome, _keys("cost"))
+    stated, path = [], folder / "scene.toml"
+    if path.is_file():
+        stated = [html.details("The scene", html.Markup(f"<pre>{escape(read_text(path))}</pre>"))]
     body = (
         *(verdict_of(folder, scene)[1:] if scene else ()),
         _cards(outcome, rigid, friction_spread(scene, outcome.provenance.fidelity) if scene else None),
@@ -172,7 +175,7 @@ def run_page(folder: Path) -> str:
         sections.validity([outcome]),
         html.section("Cost", html.details("Time, memory and elements", costs)),
         html.sources([*outcome.provenance.effects, *(["film"] if html.film_of(folder) else [])]),
-        html.section("Record", _scene_text(folder), sections.all_keys(outcome)),
+        html.section("Record", *stated, sections.all_keys(outcome)),
     )
     origin = outcome.provenance
     lead = (
@@ -192,35 +195,20 @@ def _strikes(outcome: Outcome, scene: Scene | None, folder: Path) -> html.Markup
     g, vertical = gravity_of(scene), scene.impact.vertical
     shape, pull = outline(scene.projectile.rigid_body), (g * cos(vertical), g * sin(vertical))
     figures, spread = folder / "figures", or_none(outcome.strikes.spread)
+    ratio, over_angles = outcome.strikes.other_end, html.Markup("")
+    if not isinstance(ratio, Unknown):
+        with suppress(SceneError):  # rigid theory does not follow the body at some inclination
+            curve = other_end_curve(scene)
+            over_angles = html.figure(tail_picture(curve, (scene.impact.angle, ratio)), figures)
     return html.section(
         "From the first strike to rest",
         html.paragraph(" ".join(told(outcome.strikes))),
         html.figure(path_picture(each, shape, pull), figures),
         html.figure(accounts_picture(each), figures),
-        _other_end(outcome, scene, figures),
+        over_angles,
         html.details("Each strike of the path computed", html.table(strikes_table(outcome.strikes))),
         *([html.details("What strikes in 64 sequences", html.table(spread_table(spread)))] if spread else []),
     )
-
-
-def _other_end(outcome: Outcome, scene: Scene, figures: Path) -> html.Markup:
-    """Return the chart of the other end's speed over the inclination, nothing where it does not strike."""
-    ratio = outcome.strikes.other_end
-    if isinstance(ratio, Unknown):
-        return html.Markup("")
-    try:
-        curve = other_end_curve(scene)
-    except SceneError:  # rigid theory does not follow the body at some inclination
-        return html.Markup("")
-    return html.figure(tail_picture(curve, (scene.impact.angle, ratio)), figures)
-
-
-def _stated(folder: Path) -> Scene | None:
-    """Return the scene of a run; None where its file is missing or not a scene."""
-    try:
-        return read_toml(folder / "scene.toml")
-    except (SceneError, UsageError):
-        return None
 
 
 def rigid_theory(outcome: Outcome, scene: Scene | None) -> Outcome | None:
@@ -299,10 +287,3 @@ def _arms(outcome: Outcome) -> html.Markup:
         lengths = [None if arm is None else 1e3 * arm for arm in arms]
         rows.append([title, *lengths, *(sections.estimated(outcome, key) for key in ratios)])
     return html.table(Table.of(head, rows))
-
-
-def _scene_text(folder: Path) -> html.Markup:
-    path = folder / "scene.toml"
-    if not path.is_file():
-        return html.Markup("")
-    return html.details("The scene", html.Markup(f"<pre>{escape(read_text(path))}</pre>"))

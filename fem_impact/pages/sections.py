@@ -1,6 +1,7 @@
 """Sections that the reports share, and model beside measured tests."""
 
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from html import escape
 from pathlib import Path
@@ -19,7 +20,7 @@ from fem_impact.figures.runs import (
 from fem_impact.figures.still import percent
 from fem_impact.files.waves import read_waves
 from fem_impact.films.movement import FRAMES, STUDY_FRAMES
-from fem_impact.outcome.groups import WRONG_NUMBERS, EffectChoice, LimitationKind, texts
+from fem_impact.outcome.groups import WRONG_NUMBERS, LimitationKind, texts
 from fem_impact.outcome.keys import Key, Unknown, or_none
 from fem_impact.outcome.record import KEYS, Outcome
 from fem_impact.pages import html
@@ -38,30 +39,21 @@ LENGTHS = (
 
 def mismatches(outcome: Outcome, folder: Path) -> list[str]:
     """Return warnings that the folder's scene or history does not belong to the outcome."""
-    return [*_other_scene(outcome, folder), *_short_history(outcome, folder)]
-
-
-def _other_scene(outcome: Outcome, folder: Path) -> list[str]:
-    path = folder / "scene.toml"
+    found, path = [], folder / "scene.toml"
     try:
-        other = path.is_file() and digest(read_toml(path)) != outcome.provenance.scene_digest
+        if path.is_file() and digest(read_toml(path)) != outcome.provenance.scene_digest:
+            changed = "scene.toml was changed after the run, or a file that it names"
+            found.append(f"{changed}: it is not the scene of outcome.json.")
     except SceneError as error:
-        return [str(error)]
-    changed = "was changed after the run, or a file that it names: it is not the scene of outcome.json."
-    return [f"scene.toml {changed}"] if other else []
-
-
-def _short_history(outcome: Outcome, folder: Path) -> list[str]:
+        found.append(str(error))
     intervals = or_none(outcome.contact.intervals)
-    if outcome.provenance.fidelity != "solid" or not intervals:
-        return []
-    try:
-        last = read_history(folder / "history.csv").numbers("time_s")[-1]
-    except (ResultError, IndexError):
-        return []  # `history_figures` says that it is missing or damaged
-    end = intervals[-1].end
-    cut = f"history.csv ends at {last * 1e6:.4g} us, before the last contact does ({end * 1e6:.4g} us)"
-    return [f"{cut}: it is not whole."] if last < end else []
+    if outcome.provenance.fidelity == "solid" and intervals:
+        with suppress(ResultError, IndexError):  # `history_figures` says that it is missing or damaged
+            last, end = read_history(folder / "history.csv").numbers("time_s")[-1], intervals[-1].end
+            if last < end:
+                cut = f"ends at {last * 1e6:.4g} us, before the last contact does ({end * 1e6:.4g} us)"
+                found.append(f"history.csv {cut}: it is not whole.")
+    return found
 
 
 def notices(rows: list[Outcome], more: Sequence[str] = ()) -> html.Markup:
@@ -156,7 +148,8 @@ def key_table(outcome: Outcome, keys: Iterable[Key], rigid: Outcome | None = Non
         if rigid is not None:
             value = key.of(rigid)
             cells.append(Missing(value.reason) if isinstance(value, Unknown) else number(or_none(value)))
-        rows.append([*cells, _unit(key)])
+        unit = "" if key.unit == "-" else key.unit.replace("m2", "m²")
+        rows.append([*cells, "of\u00a0E₀" if key.name.endswith("_over_E_0") else unit])
     head = ("quantity", "value", *(["rigid theory"] if rigid else []), "unit")
     return html.table(Table.of(head, rows, left=(0, len(head) - 1)))
 
@@ -255,12 +248,6 @@ def known_cell(value: Cell | Unknown) -> Cell:
     return Missing(value.reason) if isinstance(value, Unknown) else value
 
 
-def _unit(key: Key) -> str:
-    if key.name.endswith("_over_E_0"):
-        return "of\u00a0E₀"
-    return "" if key.unit == "-" else key.unit.replace("m2", "m²")
-
-
 def _runs(runs: Sequence[str], count: int) -> str:
     return "all runs" if len(runs) == count else ", ".join(runs)
 
@@ -270,7 +257,17 @@ EFFECTS = ("effect", "in the model", "decided by", "number", "threshold", "run t
 
 def effects_section(outcome: Outcome) -> html.Markup:
     """Return the table of effects, nothing where a fidelity has none."""
-    rows = [_row(choice) for choice in or_none(outcome.provenance.effect_choices) or ()]
+    rows: list[list[Cell]] = [
+        [
+            choice.name,
+            f"{'on' if choice.on else 'off'}{', by the scene' if choice.forced else ''}",
+            choice.measure,
+            choice.number,
+            choice.threshold,
+            None if choice.share is None else percent(choice.share),
+        ]
+        for choice in or_none(outcome.provenance.effect_choices) or ()
+    ]
     caption = (
         "An effect is needed when its number is above its threshold. The run time is the share of its own "
         "parts; that of friction and rates is estimated."
@@ -278,17 +275,6 @@ def effects_section(outcome: Outcome) -> html.Markup:
     shown = html.table(Table.of(EFFECTS, rows, left=range(3)), caption)
     folded = html.details("What the model has, and why", shown)
     return html.section("Effects", folded if rows else html.Markup(""))
-
-
-def _row(choice: EffectChoice) -> list[Cell]:
-    return [
-        choice.name,
-        f"{'on' if choice.on else 'off'}{', by the scene' if choice.forced else ''}",
-        choice.measure,
-        choice.number,
-        choice.threshold,
-        None if choice.share is None else percent(choice.share),
-    ]
 
 
 COMPARED = ("model", "measured", "95 % interval of the mean", "n", "verdict")

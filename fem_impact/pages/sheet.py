@@ -11,7 +11,7 @@ from fem_impact.files.run_directory import FIELDS
 from fem_impact.outcome.groups import HEAVIEST_FIRST, WRONG_NUMBERS, texts
 from fem_impact.outcome.keys import Unknown, or_none, why_unknown
 from fem_impact.outcome.record import KEY_TABLE, Outcome
-from fem_impact.outcome.said import HEATING, errors_said, floor_said, heat_said
+from fem_impact.outcome.said import HEATING, MOTION, errors_said, floor_said, heat_said
 from fem_impact.outcome.shares import IF_ON, shares
 from fem_impact.outcome.strikes import SHOWN, strikes_table, told
 from fem_impact.pages import html
@@ -29,10 +29,7 @@ BLANK = "____________"
 ROLES = ("prepared by", "checked by", "approved by")
 NUMBERS = (
     ("restitution e (tip's arms)", "e_edge", ""),
-    ("impulse ratio mu", "mu", ""),
-    ("V_n after", "V_n_m_per_s", "m/s"),
-    ("V_t after", "V_t_m_per_s", "m/s"),
-    ("Omega after", "Omega_rad_per_s", "rad/s"),
+    *MOTION,
     ("peak force", "peak_force_N", "N"),
     ("dent that stays in the barrier", "dent_depth_m", "mm"),
     ("flash temperature", "flash_temperature_K", "K"),

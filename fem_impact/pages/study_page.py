@@ -222,7 +222,11 @@ def study_page(folder: Path, again: bool = True) -> str:
         html.section("Cost", *([html.details("Time, memory and elements", _costs(rows))] if rows else [])),
         html.sources([*study.sources, *(["film"] if filmed else [])]),
     )
-    return html.page(study.title, "Study", "", _footer(study), body)
+    footer = f"Made by {study.command}."
+    if rows:
+        last = max(row.provenance.created_utc for row in rows)
+        footer += f" Computed up to {last} with {html.versions_text(rows[0].provenance.versions)}."
+    return html.page(study.title, "Study", "", footer, body)
 
 
 def _cards(study: StudyRecord) -> html.Markup:
@@ -269,13 +273,3 @@ def _costs(rows: Sequence[Outcome]) -> html.Markup:
         cells = (*map(sections.known_cell, counts), cost.wall, sections.known_cell(cost.peak_memory))
         lines.append([row.provenance.scene_id, tip, *cells])
     return html.table(Table.of(head, lines), compact=True)
-
-
-def _footer(study: StudyRecord) -> str:
-    command = f"Made by {study.command}."
-    if not study.rows:
-        return command
-    versions = html.versions_text(study.rows[0].provenance.versions)
-    return (
-        f"{command} Computed up to {max(row.provenance.created_utc for row in study.rows)} with {versions}."
-    )

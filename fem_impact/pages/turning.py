@@ -24,6 +24,11 @@ MOST = 200
 HEIGHT = 620  # px
 EYE = {"x": -0.8, "y": -2.2, "z": 0.5}
 """Where the camera stands at first: in front of the plane of motion, a little up the slope and above."""
+LIGHT = {
+    "hovertemplate": "t %{x:.4g}, b %{y:.4g}, n %{z:.4g} mm<extra></extra>",
+    "lighting": {"ambient": 0.7, "diffuse": 0.5, "specular": 0.03},
+    "lightposition": {"x": -2000, "y": -10000, "z": 6000},
+}
 COMPACT = 1.6
 """Longest side of what is shown over the mean of the three that this place shows whole."""
 
@@ -72,33 +77,34 @@ def write_view(folder: Path, out: Path, span: Span, field: str) -> RenderResult:
 
 def _shown(motion: FilmData, times: np.ndarray) -> dict[str, Any]:
     """Return the figure in the form of `fem_impact.figures.live.live`, with its frames."""
-    nodes, triangles = _skin(motion)
-    states = [_state(motion, time, nodes) for time in times.tolist()]
-    names = [f"{1e6 * time:.4g} µs" for time in times.tolist()]
-    skin = {name: _packed(triangles[:, at], "i4") for at, name in enumerate("ijk")}
-    first = len(states) // 3  # after some waves, so that colours are seen
-    mesh = {**skin, **states[first], **_colours(motion)}
-    panel = {
-        "title": "",
-        "alt": "the projectile on the barrier, to be turned",
-        "height": HEIGHT,
-        "data": [mesh],
-        "layout": _layout(names, first, _eye(motion, times, nodes)),
-        "frames": [{"name": name, "data": [state]} for name, state in zip(names, states, strict=True)],
-    }
-    return {"caption": "", "columns": 1, "legend": [], "panels": [panel]}
-
-
-def _skin(motion: FilmData) -> tuple[np.ndarray, np.ndarray]:
-    """Return the points on the outside of the half model, and the triangles of both halves.
-
-    The points of the mirrored half follow those of the half. Faces on the plane of motion lie inside.
-    """
+    # the points on the outside of the half model, those of the mirrored half after them, and the triangles of
+    # both; faces on the plane of motion lie inside
     quads, _ = outer_quads(motion)
     faces = quads[~on_symmetry(motion, quads)][:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)
     nodes, flat = np.unique(faces, return_inverse=True)
     half = flat.reshape(-1, 3)
-    return nodes, np.concatenate([half, half[:, ::-1] + len(nodes)])
+    triangles = np.concatenate([half, half[:, ::-1] + len(nodes)])
+    states = [_state(motion, time, nodes) for time in times.tolist()]
+    names = [f"{1e6 * time:.4g} µs" for time in times.tolist()]
+    skin = {name: _packed(triangles[:, at], "i4") for at, name in enumerate("ijk")}
+    first = len(states) // 3  # after some waves, so that colours are seen
+    style, (low, high) = FIELDS[motion.field], motion.far
+    colours = {
+        "colorscale": RED_BLUE if style.signed else style.colours,
+        "reversescale": not style.signed,  # Plotly's scales of these names run from dark to light
+        "cmin": low,
+        "cmax": high,
+        "colorbar": {"orientation": "h", "y": 1.0, "yanchor": "bottom", "thickness": 10, "len": 0.6},
+    }
+    panel = {
+        "title": "",
+        "alt": "the projectile on the barrier, to be turned",
+        "height": HEIGHT,
+        "data": [{**skin, **states[first], **colours, **LIGHT}],
+        "layout": _layout(names, first, _eye(motion, times, nodes)),
+        "frames": [{"name": name, "data": [state]} for name, state in zip(names, states, strict=True)],
+    }
+    return {"caption": "", "columns": 1, "legend": [], "panels": [panel]}
 
 
 def _state(motion: FilmData, time: float, nodes: np.ndarray) -> dict[str, Any]:
@@ -124,20 +130,6 @@ def _eye(motion: FilmData, times: np.ndarray, nodes: np.ndarray) -> dict[str, fl
 def _packed(values: np.ndarray, kind: str) -> dict[str, str]:
     """Return an array as Plotly reads it: little-endian numbers in base64."""
     return {"dtype": kind, "bdata": base64.b64encode(values.astype(f"<{kind}").tobytes()).decode()}
-
-
-def _colours(motion: FilmData) -> dict[str, Any]:
-    style, (low, high) = FIELDS[motion.field], motion.far
-    return {
-        "colorscale": RED_BLUE if style.signed else style.colours,
-        "reversescale": not style.signed,  # Plotly's scales of these names run from dark to light
-        "cmin": low,
-        "cmax": high,
-        "colorbar": {"orientation": "h", "y": 1.0, "yanchor": "bottom", "thickness": 10, "len": 0.6},
-        "hovertemplate": "t %{x:.4g}, b %{y:.4g}, n %{z:.4g} mm<extra></extra>",
-        "lighting": {"ambient": 0.7, "diffuse": 0.5, "specular": 0.03},
-        "lightposition": {"x": -2000, "y": -10000, "z": 6000},
-    }
 
 
 def _layout(names: list[str], first: int, eye: dict[str, float]) -> dict[str, Any]:
