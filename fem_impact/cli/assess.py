@@ -36,10 +36,22 @@ SHORT = ("length", "diameter", "height", "angle", "surface")
 
 def assess(options: Options) -> int:
     """Assess one scene and print the verdict, before anything else the lines of its box."""
-    limited = options.question != RIGID or bool(options.uncertain)
-    _refuse(options, limited)
+    of_limits = options.question != RIGID
+    limited = of_limits or bool(options.uncertain)
+    unused = {
+        "--limit": (options.limit, not of_limits, "Ask for it: --for heat, force or dent."),
+        "--within": (options.within, of_limits, "Leave it out: --limit states what is allowed."),
+        "--heat": (options.heat, limited, "Leave it out: it is of the verdict of one scene on rigid theory."),
+    }
+    for key, (value, refused, remedy) in unused.items():
+        if value and refused:
+            raise UsageError("has no question here.", key=key, value=value, remedy=remedy)
     out = checked_out(options.out) if options.out else None
-    scene = scene_options.named_scene(options, SHORT) or _dropped_rod(options)
+    scene = scene_options.named_scene(options, SHORT)
+    if scene is None:
+        height = option_quantity(options.height, "length", "--height")
+        rod, angle = scene_options.rod_of(options), scene_options.angle_of(options)
+        scene = scene_of(RodDropInput(rod, height, angle, options.surface))
     if out is not None:
         refuse_other_scene(out / "scene.toml", to_toml(scene))
     answer, picture = (_limited if limited else _rigid)(options, scene)
@@ -51,19 +63,6 @@ def assess(options: Options) -> int:
 
 EXAMPLES = {"temperature": "430 degC", "force": "5 kN", "length": "0.2 mm"}
 """Limits by their dimensions, for messages."""
-
-
-def _refuse(options: Options, limited: bool) -> None:
-    """Refuse options that the question has no use for (UsageError)."""
-    of_limits = options.question != RIGID
-    unused = {
-        "--limit": (options.limit, not of_limits, "Ask for it: --for heat, force or dent."),
-        "--within": (options.within, of_limits, "Leave it out: --limit states what is allowed."),
-        "--heat": (options.heat, limited, "Leave it out: it is of the verdict of one scene on rigid theory."),
-    }
-    for key, (value, refused, remedy) in unused.items():
-        if value and refused:
-            raise UsageError("has no question here.", key=key, value=value, remedy=remedy)
 
 
 def _rigid(options: Options, scene: Scene) -> tuple[dict[str, Any], Picture | None]:
@@ -109,18 +108,8 @@ def _limited(options: Options, scene: Scene) -> tuple[dict[str, Any], None]:
     means = options.fidelity, *_means(options)
     found = judge(scene, criterion, limit, uncertain, *means, tell=_telling(options))
     given = "question", "limit", "uncertain", "within", "workers"
-    command = scene_options.command_line(options, "assess", *SHORT, *scene_options.SHAPE, *given).replace(
-        "--question", "--for"
-    )
-    return limit_document(found, command), None
-
-
-def _dropped_rod(options: Options) -> Scene:
-    """Return the scene of the dropped steel rod that the options state."""
-    height = option_quantity(options.height, "length", "--height")
-    return scene_of(
-        RodDropInput(scene_options.rod_of(options), height, scene_options.angle_of(options), options.surface)
-    )
+    command = scene_options.command_line(options, "assess", *SHORT, *scene_options.SHAPE, *given)
+    return limit_document(found, command.replace("--question", "--for")), None
 
 
 def _within(options: Options) -> tuple[str, float]:
@@ -129,12 +118,8 @@ def _within(options: Options) -> tuple[str, float]:
         return "e", TOLERANCE
     of, _, text = options.within.strip().partition(" ")
     remedy = f'Name one of {", ".join(CHANGED)} and a change of it, such as "e 0.05" or "energy 2 %".'
-    wrong = UsageError(
-        "is not a change of a number, above 0 and below 1.",
-        key="--within",
-        value=options.within,
-        remedy=remedy,
-    )
+    problem = "is not a change of a number, above 0 and below 1."
+    wrong = UsageError(problem, key="--within", value=options.within, remedy=remedy)
     if of not in CHANGED:
         raise wrong
     try:
@@ -147,7 +132,6 @@ def _within(options: Options) -> tuple[str, float]:
 
 
 def _text(answer: dict[str, Any]) -> str:
-
     lines = [line for title, sentence in answer["box"] for line in wrapped(f"{title} {sentence}")]
     lines += wrapped(f"Missing: {answer['missing']}") if answer["missing"] else []
     lines += [f"Next step: {answer['next_step']}"] if answer["next_step"] else []
@@ -160,4 +144,5 @@ def _text(answer: dict[str, Any]) -> str:
     if "transfer" in answer:
         carried = transfer_text(answer["transfer"]).rstrip()
         lines += ["", "Measured tests carried over to this drop", "", carried]
-    return "\n".join([*lines, *([f"page: {answer['page']}"] if "page" in answer else [])]) + "\n"
+    lines += [f"page: {answer['page']}"] if "page" in answer else []
+    return "\n".join(lines) + "\n"

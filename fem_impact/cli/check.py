@@ -54,9 +54,21 @@ def check(options: Options) -> int:
     if drawing is not None and drawing.suffix not in DRAWINGS:
         problem, remedy = "is no picture that can be drawn.", "Name a file such as projectile.svg or .png."
         raise UsageError(problem, key="--drawing", value=str(drawing), remedy=remedy)
-    case = _meshed(asked_scene(options))
-    tests = _tests_lines(case.scene)  # before the rest: a file of tests that cannot be read is refused
-    say_kept(case.scene, options)
+    scene = asked_scene(options)
+    try:
+        case = compiled(scene, "solid")
+    except SceneError as error:  # the models that take the scene are named
+        able = [f"--fidelity {name}" for name in ("modal", "rigid") if not refused_by(scene, name)]
+        if not able:
+            raise
+        others = f"{' and '.join(able)} take{'s' * (len(able) == 1)} the scene as it is."
+        remedy, key, value = f"{error.remedy} {others}".strip(), error.key, error.value
+        raise SceneError(error.problem, key=key, value=value, remedy=remedy, source=error.source) from None
+    told, tests = list[str](), tests_of(scene)  # a file of tests that cannot be read is refused here
+    if tests is not None:
+        told = [f"measured: {count(tests)} tests, {shown_path(str(scene.measured))}", *unused_columns(scene)]
+        told += [f"warning: {one}" for one in doubtful_tests(scene)]
+    say_kept(scene, options)
     if drawing:
         draw_projectile(case, drawing)
     statement = statement_of(case)
@@ -65,36 +77,14 @@ def check(options: Options) -> int:
     else:
         place = Path(options.scene).parent
         sys.stdout.write(_long(case, statement, place) if options.long else _short(case, statement))
-        sys.stdout.write("".join(f"{line}\n" for line in tests))
+        sys.stdout.writelines(f"{line}\n" for one in told for line in wrapped(one))
         sys.stdout.write(f"drawing: {drawing}\n" if drawing else "")
     return 0
 
 
-def _meshed(scene: Scene) -> Case:
-    """Return the case for finite elements (SceneError: it is refused; the models that take it are named)."""
-    try:
-        return compiled(scene, "solid")
-    except SceneError as error:
-        able = [f"--fidelity {name}" for name in ("modal", "rigid") if not refused_by(scene, name)]
-        if not able:
-            raise
-        others = f"{' and '.join(able)} take{'s' * (len(able) == 1)} the scene as it is."
-        remedy, key, value = f"{error.remedy} {others}".strip(), error.key, error.value
-        raise SceneError(error.problem, key=key, value=value, remedy=remedy, source=error.source) from None
-
-
-def _tests_lines(scene: Scene) -> list[str]:
-    """Return how many tests a scene names, and what is doubtful about them."""
-    tests = tests_of(scene)
-    if tests is None:
-        return []
-    told = [f"measured: {count(tests)} tests, {shown_path(str(scene.measured))}", *unused_columns(scene)]
-    lines = [line for one in told for line in wrapped(one)]
-    return lines + [line for one in doubtful_tests(scene) for line in wrapped(f"warning: {one}")]
-
-
-def _body_lines(body: dict[str, float], bends_as: str) -> Iterable[str]:
-    """Return the projectile's numbers in words; ``bends_as`` is what the period of bending is that of."""
+def _body_lines(case: Case, body: dict[str, float]) -> Iterable[str]:
+    """Return the numbers of the projectile in words."""
+    bends_as = "plate" if case.scene.projectile.is_short else "beam"
     mm = {key: 1e3 * value for key, value in body.items() if key.endswith("_m")}
     length, period = mm["touch_length_m"], body["ovalling_period_s"]
     part = f"with {length:.3g} mm at once, the middle of it " if length else ""
@@ -106,49 +96,36 @@ def _body_lines(body: dict[str, float], bends_as: str) -> Iterable[str]:
         f" with radii {mm['R1_m']:.3g} mm (meridian) and {mm['R2_m']:.3g} mm (around)",
         f"arms there: d_c = {mm['d_c_m']:.4g} mm, d_d = {mm['d_d_m']:.4g} mm",
         f"periods: bending T1 = {plain(1e6 * body['bending_period_s'])} us, longitudinal "
-        f"{plain(1e6 * body['stretching_period_s'])} us ({bends_as} and bar)"
-        f"{ovalling}",
+        f"{plain(1e6 * body['stretching_period_s'])} us ({bends_as} and bar){ovalling}",
         f"gamma {body['gamma']:.4g} m^-0.3815, from the largest width, {mm['diameter_m']:.4g} mm",
     )
 
 
-def _bends_as(case: Case) -> str:
-    """Return as what a projectile bends whose period is told."""
-    return "plate" if case.scene.projectile.is_short else "beam"
-
-
 def _drawing(case: Case) -> list[str]:
-
     joints = [part.to for part in case.scene.projectile.segments[:-1]]
     return drawn(case.bodies.body, case.contact.touch_point, joints)
-
-
-def _flow_lines(statement: dict[str, Any]) -> list[str]:
-    by_body = statement["flow_stress_Pa"]
-    if not by_body:
-        return []
-    heading = "Flow stress at 8 % plastic strain, MPa, at rest and at strain rates, 1/s"
-    rates = list(next(iter(by_body.values())))
-    rows = [[body, *(f"{stress / 1e6:.0f}" for stress in by_body[body].values())] for body in by_body]
-    table = Table.of(("body", "at rest", *rates[1:]), rows, left=range(1)).terminal()
-    return ["", heading, *(f"  {line}" for line in table.splitlines())]
 
 
 def _long(case: Case, statement: dict[str, Any], place: Path) -> str:
     """Return every value with its source, files as seen from the ``place`` of the scene's file."""
     lines = [to_toml(case.scene, place).rstrip(), "", "Sources"]
-    rows = inputs(case.scene).rows
-    lines += _wrapped(f"{key} = {value}: {source}" for key, value, source in rows if source != STATED)
+    given = inputs(case.scene).rows
+    lines += _wrapped(f"{key} = {value}: {source}" for key, value, source in given if source != STATED)
     lines += _wrapped(
         f"{key}: interval {low:g} to {high:g}" for key, (low, high) in statement["intervals"].items()
     )
     lines += ["", "Laws in force", *_wrapped(f"{key} {law}" for key, law in statement["laws"].items())]
-    lines += _flow_lines(statement)
+    if by_body := statement["flow_stress_Pa"]:
+        _, *rates = next(iter(by_body.values()))
+        rows = [[body, *(f"{stress / 1e6:.0f}" for stress in of.values())] for body, of in by_body.items()]
+        table = Table.of(("body", "at rest", *rates), rows, left=range(1)).terminal()
+        lines += ["", "Flow stress at 8 % plastic strain, MPa, at rest and at strain rates, 1/s"]
+        lines += [f"  {line}" for line in table.splitlines()]
     lines += ["", "Values used where a scene does not state them"]
     lines += _wrapped(f"{d['key']} = {d['value']}: {d['source']}" for d in statement["defaults"])
     rod = case.scene.projectile
     lines += ["", "Projectile", *_drawing(case)]
-    lines += _wrapped([*statement["mesh"], *_body_lines(statement["body"], _bends_as(case))])
+    lines += _wrapped([*statement["mesh"], *_body_lines(case, statement["body"])])
     lines += ["", "Effects"]
     lines += [rod.named(line) for choice in case.choices for line in _effect_lines(choice)]
     return "\n".join([*lines, *_size_lines(case), *_end_lines(case, statement)]) + "\n"
@@ -175,7 +152,7 @@ def _short(case: Case, statement: dict[str, Any]) -> str:
     parts += [f"{one.material.name} ({one.name})" for one in rod.regions]
     main = [] if rod.segments else [rod.material.name]
     lines += _wrapped([f"{size} of {', '.join(main + parts)}{rod.bored}", *statement["mesh"]])
-    lines += _wrapped(_body_lines(statement["body"], _bends_as(case)))
+    lines += _wrapped(_body_lines(case, statement["body"]))
     lines += ["", "Barrier and contact", *_wrapped(_contact_lines(case))]
     laws = (f"{place.removesuffix('.material')}: {law}" for place, law in statement["laws"].items())
     lines += ["", "Laws in force", *_wrapped(laws), "", "Effects"]
@@ -235,10 +212,9 @@ def _stated(key: str, value: object) -> str:
 def _size_lines(case: Case) -> list[str]:
     if case.scene.accuracy.target:
         return []
-
-    size = case.size
+    size, bodies = case.size, case.bodies
+    radius = contact_radius(bodies)
     if case.scene.accuracy.levels > 1:
-        radius = contact_radius(case.bodies)
         found = (
             "a coarse pilot finds where, how widely and how often the bodies touch; finer meshes follow what "
             f"it found, about {case.scene.accuracy.levels} in all. Each number comes with its band",
@@ -248,8 +224,15 @@ def _size_lines(case: Case) -> list[str]:
             _fields_line(case.scene, size),
         )
         return ["", "A run with finite elements", *_wrapped(found)]
+    cells, error, advised = expected_cells(bodies), ERROR[kind(bodies)], ADVISED[kind(bodies)]
+    fine = (
+        f"about {cells:.2g} cells over the radius of the contact, {radius * 1e3:.2g} mm: "
+        f"e and mu within some {100 * error / cells:.2g} %"
+    )
+    fine += f". {advice(bodies)} for {100 * error / advised:.2g} %" if cells < advised else ""
+    fine += f". {WHICH_FLOWS}" if len(bodies.contact.yielding) == 2 else ""
     sentences = (
-        _cells_line(case),
+        fine,
         f"about {size_text(size)} of {plain(size.step * 1e9, 2)} ns ({about(size.most_steps)} if it lasts "
         f"until max_time), {about(size.memory / 1e6)} MB of memory",
         f"about {clock_text(size.time)} of computing ({clock_text(size.most_time)} until max_time) on the "
@@ -279,19 +262,6 @@ WHICH_FLOWS = (
     "How much of the plastic work is the rod's is known least: on the measured sets 5 cells over the radius "
     "gave 60 to 85 % of what 10 cells gave, and what was missing went into the barrier"
 )
-
-
-def _cells_line(case: Case) -> str:
-    """Return how fine the mesh is at the contact, and the tip size that the program advises."""
-    bodies = case.bodies
-    cells, error, advised = expected_cells(bodies), ERROR[kind(bodies)], ADVISED[kind(bodies)]
-    line = (
-        f"about {cells:.2g} cells over the radius of the contact, {contact_radius(bodies) * 1e3:.2g} mm: "
-        f"e and mu within some {100 * error / cells:.2g} %"
-    )
-    if cells < advised:
-        line += f". {advice(bodies)} for {100 * error / advised:.2g} %"
-    return f"{line}. {WHICH_FLOWS}" if len(bodies.contact.yielding) == 2 else line
 
 
 def _wrapped(sentences: Iterable[str]) -> list[str]:

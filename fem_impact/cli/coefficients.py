@@ -10,9 +10,9 @@ from fem_impact.errors import SceneError, UsageError
 from fem_impact.evidence.paper.own_data import own_coefficients
 from fem_impact.run.seen_tests import TURNING, SeenTests
 from fem_impact.run.tests import other_impacts, seen_tests
-from fem_impact.scene.own_tests import Camera, read_camera
+from fem_impact.scene.own_tests import read_camera
 from fem_impact.scene.units import option_quantity
-from rigid import Arms, Body, RigidError, touch_arms
+from rigid import Arms, RigidError, touch_arms
 
 TESTED = ("length", "diameter", "angle")
 """Options of a tested steel rod that must be given where no scene is."""
@@ -31,7 +31,14 @@ def coefficients(options: Options) -> int:
     seen = seen_tests(scene, camera) if scene else SeenTests.of(camera.motion, rod.mass, rod.k2, 0.0, None)
     if seen.turns:
         raise SceneError(TURNING, key="barrier.inertia", remedy="Give tests on a barrier that does not turn.")
-    arms, source = _arms(stated, rod, alpha, camera)
+    if stated is not None:
+        arms, source = stated, "as stated"
+    elif camera.arms:
+        arms, source = Arms(*map(np.asarray, camera.arms)), "as the file states"
+    else:
+        touch = rod.touch(alpha)
+        source = "middle of what lands flat" if touch.length else "lowest point of the tip's shape"
+        arms = touch_arms(touch, rod.x_c, rod.z_c, alpha)
     try:
         with np.errstate(divide="ignore", invalid="ignore"):  # no moment coefficient without an arm
             document = own_coefficients(camera, seen, rod, tip, alpha, arms, source)
@@ -52,14 +59,3 @@ def _stated_arms(options: Options) -> Arms | None:
     if not all(given):
         raise UsageError("one arm alone was given.", key="--d-c, --d-d", remedy="Give both or neither.")
     return Arms(*(np.asarray(option_quantity(text, "length", "--d-c, --d-d")) for text in given))
-
-
-def _arms(stated: Arms | None, rod: Body, alpha: float, camera: Camera) -> tuple[Arms, str]:
-    """Return the arms, m, and their source: options, the file, or the shape of the tip."""
-    if stated is not None:
-        return stated, "as stated"
-    if camera.arms:
-        return Arms(*map(np.asarray, camera.arms)), "as the file states"
-    touch = rod.touch(alpha)
-    source = "middle of what lands flat" if touch.length else "lowest point of the tip's shape"
-    return touch_arms(touch, rod.x_c, rod.z_c, alpha), source

@@ -37,7 +37,11 @@ STATED = ("target", "budget", "of", "finer")
 def cost(options: Options) -> int:
     """Run a scene with all settings and report errors, costs and the cheapest sufficient setting."""
     asked = [name.strip() for name in options.of.split(",") if name.strip()]
-    target = _share(options.target) if options.target else None
+    try:
+        target = parse_share(options.target, "--target") if options.target else None
+    except SceneError as error:
+        remedy = error.remedy
+        raise UsageError(error.problem, key="--target", value=options.target, remedy=remedy) from None
     budget = stated_budget(options)
     if options.scene == PAPER and (target or budget):
         remedy = "Leave them out, or name one scene."
@@ -66,14 +70,6 @@ def _write(options: Options, study: CostStudy, report: StudyReport, out: Path, s
     write_cost(study, out)
     publish(report, Request(out, line=command_line(options, "cost", *STATED, scene=scene)), study.runs)
     return page(out)
-
-
-def _share(text: str) -> float:
-    """Read the error that ``--target`` allows."""
-    try:
-        return parse_share(text, "--target")
-    except SceneError as error:
-        raise UsageError(error.problem, key="--target", value=text, remedy=error.remedy) from None
 
 
 def _measured(scene: Scene, out: Path, options: Options, budget: float = inf) -> CostStudy:

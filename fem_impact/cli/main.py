@@ -37,27 +37,23 @@ def main(argv: Sequence[str] | None = None) -> int:
     sys.stdout = sys.stdout or open(os.devnull, "w", encoding="utf-8")
     sys.stderr = sys.stderr or open(os.devnull, "w", encoding="utf-8")
     with printable_streams():
-        return _called(argv)
-
-
-def _called(argv: Sequence[str] | None) -> int:
-    try:
-        options = read_line(argv)
-    except UsageError as error:
-        asked = sys.argv[1:] if argv is None else argv
-        return _complain(str(error), error.exit_code, Options(json="--json" in asked))
-    if options.version:
-        sys.stdout.write(f"fem-impact {__version__}\n")
-        return 0
-    if not options.handler:
-        build_parser(()).print_help(sys.stderr)
-        return 2
-    if threading.current_thread() is threading.main_thread():  # signals are set there only
-        signal.signal(signal.SIGTERM, _stop)  # cleans up like Ctrl-C
-        if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # not of one told to ignore it
-            signal.signal(signal.SIGINT, _stop)
-        sys.unraisablehook = _not_lost
-    return _guarded(options.handler, options)
+        try:
+            options = read_line(argv)
+        except UsageError as error:
+            asked = sys.argv[1:] if argv is None else argv
+            return _complain(str(error), error.exit_code, Options(json="--json" in asked))
+        if options.version:
+            sys.stdout.write(f"fem-impact {__version__}\n")
+            return 0
+        if not options.handler:
+            build_parser(()).print_help(sys.stderr)
+            return 2
+        if threading.current_thread() is threading.main_thread():  # signals are set there only
+            signal.signal(signal.SIGTERM, _stop)  # cleans up like Ctrl-C
+            if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # not of one told to ignore it
+                signal.signal(signal.SIGINT, _stop)
+            sys.unraisablehook = _not_lost
+        return _guarded(options.handler, options)
 
 
 def _stop(number: int, frame: FrameType | None) -> None:
@@ -104,7 +100,11 @@ def _guarded(handler: Callable[[Options], int], options: Options) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
     except OSError as error:
-        return _complain(_disk_message(error), OutputPathError.exit_code, options)
+        place = f"{error.filename}: " if error.filename else ""
+        remedy = "Check that the place exists and can be written, or choose another --out."
+        if error.errno in (errno.ENOSPC, errno.EDQUOT):
+            remedy = "The disk is full: free some space or choose another --out, then run again."
+        return _complain(f"{place}{error.strerror or error}. {remedy}", OutputPathError.exit_code, options)
 
 
 def _complain(message: str, code: int, options: Options) -> int:
@@ -115,11 +115,3 @@ def _complain(message: str, code: int, options: Options) -> int:
     if options.json:
         print_json({"error": {"kind": EXIT_CODES[code], "exit_code": code, "message": message}})
     return code
-
-
-def _disk_message(error: OSError) -> str:
-    place = f"{error.filename}: " if error.filename else ""
-    fault = f"{place}{error.strerror or error}."
-    if error.errno in (errno.ENOSPC, errno.EDQUOT):
-        return f"{fault} The disk is full: free some space or choose another --out, then run again."
-    return f"{fault} Check that the place exists and can be written, or choose another --out."

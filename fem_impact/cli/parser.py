@@ -54,7 +54,6 @@ class Options(argparse.Namespace):
     target: str = ""
     budget: str = ""
     of: str = ""
-    finest: str = ""
     stored: bool = False
     estimate: bool = False
     resume: bool = False

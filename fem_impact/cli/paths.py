@@ -79,7 +79,12 @@ def checked_result(result: Path) -> Path:
     if not result.exists():
         raise ResultError(f"{result}: there is no such directory. Name one that `fem-impact run` wrote.")
     if not result.is_dir():
-        raise ResultError(f"{result}: is a file, not the directory of a result. {_directory_for(result)}")
+        way = "Name the one that `fem-impact run` printed at its end."
+        if any((result.parent / name).is_file() for name in (*RESULT_FILES, *COMPUTED)):
+            way = f"Name the directory that it lies in: {result.parent}"
+        elif result.suffix == ".toml":
+            way = f"Compute the scene by `fem-impact run {result}`, which prints its directory at the end."
+        raise ResultError(f"{result}: is a file, not the directory of a result. {way}")
     if not any((result / name).is_file() for name in RESULT_FILES):
         if (result / "history.csv").is_file():
             way = f"Go on with `fem-impact run {result / 'scene.toml'} --resume --out {result}`."
@@ -90,15 +95,6 @@ def checked_result(result: Path) -> Path:
         names = " or ".join(RESULT_FILES)
         raise ResultError(f"{result}: holds no {names}. Name a directory that `fem-impact run` wrote.")
     return result
-
-
-def _directory_for(file: Path) -> str:
-    """Return what to name instead of a file: its directory if that holds results, or how to make some."""
-    if any((file.parent / name).is_file() for name in (*RESULT_FILES, *COMPUTED)):
-        return f"Name the directory that it lies in: {file.parent}"
-    if file.suffix == ".toml":
-        return f"Compute the scene by `fem-impact run {file}`, which prints its directory at the end."
-    return "Name the one that `fem-impact run` printed at its end."
 
 
 @contextmanager

@@ -18,7 +18,14 @@ def render(options: Options) -> int:
     results = [checked_result(result) for result in options.results]
     out = checked_file(options.out) if options.out else None
     if options.field == PATH:
-        return _path(results, out, options)
+        if len(results) > 1 or options.first or options.last or options.speed or options.frames:
+            raise UsageError("shows all strikes of one result.", key="--field", value=PATH)
+        from fem_impact.films.path import render_path
+
+        film = render_path(results[0], out, options.size)
+        document = {"path": str(film.path), "notes": list(film.notes)}
+        print_answer(options, document, f"film: {film.path}\n", film.notes)
+        return 0
     for result in results:
         _check_fields(result)
     from fem_impact.films import film as films
@@ -50,19 +57,6 @@ def render(options: Options) -> int:
     return 0 if film.path else MissingLibraryError.exit_code
 
 
-def _path(results: list[Path], out: Path | None, options: Options) -> int:
-    """Make a film of the strikes of a result."""
-    if len(results) > 1 or options.first or options.last or options.speed or options.frames:
-        raise UsageError("shows all strikes of one result.", key="--field", value=PATH)
-    from fem_impact.films.path import render_path
-
-    film = render_path(results[0], out, options.size)
-    print_answer(
-        options, {"path": str(film.path), "notes": list(film.notes)}, f"film: {film.path}\n", film.notes
-    )
-    return 0
-
-
 def _check_fields(result: Path) -> None:
     """Refuse a result without fields, with the reason why it has none and what to do."""
     if (result / FIELDS).is_file():
@@ -76,7 +70,7 @@ def _check_fields(result: Path) -> None:
     from fem_impact.scene.shipped import load
 
     outcome = Outcome.read(result / "outcome.json")
-    fidelity, strikes = outcome.provenance.fidelity, isinstance(outcome.strikes.each, tuple)
+    fidelity = outcome.provenance.fidelity
     why, way = (
         ("its scene says save.frames = 0", "Run it with --set save.frames=120.")
         if fidelity == "solid"
@@ -85,10 +79,8 @@ def _check_fields(result: Path) -> None:
     stated = result / "scene.toml"
     kept = fidelity == "solid" and stated.is_file() and load(stated).save.frames > 0
     if runs or kept:
-        why, way = (
-            "its last level, which alone keeps them, did not end",
-            "Run it with --resume and more --budget.",
-        )
-    if strikes:
+        why = "its last level, which alone keeps them, did not end"
+        way = "Run it with --resume and more --budget."
+    if isinstance(outcome.strikes.each, tuple):
         way += f" Its strikes are filmed with --field {PATH}."
     raise ResultError(f"{result}: holds no {FIELDS}, the fields that a film shows: {why}. {way}")

@@ -1,7 +1,6 @@
 """The command ``report``: the HTML report of a result."""
 
 import sys
-from pathlib import Path
 
 from fem_impact.cli.parser import Options
 from fem_impact.cli.paths import checked_result
@@ -23,25 +22,19 @@ def report(options: Options) -> int:
         path = write_sheet(result, options.document, options.revision)
         print_answer(options, {"path": str(path)}, f"page to sign: {path}\n")
         return 0
+    from fem_impact.pages.html import film_of
     from fem_impact.pages.write import write_report
 
-    notes = _missing_film(result, options)
+    notes: list[str] = []
+    if not film_of(result) and (result / FIELDS).is_file():  # a film can be made
+        from fem_impact.films import film as films
+
+        if not options.quiet:
+            sys.stderr.write("drawing the film ...\n")
+        try:
+            notes = list(films.render(result).notes)
+        except (MissingLibraryError, ResultError) as error:
+            notes = [f"The page has no film: {error}"]
     path = write_report(result)
     print_answer(options, {"path": str(path), "notes": notes}, f"report: {path}\n", notes)
     return 0
-
-
-def _missing_film(result: Path, options: Options) -> list[str]:
-    """Make the film of a run that has fields and no film yet; return why there is none."""
-    from fem_impact.pages.html import film_of
-
-    if film_of(result) or not (result / FIELDS).is_file():
-        return []
-    from fem_impact.films import film as films
-
-    if not options.quiet:
-        sys.stderr.write("drawing the film ...\n")
-    try:
-        return list(films.render(result).notes)
-    except (MissingLibraryError, ResultError) as error:
-        return [f"The page has no film: {error}"]

@@ -140,11 +140,8 @@ def _say_fall(scene: Scene, changed: set[str], options: Options) -> None:
     """Say that the velocities are those of the angle before, or that the fall is as fast as it was."""
     impact = scene.impact
     given = any(key.startswith(("impact.v_", "impact.speed", "impact.height")) for key in changed)
-    if (
-        given
-        or not {"impact.angle", "impact.angle_rad"} & changed
-        or (impact.height and impact.slope is not None)
-    ):
+    turned = {"impact.angle", "impact.angle_rad"} & changed
+    if given or not turned or (impact.height and impact.slope is not None):
         return
     from fem_impact.scene.shipped import load_to_change
 
@@ -186,11 +183,8 @@ def named_scene(options: Options, needed: Sequence[str]) -> Scene | None:
         remedy = "Name a scene to change, or leave --set out."
         raise UsageError("changes a scene, and none is named.", key="--set", remedy=remedy)
     if missing:
-        what = (
-            "no scene is given"
-            if len(missing) == len(needed)
-            else f"{', '.join(missing)} {'are' if missing[1:] else 'is'} missing"
-        )
+        what = f"{', '.join(missing)} {'are' if missing[1:] else 'is'} missing"
+        what = "no scene is given" if len(missing) == len(needed) else what
         remedy = "Name a scene (`fem-impact scenes` lists them), or state a solid steel rod in full."
         raise UsageError(f"{what}.", key="SCENE", remedy=remedy)
     return None

@@ -2,8 +2,6 @@
 
 import math
 import sys
-from collections.abc import Iterator
-from typing import Any
 
 from fem_impact.cli.parser import Options
 from fem_impact.cli.terminal import print_json, print_table
@@ -38,9 +36,8 @@ def scenes(options: Options) -> int:
         print_json({"scenes": rows})
     else:
         columns = "id", "speed", "title"
-        print_table(
-            Table.of(columns, [[row[key] for key in columns] for row in rows], left=range(3)), options
-        )
+        texts = [[row[key] for key in columns] for row in rows]
+        print_table(Table.of(columns, texts, left=range(3)), options)
     return 0
 
 
@@ -55,34 +52,29 @@ def _materials(options: Options) -> int:
         for name, m in known.items()
     ]
     if options.json:
-        tables = (dict(zip(HEAD, row, strict=True)) for row in rows)
-        beside = map(_beside, known)
-        print_json({"materials": [one | more for one, more in zip(tables, beside, strict=True)]})
+        listed = [
+            {
+                **dict(zip(HEAD, row, strict=True)),
+                "aliases": list(library.aliases_of(name)),
+                "family": library.family_of(library.material(name)),
+                "about": library.about(name),
+                "intervals": library.intervals_of(name),
+                "sources": library.sources_of(name),
+            }
+            for name, row in zip(known, rows, strict=True)
+        ]
+        print_json({"materials": listed})
         return 0
     texts = [(row[0], *("none" if x is None else f"{x:.4g}" for x in row[1:])) for row in rows]
     print_table(Table.of(HEAD, texts), options)
-    sys.stdout.write("".join(f"{line}\n" for name in known for line in _lines(name)))
+    for name in known:
+        other = ", ".join(library.aliases_of(name))
+        lines = ["", *wrapped(f"{name}{f' ({other})' if other else ''}: {library.about(name)}")]
+        for key, value, interval, source in library.sourced_values(name):
+            spread = f" ({interval})" if interval else ""
+            lines += wrapped(f"{' '.join(filter(None, (key, value)))}{spread}: {source}", "  ")
+        sys.stdout.writelines(f"{line}\n" for line in lines)
     return 0
-
-
-def _beside(name: str) -> dict[str, Any]:
-    """Return what stands beside the values of a shipped material."""
-    return {
-        "aliases": list(library.aliases_of(name)),
-        "family": library.family_of(library.material(name)),
-        "about": library.about(name),
-        "intervals": library.intervals_of(name),
-        "sources": library.sources_of(name),
-    }
-
-
-def _lines(name: str) -> Iterator[str]:
-    """Return name, aliases and state of a shipped material, and each value with its source."""
-    other = ", ".join(library.aliases_of(name))
-    yield from ("", *wrapped(f"{name}{f' ({other})' if other else ''}: {library.about(name)}"))
-    for key, value, interval, source in library.sourced_values(name):
-        spread = f" ({interval})" if interval else ""
-        yield from wrapped(f"{' '.join(filter(None, (key, value)))}{spread}: {source}", "  ")
 
 
 def _friction(options: Options) -> int:

@@ -18,19 +18,21 @@ from fem_impact.scene.library import CHANGED, intervals_of, materials
 from fem_impact.scene.material import JohnsonCookRate, Material, tested_at
 from fem_impact.scene.types import Scene, digest, to_dict
 
-__all__ = ["statement_of"]
-
 
 def statement_of(case: Case) -> dict[str, Any]:
     """Return the document of ``--json``, from which the texts are made; SI units."""
-    scene = case.scene
+    scene, mesh = case.scene, list[str]()
+    if own := scene.projectile.own_mesh:  # how its file was taken, a sentence each
+        body = own.body()
+        cells = f"{len(body.half.cells)} hexahedra in the half y >= 0"
+        mesh = [f"mesh {shown_path(own.path)}: {cells}", *body.told]
     # why a fidelity refuses the scene, None where it answers it; finite elements do
     refusals: dict[str, str | None] = {"solid": None}
     refusals |= {fidelity: refused_by(scene, fidelity) or None for fidelity in ("modal", "rigid")}
     return {
         "scene": to_dict(scene),
         "digest": digest(scene),
-        "mesh": _mesh_entry(scene),
+        "mesh": mesh,
         "body": _body_entry(case.bodies),
         "sources": {row[0]: row[2] for row in inputs(scene).rows if row[2] != STATED},
         "intervals": {
@@ -39,7 +41,11 @@ def statement_of(case: Case) -> dict[str, Any]:
             for key, interval in intervals_of(metal.name).items()
         },
         "laws": laws(case.bodies),
-        "flow_stress_Pa": _flow_stresses(case),
+        # of each body that yields, at rest and at strain rates, 1/s
+        "flow_stress_Pa": {
+            body: dict(zip(("0", *(f"{rate:g}" for rate in RATES)), stresses, strict=True))
+            for body, stresses in flow_stresses(case.bodies).items()
+        },
         "defaults": _defaults(scene),
         "effects": [{key.name: key.of(choice) for key in keys_of(EffectChoice)} for choice in case.choices],
         "limitations": [asdict(one) for one in case.limitations],
@@ -72,15 +78,6 @@ def _of_rate(place: str, metal: Material) -> Iterator[dict[str, str]]:
         if value == unstated.get(number.key, number.default):
             key = f"{place}.rate.{number.key}"
             yield {"key": key, "value": str(number.write(value)), "source": number.source}
-
-
-def _mesh_entry(scene: Scene) -> list[str]:
-    """Return how the file of a mesh was taken, a sentence each."""
-    mesh = scene.projectile.own_mesh
-    if mesh is None:
-        return []
-    body = mesh.body()
-    return [f"mesh {shown_path(mesh.path)}: {len(body.half.cells)} hexahedra in the half y >= 0", *body.told]
 
 
 def _body_entry(bodies: Bodies) -> dict[str, float]:
@@ -120,10 +117,3 @@ def _size_entry(size: RunSize) -> dict[str, float]:
         "cpu_s": size.time,
         "most_cpu_s": size.most_time,
     }
-
-
-def _flow_stresses(case: Case) -> dict[str, dict[str, float]]:
-    """Return the flow stress, Pa, of each body that yields, at rest and at strain rates, 1/s."""
-    by_body = flow_stresses(case.bodies)
-    rates = ["0", *(f"{rate:g}" for rate in RATES)]
-    return {body: dict(zip(rates, stresses, strict=True)) for body, stresses in by_body.items()}

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
-from concurrent.futures import Executor
 from contextlib import closing
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -21,7 +20,6 @@ from fem_impact.progress import clock_text
 if TYPE_CHECKING:
     from fem_impact.answers.report import Request
     from fem_impact.jobs.run import JobGroup, Pace, WorkForecast
-    from fem_impact.progress import ProgressMeter
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,7 +105,7 @@ def study(options: Options) -> int:
 
 def carry_out(module: str, options: Options, request: Request) -> int:
     """Run a study by its module of `fem_impact.evidence` and print its result, or estimate its time."""
-    from fem_impact.evidence.runner import estimate_study
+    from fem_impact.evidence.runner import estimate_study, run_study
     from fem_impact.files.atomic import directory_lock
     from fem_impact.jobs.executors import LocalProcesses, on_scheduler
 
@@ -119,40 +117,27 @@ def carry_out(module: str, options: Options, request: Request) -> int:
         closing(chosen_meter(options)) as meter,
         lent as executor,
     ):
-        if not options.estimate:
-            return _run(module, options, request, meter, executor, page)
-        forecast = estimate_study(module, request, meter, executor)
+        if options.estimate:
+            forecast = estimate_study(module, request, meter, executor)
+            meter.close()
+            print_answer(options, asdict(forecast), _estimate_text(forecast))
+            return 0
+        result, notes = run_study(module, request, meter, executor), []
+        if result.runs:
+            from fem_impact.pages.write import present
+
+            presenter = None if options.scheduler else executor  # workers of a cluster may not see the files
+            notes = present(result.runs, request.out, meter, presenter)
         meter.close()
-        print_answer(options, asdict(forecast), _estimate_text(forecast))
-        return 0
-
-
-def _run(
-    module: str,
-    options: Options,
-    request: Request,
-    meter: ProgressMeter,
-    executor: Executor,
-    page: Path | None,
-) -> int:
-    from fem_impact.evidence.runner import run_study
-
-    result, notes = run_study(module, request, meter, executor), []
-    if result.runs:
-        from fem_impact.pages.write import present
-
-        presenter = None if options.scheduler else executor  # workers of a cluster may not see the files
-        notes = present(result.runs, request.out, meter, presenter)
-    meter.close()
-    if page:
-        write_study_page(page, request.command(options.name), result.text, request.out)
-    if options.json:
-        print_json({**result.document, "notes": [*result.document.get("notes", []), *notes]})
-    else:
-        print_notes(notes)
-        print_markdown(result.text, options)
-        sys.stdout.write(f"results: {request.out}\n")
-    return RunError.exit_code if result.document["failures"] else 0
+        if page:
+            write_study_page(page, request.command(options.name), result.text, request.out)
+        if options.json:
+            print_json({**result.document, "notes": [*result.document.get("notes", []), *notes]})
+        else:
+            print_notes(notes)
+            print_markdown(result.text, options)
+            sys.stdout.write(f"results: {request.out}\n")
+        return RunError.exit_code if result.document["failures"] else 0
 
 
 def _estimate_text(forecast: WorkForecast) -> str:
@@ -188,12 +173,18 @@ def _basis(fidelity: str, pace: Pace) -> str:
 
 def _checked_ids(ids: Sequence[str], own: bool) -> tuple[str, ...]:
     """Return the ids of measured sets, with ``own`` also files of scenes that name own tests, each once."""
+    from fem_impact.run.tests import tests_of
+    from fem_impact.scene.shipped import load
     from fem_impact.scene.types import MEASURED_SETS
 
     by_id = dict[str, str]()
     for name in dict.fromkeys(ids):
         if own and name.endswith(".toml"):
-            scene_id = _id_with_tests(name)
+            scene = load(name)
+            if tests_of(scene) is None:
+                remedy = 'Write measured = "my_tests.csv" in it.'
+                raise UsageError("states no measured tests.", key="ID", value=name, remedy=remedy)
+            scene_id = scene.id
         elif name in MEASURED_SETS:
             scene_id = name
         else:
@@ -204,15 +195,3 @@ def _checked_ids(ids: Sequence[str], own: bool) -> tuple[str, ...]:
             remedy = "Give each scene an id of its own."
             raise SceneError(problem, key="id", value=scene_id, remedy=remedy, source=name)
     return tuple(by_id.values())
-
-
-def _id_with_tests(name: str) -> str:
-    """Return the id of a scene file; refuse one without tests, or with some that cannot be read."""
-    from fem_impact.run.tests import tests_of
-    from fem_impact.scene.shipped import load
-
-    scene = load(name)
-    if tests_of(scene) is None:
-        remedy = 'Write measured = "my_tests.csv" in it.'
-        raise UsageError("states no measured tests.", key="ID", value=name, remedy=remedy)
-    return scene.id

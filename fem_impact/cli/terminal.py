@@ -147,27 +147,25 @@ class LiveMeter:
         if now < self._next:
             return
         self._next = now + 0.1
-        bar = self._bar = self._bar or self._begun()
+        if self._bar is None:
+            from rich.progress import BarColumn, TextColumn
+            from rich.progress import Progress as Bar
+            from rich.table import Column
+
+            line = Column(no_wrap=True, overflow="ellipsis")
+            bar_of = BarColumn(bar_width=20, table_column=Column(width=20))
+            columns = bar_of, TextColumn("{task.description}", markup=False, table_column=line)
+            self._bar = Bar(*columns, console=self._console, auto_refresh=False)
+            self._bar.add_task("")
+            self._bar.start()
         done, total = (
             (progress.done, progress.total)
             if isinstance(progress, CaseProgress)
             else (progress.time_s, progress.end_time_s)
         )
         text = printable(describe(progress))
-        bar.update(bar.task_ids[0], description=text, completed=done, total=total, refresh=True)
-
-    def _begun(self) -> Bar:
-        from rich.progress import BarColumn, TextColumn
-        from rich.progress import Progress as Bar
-        from rich.table import Column
-
-        line = Column(no_wrap=True, overflow="ellipsis")
-        bar_of = BarColumn(bar_width=20, table_column=Column(width=20))
-        columns = bar_of, TextColumn("{task.description}", markup=False, table_column=line)
-        bar = Bar(*columns, console=self._console, auto_refresh=False)
-        bar.add_task("")
-        bar.start()
-        return bar
+        task = self._bar.task_ids[0]
+        self._bar.update(task, description=text, completed=done, total=total, refresh=True)
 
     def close(self) -> None:
         """Leave the last line standing and go to the next."""

@@ -30,14 +30,9 @@ def validate(options: Options) -> int:
         found = validated(scene, intervals or None, samples=options.samples, options=kept, **fidelities)
     line = f"{command_line(options, 'validate', 'uncertain')} --fidelity solid"
     solid = range_text(*LevelMeshes.of(Case(scene)).whole_s), line
-    print_answer(options, _document(found), _text(found, options.fidelity, solid, unused_columns(scene)))
-    return 0
-
-
-def _document(found: Validation) -> dict[str, Any]:
     names = [one.quantity for one in found.comparisons]
     shares = dict(zip((*found.inputs, "tests", "model"), found.shares.tolist(), strict=True))
-    return {
+    document = {
         "comparisons": [
             {name: getattr(one, name) for name in ("quantity", *TERMS, "verdict")}
             for one in found.comparisons
@@ -53,6 +48,8 @@ def _document(found: Validation) -> dict[str, Any]:
         "measure_better": found.better[0],
         "inputs_by": found.varied,
     }
+    print_answer(options, document, _text(found, options.fidelity, solid, unused_columns(scene)))
+    return 0
 
 
 def _text(found: Validation, fidelity: str, solid: tuple[str, str], notes: list[str]) -> str:

@@ -51,9 +51,13 @@ def read_values(text: str) -> tuple[str, list[Any]]:
     if match is None and re.match(rf"\s*{NUMBER}[^,]*(\.\.|:)", listed):
         problem = "is no range: that is first..last:step, with one unit at its end."
         raise UsageError(problem, key=f'"{text}"', remedy=_EXAMPLE)
+    key = key.strip()
     if match:
-        return key.strip(), _steps(match, text)
-    return key.strip(), _listed(listed, key.strip())
+        return key, _steps(match, text)
+    parts = [part.strip() for part in _split(listed)]
+    _, unit = quantity(parts[-1]) or ("", "")  # which is that of those before without one
+    named = names_material(key)  # a number is another name of a shipped one then, such as 4340
+    return key, [_name(part, key) if named and quantity(part) else _value(part, unit) for part in parts]
 
 
 def read_all(texts: Iterable[str], option: str) -> dict[str, list[Any]]:
@@ -73,14 +77,9 @@ def _steps(match: re.Match[str], text: str) -> list[Any]:
         problem = "has no step that leads from its first to its last value."
         raise UsageError(problem, key=f'"{text}"', remedy=_EXAMPLE)
     count = int((last - first) / step)
-    if first + count * step != last:
-        raise _no_step(match, text, count)
-    return [_with_unit(f"{first + at * step:f}", match[4]) for at in range(count + 1)]
-
-
-def _no_step(match: re.Match[str], text: str, count: int) -> UsageError:
-    """Return the refusal of a range whose steps do not meet its end, with the nearest ranges that do."""
-    first, last, step = (Decimal(part) for part in match.group(1, 2, 3))
+    if first + count * step == last:
+        return [_with_unit(f"{first + at * step:f}", match[4]) for at in range(count + 1)]
+    # the nearest ranges whose steps meet their end
     near = [number for number in (count, count + 1) if number]
     pairs = [(first + number * step, step) for number in near]
     pairs += [(last, (last - first) / number) for number in near]
@@ -90,18 +89,7 @@ def _no_step(match: re.Match[str], text: str, count: int) -> UsageError:
         if len(by.normalize().as_tuple().digits) <= MOST_DIGITS
     ]
     problem = "does not come to its last value in whole steps."
-    return UsageError(problem, key=f'"{text}"', remedy=f"Write {' or '.join(ranges)}.")
-
-
-def _listed(text: str, key: str) -> list[Any]:
-    """Return the values of a list; a unit after the last one is that of those before without one.
-
-    A number in the place of a material, such as 4340, is another name of a shipped one.
-    """
-    parts = [part.strip() for part in _split(text)]
-    _, unit = quantity(parts[-1]) or ("", "")
-    named = names_material(key)
-    return [_name(part, key) if named and quantity(part) else _value(part, unit) for part in parts]
+    raise UsageError(problem, key=f'"{text}"', remedy=f"Write {' or '.join(ranges)}.")
 
 
 def _name(number: str, key: str) -> str:
@@ -143,10 +131,9 @@ def _value(text: str, unit: str | None) -> Any:
 
 
 def _with_unit(number: str, unit: str | None) -> Any:
-    return f"{number} {unit.strip()}" if unit else tomllib.loads(f"value = {_plain(number)}")["value"]
-
-
-def _plain(number: str) -> str:
-    """Return a number as TOML writes it: with digits on both sides of its point."""
+    if unit:
+        return f"{number} {unit.strip()}"
     whole, point, rest = number.partition(".")
-    return f"{whole or '0'}.{rest or '0'}" if point else number
+    if point:  # TOML wants digits on both sides of it
+        number = f"{whole or '0'}.{rest or '0'}"
+    return tomllib.loads(f"value = {number}")["value"]
