@@ -1,7 +1,7 @@
 """One scene with values varied in all combinations: table, figures, report, and a store to go on from."""
 
 import tempfile
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import nullcontext
 from dataclasses import replace
@@ -142,7 +142,12 @@ def _unfilled(every: Sequence[Variation], fidelity: str, columns: Sequence[str])
     """Return which columns no case can fill, with the reason, as known before any run."""
     scene = next(case.scene for case in every if case.scene is not None)
     try:
-        reasons = _without_heat(scene) if fidelity == "solid" else simulate(scene, fidelity).reasons
+        if fidelity != "solid":
+            reasons = simulate(scene, fidelity).reasons
+        elif "contact-heating" in (case := compiled(scene, "solid")).active:
+            reasons = {}
+        else:
+            reasons = {key.name: why_off(case.bodies) for key in KEYS if key.path[0] == "heat"}
     except FemImpactError:
         return []  # its row says why
     groups: dict[str, list[str]] = {}
@@ -150,14 +155,6 @@ def _unfilled(every: Sequence[Variation], fidelity: str, columns: Sequence[str])
         if name in reasons:
             groups.setdefault(reasons[name].rstrip("."), []).append(name)
     return [f"not known in this sweep: {', '.join(names)} ({why})" for why, names in groups.items()]
-
-
-def _without_heat(scene: Scene) -> dict[str, str]:
-    """Return why finite elements do not know the heat of a scene's contact, by key; nothing if they do."""
-    case = compiled(scene, "solid")
-    if "contact-heating" in case.active:
-        return {}
-    return {key.name: why_off(case.bodies) for key in KEYS if key.path[0] == "heat"}
 
 
 def cases_digest(every: Sequence[Variation], fidelity: str) -> str:
@@ -186,8 +183,7 @@ def publish_sweep(
             *_findings(results, drawn),
             *_not_known(results, columns or SHORT),
             *_no_error(results, columns or SHORT),
-            *_cells(results),
-            *_friction(results),
+            *_differing(results),
             EXPLAINED,
         ],
         pictures=_pictures(results, drawn),
@@ -208,10 +204,12 @@ def _not_known(results: Results, columns: Sequence[str]) -> list[str]:
         cases = tuple(case for case, why in reasons.items() if name in why)
         if cases:
             groups.setdefault((cases, reasons[cases[0]][name].rstrip(".")), []).append(f"`{name}`")
-    return [
-        f"Not known in {_share(cases, len(reasons))}: {', '.join(names)} ({why})."
-        for (cases, why), names in groups.items()
-    ]
+    sentences = []
+    for (cases, why), names in groups.items():
+        where = f"{len(cases)} of {len(reasons)} cases, the first of them {cases[0]}"
+        where = "any case" if len(cases) == len(reasons) else where
+        sentences.append(f"Not known in {where}: {', '.join(names)} ({why}).")
+    return sentences
 
 
 def _no_error(results: Results, columns: Sequence[str]) -> list[str]:
@@ -223,40 +221,28 @@ def _no_error(results: Results, columns: Sequence[str]) -> list[str]:
     return [f"`{HEATS.name}` has no half-width: in {first} {ends[first]}."]
 
 
-def _share(cases: Sequence[str], count: int) -> str:
-    if len(cases) == count:
-        return "any case"
-    return f"{len(cases)} of {count} cases, the first of them {cases[0]}"
-
-
-def _cells(results: Results) -> list[str]:
-    """Return whether the cells of the meshes differ from case to case."""
-    ends = {}
+def _differing(results: Results) -> Iterator[str]:
+    """Yield what else than the varied keys differs from case to case: cells of the meshes, friction."""
+    ends = []
     for name in CELLS:
         sizes = results.numbers(name)
         if np.isfinite(sizes).any() and np.nanmax(sizes) > (1 + 1e-6) * np.nanmin(sizes):
-            ends[name] = f"`{name}` {1e3 * np.nanmin(sizes):.3g} to {1e3 * np.nanmax(sizes):.3g} mm"
-    if not ends:
-        return []
-    return [
-        f"The cells of the meshes differ between the cases ({', '.join(ends.values())}), as they follow the "
-        "scene: a part of each difference is the mesh's. State accuracy.tip_size for equal cells."
-    ]
-
-
-def _friction(results: Results) -> list[str]:
-    """Return whether the friction differs from case to case though it is not varied."""
+            ends.append(f"`{name}` {1e3 * np.nanmin(sizes):.3g} to {1e3 * np.nanmax(sizes):.3g} mm")
+    if ends:
+        yield (
+            f"The cells of the meshes differ between the cases ({', '.join(ends)}), as they follow the "
+            "scene: a part of each difference is the mesh's. State accuracy.tip_size for equal cells."
+        )
     values = results.numbers(FRICTION)
     if any(key.startswith("surface") for key in results.vary) or not np.isfinite(values).any():
-        return []
+        return
     low, high = np.nanmin(values), np.nanmax(values)
-    if high - low < 1e-6:
-        return []
-    return [
-        f"The friction differs between the cases (`{FRICTION}` {low:.3g} to {high:.3g}), as it follows the "
-        "pair of materials: a part of each difference is the friction's. State surface.friction for an equal "
-        "one."
-    ]
+    if high - low >= 1e-6:
+        yield (
+            f"The friction differs between the cases (`{FRICTION}` {low:.3g} to {high:.3g}), as it follows "
+            "the pair of materials: a part of each difference is the friction's. State surface.friction for "
+            "an equal one."
+        )
 
 
 def _findings(results: Results, drawn: Sequence[str]) -> list[str]:

@@ -133,10 +133,8 @@ class Results(Sequence[SweepRow]):
                 raise UsageError("is not varied in this sweep.", key=key, remedy=remedy)
             rows = tuple(row for row in rows if _same(row.case.values[key], value))
             if not rows:
-                listed = ", ".join(map(str, self.vary[key]))
-                raise UsageError(
-                    "is no value of this sweep.", key=key, value=value, remedy=f"There are: {listed}."
-                )
+                remedy = f"There are: {', '.join(map(str, self.vary[key]))}."
+                raise UsageError("is no value of this sweep.", key=key, value=value, remedy=remedy)
         return Results(self.vary, rows)
 
     def numbers(self, name: str) -> Array:

@@ -226,10 +226,9 @@ def _intervals(scene: Scene, uncertain: Mapping[str, Ends]) -> list[Interval]:
         raise UsageError("is missing: no input of the scene is uncertain.", key="uncertain=", remedy=remedy)
     intervals = [interval_of(scene, key, ends) for key, ends in uncertain.items()]
     for key, own in left_out(scene, intervals).items():
+        problem = f"does not hold the scene's own value, {own}."
         remedy = f"The model is computed at that value: give it one in the interval, --set {key}=VALUE."
-        raise UsageError(
-            f"does not hold the scene's own value, {own}.", key=f"uncertain {key}", remedy=remedy
-        )
+        raise UsageError(problem, key=f"uncertain {key}", remedy=remedy)
     for corner in islice(product((0.0, 1.0), repeat=len(intervals)), CORNERS):
         at_place(scene, intervals, np.array(corner))
     return intervals
@@ -326,12 +325,8 @@ def _about(scene: Scene, key: str, text: str) -> Interval:
     if isinstance(value, str) or isinstance(half, str) or not half > 0:
         where = f"value, {named(value_there)}" if value_there != "" else "value: it states none"
         problem = f"gives no interval about the scene's {where}."
-        raise UsageError(
-            problem,
-            key=key,
-            value=text,
-            remedy=f"Write {key}=LOW,HIGH with one unit, if the scene takes that key.",
-        )
+        remedy = f"Write {key}=LOW,HIGH with one unit, if the scene takes that key."
+        raise UsageError(problem, key=key, value=text, remedy=remedy)
     return key, value - half, value + half, unit
 
 
@@ -374,14 +369,8 @@ def at_place(scene: Scene, intervals: Sequence[Interval], place: Array) -> Scene
     try:
         return replace(replace_all(scene, changes), measured=scene.measured)  # its tests are of this impact
     except SceneError as error:
-        raise _refused(scene, intervals, changes, error) from None
-
-
-def _refused(
-    scene: Scene, intervals: Sequence[Interval], changes: dict[str, Any], error: SceneError
-) -> SceneError:
-    """Return why a scene is refused at a place, with the intervals but for which it would not be."""
-    for key in [*changes]:
+        refused = error
+    for key in [*changes]:  # the intervals but for which the scene would not be refused are left
         others = {other: value for other, value in changes.items() if other != key}
         try:
             replace_all(scene, others)
@@ -392,5 +381,6 @@ def _refused(
         for key, low, high, unit in intervals
         if key in changes
     )
-    remedy = f"{error.remedy} (Within the stated {where}.)".strip()
-    return SceneError(error.problem, key=error.key, value=error.value, remedy=remedy, source="uncertain=")
+    remedy = f"{refused.remedy} (Within the stated {where}.)".strip()
+    key, value = refused.key, refused.value
+    raise SceneError(refused.problem, key=key, value=value, remedy=remedy, source="uncertain=")

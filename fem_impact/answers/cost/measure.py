@@ -13,8 +13,9 @@ from fem_impact.answers.cost.judge import Judged, SettingKind, elements_of, fron
 from fem_impact.answers.refine.extrapolate import QuantityLimit, quantity_limits
 from fem_impact.answers.refine.quantities import FLOORS, QUANTITIES
 from fem_impact.answers.refine.work import Levels, LevelsJob
+from fem_impact.answers.simulate import refused_by
 from fem_impact.case.case import Case
-from fem_impact.errors import RunError, SceneError
+from fem_impact.errors import RunError
 from fem_impact.files.atomic import directory_lock, write_text
 from fem_impact.jobs.executors import LocalProcesses
 from fem_impact.jobs.job import STORE, Failure, Job, Store, Work
@@ -88,7 +89,7 @@ def jobs_of(scene: Scene, finer: int, budget_s: float) -> list[Work[Outcome | Le
     jobs: list[Work[Outcome | Levels]] = [
         Job(f"{scene.id}: {fidelity}", scene, fidelity)
         for fidelity in ("rigid", "modal")
-        if _is_computed(scene, fidelity)
+        if not refused_by(scene, fidelity)
     ]
     for places, kind in PLACES.items():
         at = replace(scene, accuracy=replace(scene.accuracy, offsets=places))
@@ -100,14 +101,6 @@ def jobs_of(scene: Scene, finer: int, budget_s: float) -> list[Work[Outcome | Le
         changed = {name: replace_all(scene, changes) for name, changes in variants.items()}
         jobs += [LevelsJob(f"{scene.id}: {name}", variant) for name, variant in changed.items()]
     return jobs
-
-
-def _is_computed(scene: Scene, fidelity: str) -> bool:
-    try:
-        Case.of(scene, fidelity)
-    except SceneError:
-        return False
-    return True
 
 
 def measure(
@@ -248,22 +241,38 @@ def cost_tables(cost: CostStudy, names: Sequence[str] = NAMES) -> list[tuple[str
     The first starts with the limit of each quantity; an asterisk marks the Pareto front of that quantity.
     Tables without rows are left out.
     """
-    listed = [name for name in NAMES if name in names and name in cost.limits]
+    shown = [one for one in QUANTITIES if one.name in names and one.name in cost.limits]
+    listed = [quantity.name for quantity in shown]
     columns = (*COST_COLUMNS, *map(Column, listed))
     settings = [setting for setting in cost.settings if setting.kind != "variant"]
+    no_cost, limits = ("",) * (len(COST_COLUMNS) - 1), [cost.limits[name] for name in listed]
+    # of each quantity, above the settings
+    of_limits: list[tuple[Cell, ...]] = [
+        ("unit", *no_cost, *(quantity.unit for quantity in shown)),
+        ("limit", *no_cost, *(limit.value for limit in limits)),
+        ("its band, %", *no_cost, *(f"{100 * limit.error:.2g}" for limit in limits)),
+    ]
+    of_levels: list[tuple[Cell, ...]] = [
+        (
+            *(places, n, f"{1e3 * level.size:.3g}", level.cpu_s, elements_of(level)),
+            *(level.mean(quantity.keys) for quantity in shown),
+        )
+        for places, levels in cost.levels.items()
+        for n, level in enumerate(levels.meshes, 1)
+    ]
     tables = (
         (
             "errors",
             f"Errors in % of the quantity ({FLOORS}); of levels the band that they tell, or their distance "
             "from the limit if that is more; *: no other setting is both quicker and more accurate",
             columns,
-            [*_limit_rows(cost, listed), *(_line(setting, listed) for setting in settings)],
+            [*of_limits, *(_line(setting, listed) for setting in settings)],
         ),
         (
             "levels",
             "Each level: processor time of all its runs, and the means of what they gave",
             (Column("places"), Column("level"), Column("mm"), *COST_COLUMNS[1:3], *map(Column, listed)),
-            _level_rows(cost, listed),
+            of_levels,
         ),
         (
             "variants",
@@ -273,29 +282,6 @@ def cost_tables(cost: CostStudy, names: Sequence[str] = NAMES) -> list[tuple[str
         ),
     )
     return [(name, caption, Table(head, tuple(rows))) for name, caption, head, rows in tables if rows]
-
-
-def _limit_rows(cost: CostStudy, names: Sequence[str]) -> list[tuple[Cell, ...]]:
-    """Return the rows above the settings: unit, limit and its half-width of each quantity."""
-    units = {quantity.name: quantity.unit for quantity in QUANTITIES}
-    costs = ("",) * (len(COST_COLUMNS) - 1)
-    return [
-        ("unit", *costs, *(units[name] for name in names)),
-        ("limit", *costs, *(cost.limits[name].value for name in names)),
-        ("its band, %", *costs, *(f"{100 * cost.limits[name].error:.2g}" for name in names)),
-    ]
-
-
-def _level_rows(cost: CostStudy, names: Sequence[str]) -> list[tuple[Cell, ...]]:
-    keys = {quantity.name: quantity.keys for quantity in QUANTITIES}
-    return [
-        (
-            *(places, n, f"{1e3 * level.size:.3g}", level.cpu_s, elements_of(level)),
-            *(level.mean(keys[name]) for name in names),
-        )
-        for places, levels in cost.levels.items()
-        for n, level in enumerate(levels.meshes, 1)
-    ]
 
 
 def _line(setting: Judged, names: Sequence[str]) -> tuple[Cell, ...]:

@@ -30,12 +30,9 @@ def _open_of(number: int, each: Sequence[Sequence[StrikeRecord]], levels: Sequen
         if (one[number].fidelity, one[number].part) != ("solid", part):
             break
         struck.insert(0, one[number])
-    return _open(levels[-len(struck) :], struck) if len(struck) > 1 else None
-
-
-def _open(levels: Sequence[LevelRun], struck: Sequence[StrikeRecord]) -> Doubt:
-    """Return the half-widths of a strike on levels from coarse to fine."""
-    runs = [level.runs for level in levels]
+    if len(struck) < 2:
+        return None
+    runs = [level.runs for level in levels[-len(struck) :]]
     sizes, wide = zip(*((one.size, one.wide) for one in runs), strict=True)
 
     def half(values: Sequence[float]) -> float:

@@ -78,8 +78,7 @@ class Verdict:
         if self.here is None:
             return f"Verdict({self.scene.id!r}: rigid theory undecided, no model tells how {self.of} changes)"
         return (
-            f"Verdict({self.scene.id!r}: rigid theory {self.answer}, {self.of} changes by "
-            f"{self.here.told}, "
+            f"Verdict({self.scene.id!r}: rigid theory {self.answer}, {_told(self.here)}, "
             f"vibration takes {100 * self.here.E_vib:.2g} % of E_0; {self.fidelity})"
         )
 
@@ -89,7 +88,7 @@ class Verdict:
         rows: list[tuple[str, str, str]] = [("here", self.answer, told)]
         if self.worst is not None:
             where = f"worst inclination, {degrees(self.worst.angle):.3g} deg"
-            rows.append((where, self.worst_answer, f"{self.worst.of} changes by {self.worst.told}"))
+            rows.append((where, self.worst_answer, _told(self.worst)))
         rows += [("missing", "", self.missing)] if self.missing else []
         rows += [(f"step {number}", "", step) for number, step in enumerate(self.steps, 1)]
         rows += [("note", "", note) for note in self.notes]
@@ -271,7 +270,7 @@ def _over_angles(
             pair = vibration.modal_pair(one)
             if not (failed := vibration.unfinished(pair, of)):
                 change = vibration.modal_effect(one, pair, of).at_least(off)
-                failed = "" if change.is_known else f"{of} changes by {change.told}"
+                failed = "" if change.is_known else _told(change)
         except SceneError as error:
             failed = str(error)
         if failed:
@@ -321,19 +320,21 @@ def sequence_verdict(scene: Scene, tolerance: float) -> list[str]:
         loses = abs(one.lost - other.lost), allowed, _half(modal, number, "E_after_J")
         hardest = _all_within([faster, loses])
     hardest = hardest if number <= certain else "undecided"
-    lost = [(known(one.friction), _all_lost(one)) for one in (rigid, modal)]
+    lost = []
+    for strikes in (rigid, modal):
+        parts = strikes.friction, strikes.plastic, strikes.damping, strikes.settled, strikes.other
+        lost.append((known(strikes.friction), sum(map(known, parts))))
     rubs, all_ = (abs(a - b) for a, b in zip(*lost, strict=True))
     half = _half(modal, last, "E_after_J") if last <= certain else inf
     rubbing = inf if isinstance(modal.friction_half, Unknown) else modal.friction_half
     whole = _all_within([(rubs, allowed, rubbing), (all_, allowed, half)])
     whole = min(hardest, whole, key=vibration.WORST_FIRST.index)
     rigidly, by_modes = (f"{lost_all:.3g} J, {rubbed:.3g} J of it by friction" for rubbed, lost_all in lost)
-    ratios = modal.other_end, rigid.other_end
     ends = (
         "does not strike by itself"
-        if isinstance(one, Unknown)
-        else f"strikes {one:.3g} times as fast as the first strike came"
-        for one in ratios
+        if isinstance(ratio, Unknown)
+        else f"strikes {ratio:.3g} times as fast as the first strike came"
+        for ratio in (modal.other_end, rigid.other_end)
     )
     which = f"number {number} by the reduced model"
     if number > certain:
@@ -359,11 +360,6 @@ def _all_within(differences: Sequence[tuple[float, float, float]]) -> vibration.
     if any(apart - half > allowed for apart, allowed, half in differences):
         return "no"
     return "yes" if all(apart + half <= allowed for apart, allowed, half in differences) else "undecided"
-
-
-def _all_lost(strikes: Strikes) -> float:
-    parts = strikes.friction, strikes.plastic, strikes.damping, strikes.settled, strikes.other
-    return sum(known(part) for part in parts)
 
 
 def _struck(each: tuple[StrikeRecord, ...], number: int) -> str:

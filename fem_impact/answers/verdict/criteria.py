@@ -280,7 +280,8 @@ class HeatCriterion(Limited):
         if len(levels) < self.needed or not levels[-1].runs.wide:
             return None
         scene = levels[-1].cases[0].scene
-        *_, before, last = (_melts(level.outcome.heat.rise) for level in levels)
+        rises = [level.outcome.heat.rise for level in levels[-2:]]
+        before, last = (isinstance(rise, Unknown) and rise.reason.endswith(MELTS) for rise in rises)
         if last:
             return _solid_metal(scene, Bound(inf, inf if before else self.base(scene), inf))
         bound = super().solid(levels)
@@ -293,10 +294,6 @@ class HeatCriterion(Limited):
         plain, _ = super().meshed(scene)
         on = {*Case(plain).active, "contact-heating"}
         return replace(plain, effects=tuple(name for name in NAMES if name in on)), None
-
-
-def _melts(rise: Num) -> bool:
-    return isinstance(rise, Unknown) and rise.reason.endswith(MELTS)
 
 
 def _solid_metal(scene: Scene, bound: Bound) -> Bound:

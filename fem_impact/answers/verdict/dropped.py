@@ -1,7 +1,6 @@
 """A dropped rod to be assessed: its distance from the measured sets, and as a scene and back."""
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 from math import hypot
 from typing import Any, Literal
@@ -59,10 +58,8 @@ class RodDropInput:
                 f"must be above 0 and below {HIGHEST:g} m.", key="height=", value=f"{self.height:.3g} m"
             )
         if not 0 < self.alpha < math.pi / 2:
-            problem = (
-                "must lie between 0 and 90 degrees; "
-                "a rod that falls flat on its end has no one contact point."
-            )
+            flat = "a rod that falls flat on its end has no one contact point."
+            problem = f"must lie between 0 and 90 degrees; {flat}"
             raise SceneError(problem, key="angle=", value=f"{math.degrees(self.alpha):.3g} deg")
 
     @property
@@ -132,40 +129,34 @@ def unmeasured(case: RodDropInput) -> tuple[str, ...]:
 
 def outside_of(case: RodDropInput) -> tuple[str, ...]:
     """Return a sentence on each quantity of the case outside the range measured on its surface."""
-    sets = sets_of(case.surface)
-    return (*_of_rod(case, sets), *_of_motion(case, sets))
-
-
-def _of_rod(case: RodDropInput, sets: tuple[MeasuredSet, ...]) -> Iterator[str]:
-    """Compare length, diameter and tip with those of the sets."""
-    rod = case.rod
+    rod, sets, outside = case.rod, sets_of(case.surface), list[str]()
     lengths = sorted({s.length for s in sets})
     if not any(math.isclose(rod.length, x) for x in lengths):
         known = ", ".join(f"{1e3 * x:g}" for x in lengths)
-        yield f"length {1e3 * rod.length:g} mm: measured on {case.surface} surfaces were rods of {known} mm"
+        measured = f"measured on {case.surface} surfaces were rods of {known} mm"
+        outside.append(f"length {1e3 * rod.length:g} mm: {measured}")
     if not math.isclose(rod.diameter, 0.019):
-        yield f"diameter {1e3 * rod.diameter:g} mm: only rods of 19 mm were measured"
+        outside.append(f"diameter {1e3 * rod.diameter:g} mm: only rods of 19 mm were measured")
     if not any(rod.tip == s.tip and math.isclose(rod.tip_radius, s.tip_radius) for s in sets):
         known = " or ".join(sorted({f"{s.tip} with {1e3 * s.tip_radius:g} mm" for s in sets}))
         tip = f"tip {rod.tip} with a radius of {1e3 * rod.tip_radius:g} mm"
-        yield f"{tip}: measured on {case.surface} surfaces was tip {known}"
-
-
-def _of_motion(case: RodDropInput, sets: tuple[MeasuredSet, ...]) -> Iterator[str]:
-    """Compare angle and speed, each near the other, with the sets of the nearest measured length."""
-    length = min((s.length for s in sets), key=lambda x: abs(math.log(case.rod.length / x)))
+        outside.append(f"{tip}: measured on {case.surface} surfaces was tip {known}")
+    # angle and speed, each near the other, beside the sets of the nearest measured length
+    length = min((s.length for s in sets), key=lambda x: abs(math.log(rod.length / x)))
     same = [s for s in sets if s.length == length]
     as_fast = [s for s in same if abs(math.log(case.speed / s.speed)) <= FAST] or same
     as_steep = [s for s in same if abs(case.alpha - s.alpha) <= STEEP] or same
     angles = sorted(math.degrees(s.alpha) for s in as_fast)
     speeds = sorted(s.speed for s in as_steep)
-    rod, degrees = f"the {1e3 * length:g} mm rod was measured", math.degrees(case.alpha)
+    its_tests, degrees = f"the {1e3 * length:g} mm rod was measured", math.degrees(case.alpha)
     near = "" if as_fast == same else " at about this speed"
     if not angles[0] - 0.05 <= degrees <= angles[-1] + 0.05:
-        yield f"angle {degrees:g} degrees: {rod} at {_span(angles, 'degrees', '.0f')}{near}"
+        span = _span(angles, "degrees", ".0f")
+        outside.append(f"angle {degrees:g} degrees: {its_tests} at {span}{near}")
     near = "" if as_steep == same else " at about this angle"
     if not 0.95 * speeds[0] <= case.speed <= 1.05 * speeds[-1]:
-        yield f"speed {case.speed:.2f} m/s: {rod} at {_span(speeds, 'm/s', '.2f')}{near}"
+        outside.append(f"speed {case.speed:.2f} m/s: {its_tests} at {_span(speeds, 'm/s', '.2f')}{near}")
+    return tuple(outside)
 
 
 def _span(values: list[float], unit: str, form: str) -> str:
@@ -199,8 +190,7 @@ def dropped(scene: Scene) -> RodDropInput:
         The measured tests do not apply: another shape, barrier, material or surface than theirs, spin, or a
         velocity that no fall along the axis has.
     """
-    reason = _not_measured(scene)
-    if reason:
+    if reason := _not_measured(scene):
         remedy = "Give a scene that is, such as t5b with another length, height or angle."
         raise SceneError(f"is not what the measured tests are about: {reason}.", key=scene.id, remedy=remedy)
     rod, impact = scene.projectile, scene.impact

@@ -173,7 +173,8 @@ def finite_elements(scene: Scene, budget_s: float, levels: int = LEAST_LEVELS, p
 
 def next_step(command: str, more: Means) -> str | None:
     """Return the command that asks again with ``more`` means, None where none are known."""
-    options = {name: more[name] for name in ("fidelity",) if name in more}
-    options |= {"budget": f"{more['budget_s']:g} s"} if more else {}
-    words = shlex.join(word for name, value in options.items() for word in (f"--{name}", value))
-    return f"{command} {words}" if more else None
+    if not more:
+        return None
+    words = ["--fidelity", more["fidelity"]] if "fidelity" in more else []
+    words += ["--budget", f"{more['budget_s']:g} s"]
+    return f"{command} {shlex.join(words)}"

@@ -89,7 +89,7 @@ def _but(v: Verdict) -> str:
     """Return why --fidelity rigid does not give the number that a yes is about; nothing where it does."""
     if v.here is None:
         return ""
-    if refused := _refused(v):
+    if refused := refused_by(v.scene.untargeted, "rigid"):
         return f"But --fidelity rigid has no answer here: {refused}"
     key = CHANGED[v.of]
     theirs, ours = key.of(simulate(v.scene.untargeted, "rigid")), key.of(v.here.free)
@@ -99,11 +99,6 @@ def _but(v: Verdict) -> str:
         return ""
     numbers = f"{theirs:.3f} for {CALLED[v.of]} and {v.here.model} {ours:.3f}"
     return f"But --fidelity rigid has {numbers}: {WHY[v.of]}."
-
-
-def _refused(v: Verdict) -> str:
-    """Return why rigid theory has no law for the contact, as ``check`` tells it; nothing where it has one."""
-    return refused_by(v.scene.untargeted, "rigid")
 
 
 def _beyond(v: Verdict) -> str:
@@ -144,9 +139,7 @@ def _anywhere(v: Verdict) -> str:
     there = there if holds else THERE[v.worst.graded(v.tolerance)]
     return (
         f"At the worst inclination{known}, {degrees(v.worst.angle):.0f} degrees (rod and velocity turned "
-        f"together), it changes {v.of} by "
-        f"{v.worst.told}"
-        f"{doubt(v.worst)}{by}; {there}."
+        f"together), it changes {v.of} by {v.worst.told}{doubt(v.worst)}{by}; {there}."
     )
 
 
@@ -279,40 +272,33 @@ def _motion(run: Outcome) -> str:
 
 def _other_angles(v: Verdict) -> Iterator[Line]:
     if v.elsewhere is not None:
-        error = (
-            "Each has its own error, told like that here." if v.fidelity == "modal" else v.elsewhere.source
-        )
+        alike = "Each has its own error, told like that here."
+        error = alike if v.fidelity == "modal" else v.elsewhere.source
         yield "other inclinations", f"by the reduced model at every 5 degrees. {error}"
     angles, why = v.not_known
     if angles:
-        listed = ", ".join(f"{degrees(angle):.0f}" for angle in angles)
-        yield (
-            "not known",
-            f"at {listed} degrees the reduced model gives no answer; at the first of them {why}",
-        )
+        at = ", ".join(f"{degrees(angle):.0f}" for angle in angles)
+        yield "not known", f"at {at} degrees the reduced model gives no answer; at the first of them {why}"
 
 
 def _friction(v: Verdict) -> Line:
-    surface, title = v.scene.surface, "uncertain friction"
+    surface = v.scene.surface
     ends = f"f from {surface.friction_low:g} to {surface.friction_high:g}"
     if "friction" not in Case(v.scene).active:
-        return title, "none: the scene has no friction."
-    if surface.friction_low == surface.friction_high:
+        text = "none: the scene has no friction."
+    elif surface.friction_low == surface.friction_high:
         text = (
             f"f = {surface.friction:g} is stated without an interval and counts as exact; give friction_low "
             "and friction_high to see what its uncertainty does."
         )
-        return title, text
-    if v.over_friction is None:
+    elif v.over_friction is None:
         text = (
             f"what {ends} does is not known without the reduced model: assess both ends (surface.friction)."
         )
-        return title, text
-    low, high = v.over_friction
-    return (
-        title,
-        f"over {ends} the reduced model's change of {v.of} runs from {low:+.3f} to {high:+.3f}.",
-    )
+    else:
+        low, high = v.over_friction
+        text = f"over {ends} the reduced model's change of {v.of} runs from {low:+.3f} to {high:+.3f}."
+    return "uncertain friction", text
 
 
 def not_covered(v: Verdict) -> tuple[str, ...]:
@@ -350,7 +336,7 @@ def document(v: Verdict, command: str = "fem-impact assess") -> dict[str, Any]:
         "fidelity": v.fidelity,
         "answer": v.answer,
         "answer_any_angle": v.worst_answer,
-        "refused_by_rigid": _refused(v) or None,
+        "refused_by_rigid": refused_by(v.scene.untargeted, "rigid") or None,
         "here": v.here and _change_entry(v.here),
         "worst": v.worst and _change_entry(v.worst),
         "not_known_rad": list(v.not_known[0]),

@@ -22,39 +22,35 @@ LABELS = {
 
 def transfer_text(document: Document) -> str:
     """Return the document of `transfer` as text, limitations before the results."""
-    parts = (_case, _limitations, _losses, _worst, _heat, _limits)
-    return "\n".join(line for part in parts for line in part(document)) + "\n"
-
-
-def _wrap(text: str, indent: str = "  ") -> list[str]:
-    return wrapped(text, indent)
-
-
-def _case(d: Document) -> Iterator[str]:
-    c = d["case"]
+    c, h, u, s = (document[name] for name in ("case", "friction_heat", "not_attributed", "slenderness"))
     sizes = f"{1e3 * c['length_m']:g} mm x {1e3 * c['diameter_m']:g} mm steel rod, tip {c['tip']}"
-    drop = (
-        f"dropped {c['height_m']:g} m on a {c['surface']} plate at {math.degrees(c['angle_rad']):g} degrees"
-    )
-    yield from _wrap(f"{sizes}, {drop}", "")
+    angle = math.degrees(c["angle_rad"])
+    drop = f"dropped {c['height_m']:g} m on a {c['surface']} plate at {angle:g} degrees"
     speed = math.hypot(c["v_n_m_per_s"], c["v_t_m_per_s"])
-    yield f"{c['mass_kg']:.3f} kg at {speed:.2f} m/s: E_0 = {c['E_0_J']:.3g} J"
-
-
-def _limitations(d: Document) -> Iterator[str]:
-    yield ""
-    if not d["limitations"]:
-        yield "Inside what was measured."
-    for one in d["limitations"]:
-        yield from _wrap(f"{one['kind']}: {one['text']}", "")
+    lines = wrapped(f"{sizes}, {drop}")
+    lines += [f"{c['mass_kg']:.3f} kg at {speed:.2f} m/s: E_0 = {c['E_0_J']:.3g} J", ""]
+    told = [f"{one['kind']}: {one['text']}" for one in document["limitations"]]
+    lines += [line for one in told or ["Inside what was measured."] for line in wrapped(one)]
+    lines += [*_losses(document), *_worst(document), ""]
+    bound = f"{h['upper_bound_J']:.3g} J ({100 * h['upper_bound_over_E_0']:.1f} % of E_0)"
+    lines += [f"Friction heat: at most {bound}, assuming"]
+    lines += [line for sentence in h["assumptions"] for line in wrapped(f"- {sentence}", "  ")]
+    closer = f"{h['rigid_rod_J']:.3g} J ({100 * h['rigid_rod_over_E_0']:.1f} %)"
+    lines += [*wrapped(f"Closer bound: {closer} for {h['rigid_rod_assumption']}.", "  "), ""]
+    share = f"{100 * u['mean']:.0f} % ({100 * u['low']:.0f} to {100 * u['high']:.0f})"
+    lines += [*wrapped(f"Not attributed: {share} {u['sentence']}"), ""]
+    gamma = f"gamma = {s['gamma_per_m0_3815']:.1f} m^-0.3815 ({s['gamma_per_mm0_3815']:.2f} mm^-0.3815)"
+    limit = f"limit {s['limit_per_m0_3815']:.2f} ({s['limit_per_mm0_3815']:.3f})"
+    lines += wrapped(f"Slenderness: {gamma}, {limit}: {s['verdict']}. {s['meaning'].capitalize()}.")
+    return "\n".join(lines) + "\n"
 
 
 def _losses(d: Document) -> Iterator[str]:
     b, energy = d["basis"], d["case"]["E_0_J"]
     yield ""
     sets = ", ".join(f"{name} ({100 * w:.0f} %)" for name, w in b["weights"].items())
-    yield from _wrap(
-        f"Losses of the first impact, % of E_0, carried over from the {b['tests']} tests of {sets}", ""
+    yield from wrapped(
+        f"Losses of the first impact, % of E_0, carried over from the {b['tests']} tests of {sets}"
     )
     head = ("", "mean", "95 % of impacts", "mean, J", f"all {b['all_tests']} of the surface")
     rows = []
@@ -74,7 +70,7 @@ def _worst(d: Document) -> Iterator[str]:
     if not r["measured"]:
         yield "  (every restitution, because the case lies outside what was measured)"
     if w["reason"]:
-        yield from _wrap(w["reason"])
+        yield from wrapped(w["reason"], "  ")
         return
     for name, label in (("tangential", "tangential loss (for ignition)"), ("total", "total loss")):
         x = w[name]
@@ -82,97 +78,44 @@ def _worst(d: Document) -> Iterator[str]:
             f"  {label:<32}{100 * x['over_E_0']:5.1f} % = {x['J']:.3g} J, at mu = {x['mu']:.2f}, e = "
             f"{x['e']:.2f}"
         )
-    yield from _wrap(
+    yield from wrapped(
         f"The critical ratio is {d['mu_c']['mean']:.2f} here; it is no upper bound of mu, since a tip "
-        "that slides back exceeds it by about 20 %."
+        "that slides back exceeds it by about 20 %.",
+        "  ",
     )
-
-
-def _heat(d: Document) -> Iterator[str]:
-    h = d["friction_heat"]
-    yield ""
-    yield (
-        f"Friction heat: at most {h['upper_bound_J']:.3g} J ({100 * h['upper_bound_over_E_0']:.1f} % "
-        "of E_0), assuming"
-    )
-    for sentence in h["assumptions"]:
-        yield from _wrap(f"- {sentence}")
-    yield from _wrap(
-        f"Closer bound: {h['rigid_rod_J']:.3g} J ({100 * h['rigid_rod_over_E_0']:.1f} %) for "
-        f"{h['rigid_rod_assumption']}."
-    )
-
-
-def _limits(d: Document) -> Iterator[str]:
-    u, s = d["not_attributed"], d["slenderness"]
-    yield ""
-    yield from _wrap(
-        f"Not attributed: {100 * u['mean']:.0f} % ({100 * u['low']:.0f} to {100 * u['high']:.0f}) "
-        f"{u['sentence']}",
-        "",
-    )
-    yield ""
-    gamma = f"gamma = {s['gamma_per_m0_3815']:.1f} m^-0.3815 ({s['gamma_per_mm0_3815']:.2f} mm^-0.3815)"
-    limit = f"limit {s['limit_per_m0_3815']:.2f} ({s['limit_per_mm0_3815']:.3f})"
-    yield from _wrap(f"Slenderness: {gamma}, {limit}: {s['verdict']}. {s['meaning'].capitalize()}.", "")
 
 
 def own_text(document: Document) -> str:
     """Return the document of `own_coefficients` as text."""
-    parts = (_head, _coefficients, _scatter, _rest)
-    return "\n".join(line for part in parts for line in part(document)) + "\n"
-
-
-def _head(d: Document) -> Iterator[str]:
-    rod, arms = d["rod"], d["arms"]
+    rod, arms, centre = (document[name] for name in ("rod", "arms", "impulse_centre"))
     size = f"{1e3 * rod['length_m']:g} mm x {1e3 * rod['diameter_m']:g} mm, tip {rod['tip']}"
-    yield (
-        f"{d['tests']} tests of a projectile {size}: {rod['mass_kg']:.4f} kg, k2 = "
-        f"{1e6 * rod['k_squared_m2']:.1f} mm2"
-    )
-    yield from wrapped(
-        f"contact point: d_c = {1e3 * arms['d_c_m']:.2f} mm, d_d = {1e3 * arms['d_d_m']:.2f} mm "
-        f"({arms['source']})"
-    )
-
-
-def _coefficients(d: Document) -> Iterator[str]:
-    yield ""
-    yield from wrapped(
+    body = f"{rod['mass_kg']:.4f} kg, k2 = {1e6 * rod['k_squared_m2']:.1f} mm2"
+    lines = [f"{document['tests']} tests of a projectile {size}: {body}"]
+    point = f"d_c = {1e3 * arms['d_c_m']:.2f} mm, d_d = {1e3 * arms['d_d_m']:.2f} mm ({arms['source']})"
+    lines += [*wrapped(f"contact point: {point}"), ""]
+    coefficients = document["coefficients"].items()
+    rows = [(n, _number(c["value"]), _span(c["first_order"]), _span(c["bootstrap"])) for n, c in coefficients]
+    lines += wrapped(
         "Coefficients of the mean motion, 95 % intervals (velocity scatter, contact point 0.5 mm, "
         "tracking 2 %)"
     )
-    coefficients = d["coefficients"].items()
-    rows = [(n, _number(c["value"]), _span(c["first_order"]), _span(c["bootstrap"])) for n, c in coefficients]
-    yield Table.of(("", "value", "first order", "bootstrap"), rows).terminal(indent="  ")
-    yield ""
-    yield "Standard uncertainty by source"
+    lines += [Table.of(("", "value", "first order", "bootstrap"), rows).terminal(indent="  "), ""]
     parts = {name: c["first_order"]["parts"] for name, c in coefficients}
     sources = tuple(dict.fromkeys(source for part in parts.values() for source in part))
     by_source = [(name, *(_number(part[s]) for s in sources)) for name, part in parts.items()]
-    yield Table.of(("", *sources), by_source).terminal(indent="  ")
-
-
-def _scatter(d: Document) -> Iterator[str]:
-    yield ""
-    yield "Scatter of single tests, mean (SD)"
-    parts = [
+    lines += ["Standard uncertainty by source", Table.of(("", *sources), by_source).terminal(indent="  ")]
+    scatter = [
         f"{name.replace('_over_E_0', '/E_0')} {s['mean']:.3f} ({s['sd']:.3f})"
-        for name, s in d["scatter"].items()
+        for name, s in document["scatter"].items()
     ]
-    yield from wrapped(", ".join(parts), "  ", "")
-
-
-def _rest(d: Document) -> Iterator[str]:
-    centre = d["impulse_centre"]
-    yield ""
-    yield from wrapped(
+    lines += ["", "Scatter of single tests, mean (SD)", *wrapped(", ".join(scatter), "  ", ""), ""]
+    lines += wrapped(
         f"Centre of impulse (e_m = -1): d_c = {1e3 * centre['d_c_m']:.2f} mm, "
         f"{1e3 * centre['from_contact_m']:+.2f} mm from the contact point"
     )
-    yield f"Critical impulse ratio: {_number(d['mu_c'])}"
-    for note in d["notes"]:
-        yield from wrapped(f"note: {note}")
+    lines += [f"Critical impulse ratio: {_number(document['mu_c'])}"]
+    lines += [line for note in document["notes"] for line in wrapped(f"note: {note}")]
+    return "\n".join(lines) + "\n"
 
 
 def _span(estimate: Mapping[str, Any]) -> str:

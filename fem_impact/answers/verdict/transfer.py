@@ -84,10 +84,8 @@ def worst_losses(case: RodDropInput, known: Range) -> Worst | None:
     limit = critical_ratio(v_n, v_t, e=e, **body)
     if (limit < 0).any():
         return None
-    worst, given = (
-        worst_case(v_n, v_t, e=e, **body, mass=2.0 / case.speed**2),
-        np.broadcast_to(e, limit.shape),
-    )
+    worst = worst_case(v_n, v_t, e=e, **body, mass=2.0 / case.speed**2)
+    given = np.broadcast_to(e, limit.shape)
 
     def largest(loss: Floats, mu: Floats) -> Largest:
         at = np.unravel_index(int(loss.argmax()), loss.shape)
@@ -256,8 +254,24 @@ def transfer(case: RodDropInput) -> dict[str, Any]:
         share: _share({name: getattr(c, share) for name, c in carried.items()}, weights) for share in _NAMES
     }
     mu_c = np.concatenate([carried[name].mu_c for name in weights])
+    worst = worst_losses(case, known)
+    rod, (v_n, v_t) = case.rod, case.velocity
     return {
-        "case": _case_entry(case, energy),
+        "case": {
+            "length_m": rod.length,
+            "diameter_m": rod.diameter,
+            "tip_radius_m": rod.tip_radius,
+            "tip": rod.tip,
+            "surface": case.surface,
+            "height_m": case.height,
+            "angle_rad": case.alpha,
+            "mass_kg": rod.mass,
+            "v_n_m_per_s": v_n,
+            "v_t_m_per_s": v_t,
+            "E_0_J": energy,
+            "d_c_m": float(case.arms.d_c),
+            "d_d_m": float(case.arms.d_d),
+        },
         "basis": {
             "weights": weights,
             "tests": sum(counts[name] for name in weights),
@@ -267,8 +281,8 @@ def transfer(case: RodDropInput) -> dict[str, Any]:
         "losses": {name: {**s, "mean_J": s["mean"] * energy} for name, s in shares.items()},
         "mu_c": {"mean": float(mu_c.mean()), "low": float(mu_c.min()), "high": float(mu_c.max())},
         "range": {"e": list(known.e), "d_c_m": list(known.d_c), "measured": not outside_of(case)},
-        "worst_case": _worst(case, known, energy),
-        "friction_heat": _heat(case, known, energy),
+        "worst_case": _worst(worst, energy),
+        "friction_heat": _heat(case, known, worst, energy),
         "not_attributed": {
             **{name: shares["total"][name] for name in ("mean", "low", "high")},
             "sentence": NOT_ATTRIBUTED,
@@ -311,25 +325,7 @@ def _range(case: RodDropInput, tests: dict[str, CarriedTests], weights: dict[str
     return Range((0.0, 1.0) if outside else measured, d_c)
 
 
-def _case_entry(case: RodDropInput, energy: float) -> dict[str, Any]:
-    rod, (v_n, v_t), arms = case.rod, case.velocity, case.arms
-    sizes = {f"{name}_m": getattr(rod, name) for name in ("length", "diameter", "tip_radius")}
-    motion = {"v_n_m_per_s": v_n, "v_t_m_per_s": v_t, "E_0_J": energy}
-    return {
-        **sizes,
-        "tip": rod.tip,
-        "surface": case.surface,
-        "height_m": case.height,
-        "angle_rad": case.alpha,
-        "mass_kg": rod.mass,
-        **motion,
-        "d_c_m": float(arms.d_c),
-        "d_d_m": float(arms.d_d),
-    }
-
-
-def _worst(case: RodDropInput, known: Range, energy: float) -> dict[str, Any]:
-    worst = worst_losses(case, known)
+def _worst(worst: Worst | None, energy: float) -> dict[str, Any]:
     if worst is None:
         return {"total": None, "tangential": None, "reason": TURNING}
     entries = {
@@ -339,10 +335,9 @@ def _worst(case: RodDropInput, known: Range, energy: float) -> dict[str, Any]:
     return {**entries, "mu_c_largest": worst.mu_c, "reason": None}
 
 
-def _heat(case: RodDropInput, known: Range, energy: float) -> dict[str, Any]:
+def _heat(case: RodDropInput, known: Range, worst: Worst | None, energy: float) -> dict[str, Any]:
     """Return the upper bound of friction heat, and the lower one of a rigid rod with Coulomb friction."""
     certain = upper_bound_loss(case, known)
-    worst = worst_losses(case, known)
     rigid = max(sliding_heat(case, known), worst.tangential.share if worst else 0.0)
     return {
         "upper_bound_over_E_0": certain,
