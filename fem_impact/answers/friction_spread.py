@@ -41,25 +41,23 @@ def friction_spread(scene: Scene, fidelity: str, outcome: Outcome | None = None)
     this program has just computed stands for the run at the stated friction, where it is of the same model;
     changes are those of numbers that it knows, and take none of them beyond its ends, as of shares 0 and 1.
     """
-    surface = scene.surface
-    if surface.friction_low < surface.friction_high:
-        for model in ("rigid",) if fidelity == "rigid" else ("modal", "rigid"):
-            try:
-                nominal = outcome if outcome and fidelity == model and scene.impact.until == FIRST else None
-                nominal = nominal or _at(scene, surface.friction, model)
-                ends = [_at(scene, f, model) for f in (surface.friction_low, surface.friction_high)]
-            except FemImpactError:
-                continue
-            if not all(one.validity.finished for one in (nominal, *ends)):
-                continue
-            by = "rigid theory" if model == "rigid" else "the reduced model"
-            interval = (
-                f"f = {surface.friction_low:g} to {surface.friction_high:g} instead of {surface.friction:g}"
-            )
-            changes = _changes(nominal, ends)
-            held = _held(outcome, changes) if outcome else changes
-            said = f"what {interval} changes, by {by}." if held else ""
-            return FrictionSpread(said, held)
+    low, stated, high = scene.surface.friction_low, scene.surface.friction, scene.surface.friction_high
+    if low >= high:
+        return FrictionSpread("", {})
+    for model in ("rigid",) if fidelity == "rigid" else ("modal", "rigid"):
+        nominal = outcome if outcome and fidelity == model and scene.impact.until == FIRST else None
+        try:
+            nominal = nominal or _at(scene, stated, model)
+            ends = [_at(scene, f, model) for f in (low, high)]
+        except FemImpactError:
+            continue
+        if not all(one.validity.finished for one in (nominal, *ends)):
+            continue
+        by = "rigid theory" if model == "rigid" else "the reduced model"
+        changes = _changes(nominal, ends)
+        held = _held(outcome, changes) if outcome else changes
+        said = f"what f = {low:g} to {high:g} instead of {stated:g} changes, by {by}."
+        return FrictionSpread(said if held else "", held)
     return FrictionSpread("", {})
 
 
@@ -80,8 +78,8 @@ def _at(scene: Scene, friction: float, model: str) -> Outcome:
 def _changes(nominal: Outcome, ends: list[Outcome]) -> dict[Key, tuple[float, float]]:
     """Return least and largest change of each number that all three know."""
     changes = {}
-    for key in KEYS:
-        values = [or_none(key.of(outcome)) for outcome in (nominal, *ends)] if key.banded else [None]
+    for key in (key for key in KEYS if key.banded):
+        values = (or_none(key.of(outcome)) for outcome in (nominal, *ends))
         numbers = [value for value in values if value is not None]
         if len(numbers) == 1 + len(ends):
             low, high = min(numbers) - numbers[0], max(numbers) - numbers[0]

@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import dataclass
-from math import hypot
 from typing import Any, Literal
 
 from fem_impact.errors import SceneError
@@ -195,7 +194,7 @@ def dropped(scene: Scene) -> RodDropInput:
         raise SceneError(f"is not what the measured tests are about: {reason}.", key=scene.id, remedy=remedy)
     rod, impact = scene.projectile, scene.impact
     body = Projectile(rod.length, rod.diameter, rod.tip, rod.tip_radius, DENSITY)
-    height = hypot(impact.v_n, impact.v_t) ** 2 / (2 * GRAVITY)
+    height = math.hypot(impact.v_n, impact.v_t) ** 2 / (2 * GRAVITY)
     return RodDropInput(body, height, abs(impact.angle), scene.surface.state)
 
 
