@@ -23,7 +23,7 @@ def render(options: Options) -> int:
         from fem_impact.films.path import render_path
 
         film = render_path(results[0], out, options.size)
-        document = {"path": str(film.path), "notes": list(film.notes)}
+        document: dict[str, object] = {"path": str(film.path), "notes": list(film.notes)}
         print_answer(options, document, f"film: {film.path}\n", film.notes)
         return 0
     for result in results:
