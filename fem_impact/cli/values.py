@@ -133,7 +133,6 @@ def _value(text: str, unit: str | None) -> Any:
 def _with_unit(number: str, unit: str | None) -> Any:
     if unit:
         return f"{number} {unit.strip()}"
-    whole, point, rest = number.partition(".")
-    if point:  # TOML wants digits on both sides of it
-        number = f"{whole or '0'}.{rest or '0'}"
+    # TOML wants digits on both sides of a point
+    number = re.sub(r"\.(?!\d)", ".0", re.sub(r"(?<!\d)\.", "0.", number))
     return tomllib.loads(f"value = {number}")["value"]

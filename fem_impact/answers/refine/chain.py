@@ -386,19 +386,17 @@ class LevelChain:
     def advice(self, before_s: float = 0.0, halvings: int = 1) -> tuple[str, int | None]:
         """Return what finer levels would take, or why none is made; the budget for them, s, or None.
 
-        ``before_s`` of the budget, s, went by before this chain; the errors are to be halved so often, which
-        levels up to `MOST_FINER` beyond a resolved contact may not reach.
+        ``before_s`` of the budget, s, went by before this chain; the errors are to be halved so often.
         """
         number = len(self.done) + 1
         if self.refused:
             reason = f"Level {number}, finer, gave no result: {self.refused}"
             return reason, forecast.budget_of(self.refused, before_s)
-        then = self.following
+        then, last = self.following, self.done[-1].splits + halvings
         if then is None:
             return f"No finer level is tried: {self._finer}.", None
-        last = self.done[-1].splits + halvings
         if last > max(then, self.finest + MOST_FINER):
-            each = "each about halves the error, which would have to be halved"
-            return f"No levels that can be made decide: {each} {halvings} times.", None
-        each_s = [self.forecast_s(splits) for splits in range(then, last + 1)]
-        return forecast.advice(number, before_s + self.spent_s, each_s)
+            return forecast.TOO_OFTEN.format(halvings), None
+        return forecast.advice(
+            number, before_s + self.spent_s, [*map(self.forecast_s, range(then, last + 1))]
+        )
