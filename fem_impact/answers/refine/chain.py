@@ -388,7 +388,7 @@ class LevelChain:
 
         ``before_s`` of the budget, s, went by before this chain; the errors are to be halved so often.
         """
-        number = len(self.done) + 1
+        number, used_s = len(self.done) + 1, before_s + self.spent_s
         if self.refused:
             reason = f"Level {number}, finer, gave no result: {self.refused}"
             return reason, forecast.budget_of(self.refused, before_s)
@@ -397,6 +397,4 @@ class LevelChain:
             return f"No finer level is tried: {self._finer}.", None
         if last > max(then, self.finest + MOST_FINER):
             return forecast.TOO_OFTEN.format(halvings), None
-        return forecast.advice(
-            number, before_s + self.spent_s, [*map(self.forecast_s, range(then, last + 1))]
-        )
+        return forecast.advice(number, used_s, [*map(self.forecast_s, range(then, last + 1))])
