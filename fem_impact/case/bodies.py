@@ -117,7 +117,9 @@ class Bodies:
         if not rod.faces:
             return stated
         half = self._own_half
-        there = self._at_contact[half.faces].any(axis=1) & (half.face_tag == SKIN)
+        touching = self._at_contact[half.faces].sum(axis=1) * (half.face_tag == SKIN)
+        # of an edge that lies along the barrier the faces on both sides, not those beside its ends
+        there = touching >= min(2, touching.max())
         return float(rod.face_friction(stated)[there].max())
 
     @cached_property

@@ -74,6 +74,19 @@ def test_rigid_theory_takes_the_face_that_touches_first(tmp_path):
     )
 
 
+def test_an_edge_has_the_friction_of_the_faces_on_both_sides_of_it(tmp_path):
+    """The sides square to it meet it at its end alone, where finite elements have one dry node."""
+    path = bar(tmp_path)
+    numbers = np.arange(1, 81).reshape(4, 2, 10)
+    sole, front = numbers[:, :, 0].ravel(), numbers[-1].ravel()
+    for name, cells, side in (("SOLE", sole, "S1"), ("FRONT", front, "S4")):
+        faces = "\n".join(f"{n}, {side}" for n in cells)
+        path.write_text(f"{path.read_text()}\n*SURFACE, NAME={name}\n{faces}")
+    assert Case.of(scene(path, {"SOLE": GREASED, "FRONT": GREASED}), "rigid").contact.f == 0.1
+    assert Case.of(scene(path, {"SOLE": GREASED}), "rigid").contact.f == 0.6
+    assert Case.of(scene(path, {"FRONT": GREASED}), "rigid").contact.f == 0.6
+
+
 def test_nodes_between_two_faces_have_the_larger_friction(tmp_path):
     builder = Builder(Case.of(scene(bar(tmp_path), {"FOOT": GREASED})), 1e-6)
     mesh = builder.meshed.geometry.rod.mesh
