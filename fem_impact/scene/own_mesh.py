@@ -330,14 +330,19 @@ def _require_joints(low: Array, high: Array, joints: Sequence[float]) -> None:
     import numpy as np
 
     slack = 1e-3 * (high - low)
-    rows = np.unique(low.round(9))
     for number, joint in enumerate(joints, 1):
         cut = (low + slack < joint) & (joint < high - slack)
         if cut.any():
-            near = float(rows[np.argmin(np.abs(rows - joint))])
+            starts, ends = np.sort(low + slack), np.sort(high - slack)
+            rows = np.unique(low.round(9))[1:]  # those between cells of which none lies on both sides
+            rows = rows[np.searchsorted(starts, rows) == np.searchsorted(ends, rows, "right")]
+            remedy = "No row of cells ends level: name those of another material by a set (mesh_materials)."
+            if len(rows):
+                near = float(rows[np.argmin(np.abs(rows - joint))])
+                remedy = f"The nearest nodes between two rows are at {near * 1e3:.6g} mm from the tip."
             raise SceneError(
                 f"lies within {int(cut.sum())} cells of the mesh, which have one material each.",
                 key=f"segments[{number}].to",
                 value=f"{joint * 1e3:g} mm",
-                remedy=f"The nearest nodes are at {near * 1e3:.6g} mm from the tip.",
+                remedy=remedy,
             )

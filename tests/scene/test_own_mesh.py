@@ -181,6 +181,23 @@ def test_segments_end_between_cells_and_weigh_what_they_are_of(scene, tmp_path):
         of("58 mm")
 
 
+@pytest.mark.parametrize(("bent", "remedy"), [(0.05, "rows are at 50 mm"), (1.0, "name those of")])
+def test_the_remedy_of_a_joint_within_bent_rows_works(tmp_path, bent, remedy):
+    """Rows that are bent up to a height, m, hold no joint, though some of their nodes lie at it."""
+    points, cells = taper(width=10e-3, length=0.1, end=1.0, cells=(6, 3, 30))
+    points[:, 2] += 20.0 * points[:, 0] ** 2 * np.clip(1.0 - points[:, 2] / bent, 0.0, 1.0)
+    write(tmp_path / "bent.vtu", points, cells)
+
+    def of(joint):
+        segments = [{"to": joint, "material": "aluminium-6061-t6"}, {"material": "rod-steel"}]
+        return stated(tmp_path / "bent.vtu", mesh_symmetry="half", material=None, segments=segments)
+
+    with pytest.raises(SceneError, match=f'20 mm": lies within .* {remedy}'):
+        of("20 mm")
+    if bent < 1.0:
+        of("50 mm")
+
+
 def test_only_what_the_model_holds_is_planned(scene):
     with pytest.raises(SceneError, match="side along"):
         Case.of(replace(scene, impact=Impact(1.5707, -2.0, 0.0)))
