@@ -21,6 +21,7 @@ from fem_impact.errors import SceneError, UsageError
 from fem_impact.figures.outline import drawn
 from fem_impact.outcome.groups import EffectChoice, texts
 from fem_impact.pages.drawing import draw_projectile
+from fem_impact.physics.beam import disc_period
 from fem_impact.progress import clock_text, range_text
 from fem_impact.run.tests import count, doubtful_tests, tests_of, unused_columns
 from fem_impact.scene.inputs import STATED, inputs, rounded_text
@@ -84,7 +85,9 @@ def check(options: Options) -> int:
 
 def _body_lines(case: Case, body: dict[str, float]) -> Iterable[str]:
     """Return the numbers of the projectile in words."""
-    bends_as = "plate" if case.scene.projectile.is_short else "beam"
+    rod = case.scene.projectile
+    short = rod.length < rod.diameter and disc_period(rod) == case.bodies.bending_period
+    bends_as = "plate" if short else "beam"
     mm = {key: 1e3 * value for key, value in body.items() if key.endswith("_m")}
     length, period = mm["touch_length_m"], body["ovalling_period_s"]
     part = f"with {length:.3g} mm at once, the middle of it " if length else ""

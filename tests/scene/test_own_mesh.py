@@ -95,6 +95,17 @@ def test_mass_inertia_arms_and_periods_of_a_bar_are_those_of_closed_forms(scene)
     assert bending_period(scene.projectile) == pytest.approx(1.037 * slender, rel=0.01)
 
 
+def test_a_flat_mesh_bends_as_a_plate(tmp_path):
+    """Along its 40 mm, not along its thickness of 3 mm: it rings for four contacts, and is hardly damped."""
+    write(tmp_path / "flat.vtu", *box(8, 6, 2, (-20e-3, -15e-3, 0.0), (20e-3, 15e-3, 3e-3)))
+    flat = stated(tmp_path / "flat.vtu", mesh_tip="-z", mesh_symmetry="whole", material="rod-steel")
+    metal = flat.projectile.material
+    free_beam = 2 * pi / (4.730041**2 / 0.04**2 * sqrt(metal.E / metal.rho / 12) * 3e-3)
+    assert bending_period(flat.projectile) == pytest.approx(free_beam, rel=0.05)
+    damping = next(one for one in Case(flat).choices if one.name == "material-damping")
+    assert damping.number is not None and damping.number < 0.02
+
+
 def test_a_written_scene_reads_back_equal_and_from_anywhere(scene, tmp_path, monkeypatch):
     other = tmp_path / "elsewhere"
     other.mkdir()
