@@ -71,17 +71,18 @@ def around(side: list[Round]) -> list[Round]:
     return [one._replace(curve=one.curve - last) for one in whole]
 
 
-def rounds_of(line: Floats, corner: float = 0.0) -> list[Round]:
+def rounds_of(line: Floats, corner: float = 0.0, edges: NDArray[np.bool_] | None = None) -> list[Round]:
     """Return the rounds of a convex polygon (k, 2), (x, z), m, counterclockwise, over a full turn.
 
-    Turns above ``corner``, rad, are corners; vertices that lie closer than straight parts are of one curve.
+    Turns above ``corner``, rad, and ``edges`` (k,) are corners; vertices that lie closer than straight parts
+    are of one curve.
     On a curve a vertex is the arc that touches both sides, the shorter one in its middle, so that a body
     rolls on without a jump; neighbours on one circle are one arc.
     """
     low = np.roll(_directions(line), 1)  # inclination at which the side before it lies on the barrier
     first = int(np.argmin(low))
     line = np.roll(line, -first, axis=0)
-    turn, shorter, joined = steps_of(line, corner)
+    turn, shorter, joined = steps_of(line, corner, None if edges is None else np.roll(edges, -first))
     high = low[first] + np.cumsum(turn)
     bend = np.where(joined | np.roll(joined, 1), 0.5 * shorter / np.tan(0.5 * turn), 0.0)
     middle, inside = high - 0.5 * turn, bend / np.cos(0.5 * turn)
@@ -92,15 +93,18 @@ def rounds_of(line: Floats, corner: float = 0.0) -> list[Round]:
     return _merged([Round(*row) for row in zip(*columns, strict=True)], same)
 
 
-def steps_of(line: Floats, corner: float) -> tuple[Floats, Floats, NDArray[np.bool_]]:
+def steps_of(
+    line: Floats, corner: float, edges: NDArray[np.bool_] | None = None
+) -> tuple[Floats, Floats, NDArray[np.bool_]]:
     """Return what makes a curve of the steps of a closed convex polygon (k, 2), m, counterclockwise.
 
     These are the turn at each vertex, rad, the length, m, of the shorter side there, and whether the side
-    behind it `is_step` of a smooth curve, if a turn above ``corner``, rad, is an edge.
+    behind it `is_step` of a smooth curve. A turn above ``corner``, rad, is an edge, as is one of ``edges``.
     """
     length, after = np.hypot(*(np.roll(line, -1, axis=0) - line).T), _directions(line)
     turn, shorter = (after - np.roll(after, 1)) % TURN, np.minimum(length, np.roll(length, 1))
-    steps = np.where(turn < corner, shorter, 0.0)
+    smooth = turn < corner if edges is None else (turn < corner) & ~edges
+    steps = np.where(smooth, shorter, 0.0)
     return turn, shorter, is_step(length, steps, np.roll(steps, -1))
 
 

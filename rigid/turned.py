@@ -220,9 +220,14 @@ class Turned:
         return min(found, key=lambda side: side[1] / side[0] if side[0] else math.inf)
 
     def rounds(self) -> list[Round]:
-        """Arcs and corners of the convex outline in the plane of motion, in order around it."""
+        """Arcs and corners of the convex outline in the plane of motion, in order around it.
+
+        An edge stays one where the convex outline, which passes over what lies beside it, turns little.
+        """
         line = hull(both_sides(self.outline), LEVEL * self.length)
-        return cut(rounds_of(line, CORNER), math.pi)
+        sharp = set(map(tuple, self.outline[self._bends() == 0.0].tolist()))
+        edges = np.array([(abs(x), z) in sharp for x, z in line.tolist()])
+        return cut(rounds_of(line, CORNER, edges), math.pi)
 
     def reversed(self) -> "Turned":
         """Return the body with its tail as its tip."""

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from rigid import SHAPES, Projectile, Turned, shapes
+from rigid.strikes import Finish, FlightState, Pull, outline, sequence
 
 L, R = 0.08, 9.5e-3
 WAVY = np.array([[0.0, 0.0], [4e-3, 1e-3], [7e-3, 5e-3], [9e-3, 60e-3], [6e-3, 80e-3]])
@@ -84,3 +85,13 @@ def test_a_curve_is_one_and_straight_parts_and_corners_part_them():
     ogive = {round(1e3 * one.radius) for one in BODIES["ogive"].rounds() if one.curve == 1}
     assert {2, 60} <= ogive
     assert set(SHAPES) >= {"A", "B", "plain"}
+
+
+def test_a_collar_has_edges_and_a_rod_with_one_comes_to_rest():
+    """The convex outline turns by 8 and 5 degrees there: as a curve of 84 mm radius it rocked for ever."""
+    line = np.array([[0, 0], [5, 0], [6, 1], [6, 30], [10, 30], [10, 38], [6, 38], [6, 80]]) / 1e3
+    body = Turned(line, ((0.08, 7830.0),))
+    assert len(body.rounds()) == 10 and not any(one.radius for one in body.rounds())
+    start = FlightState(0.0, float(body.arms(0.2).d_d), 0.0, 0.2, -0.98, -0.17, 0.0)
+    found = sequence(outline(body), start, Pull(9.81, 0.0, body.k2, 0.2), lambda strike: 0.3)
+    assert found.finish is Finish.RESTS
