@@ -19,6 +19,8 @@ LEVEL = 1e-6
 
 Coordinates in a text file of six digits or more lie so near to where they should.
 """
+STEEP = math.sin(math.radians(45.0))
+"""Sine of the angle to the convex outline from which on a facet at one of its vertices makes that an edge."""
 HEIGHTS = 400
 """Heights at which the width of the body is tabulated."""
 
@@ -52,12 +54,14 @@ class Faceted:
     facets: NDArray[np.int64]
     parts: Floats
     _outline: Floats = field(init=False)
+    _sharp: NDArray[np.bool_] = field(init=False)
     _half_widths: tuple[Floats, Floats] = field(init=False)
 
     def __post_init__(self) -> None:
         if not (self.parts[:, 2] > 0).all() or not np.isfinite(self.parts).all():
             raise ShapeError("each part of a body needs a mass above 0, and finite moments")
         object.__setattr__(self, "_outline", hull(self.points[:, [0, 2]], LEVEL * self.length))
+        object.__setattr__(self, "_sharp", self._sharp_vertices())
         # heights, and the half width along x there, m, of the edges of facets that cross them
         z = np.linspace(0.0, self.length, HEIGHTS)
         (x, _, low), (u, _, high) = np.moveaxis(self.points[_edges(self.facets)], (2, 3), (0, 1))
@@ -156,7 +160,7 @@ class Faceted:
         Facets that meet at an angle above `CORNER`, or between straight sides, make an edge.
         """
         k = int(self._lowest(np.array(alpha)))
-        turn, shorter, joined = steps_of(self._outline, CORNER)
+        turn, shorter, joined = steps_of(self._outline, CORNER, self._sharp)
         return float(shorter[k] / turn[k]) if joined[k] or joined[k - 1] else 0.0
 
     def reaches(self, alpha: float, height: float) -> tuple[float, float]:
@@ -289,7 +293,25 @@ class Faceted:
         Facets that turn by less than `CORNER` are steps of a smooth curve.
         """
         line = self._outline if side > 0 else self._outline[::-1] * [-1.0, 1.0]
-        return cut(rounds_of(line, CORNER), math.pi)
+        return cut(rounds_of(line, CORNER, self._sharp if side > 0 else self._sharp[::-1]), math.pi)
+
+    def _sharp_vertices(self) -> NDArray[np.bool_]:
+        """Return which vertices (k,) of the convex outline are edges, as those of a collar.
+
+        The outline passes over what lies beside them, so that it turns little there: a facet is steep to it.
+        """
+        corners, line = self.points[self.facets], self._outline
+        normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
+        flat = np.hypot(normal[:, 0], normal[:, 2])
+        own = flat > STEEP * np.abs(normal[:, 1])  # no side of the body that lies along the plane of motion
+        facets, across = self.facets[own], normal[own][:, [0, 2]] / flat[own][:, None]
+        along = np.roll(line, -1, axis=0) - np.roll(line, 1, axis=0)
+        edges = np.zeros(len(line), bool)
+        for k in np.flatnonzero(steps_of(line, CORNER)[0] < CORNER):
+            at = np.abs(self.points[:, [0, 2]] - line[k]).max(axis=1) <= LEVEL * self.length
+            here = across[at[facets].any(axis=1)]
+            edges[k] = (np.abs(here @ along[k]) > STEEP * np.hypot(*along[k])).any()
+        return edges
 
     def _lowest(self, alpha: Floats) -> NDArray[np.int64]:
         """Return the vertex of the outline that is lowest; of those equally low, see `contact_point`."""

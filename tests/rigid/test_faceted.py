@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
+from own_bodies import box
 
-from meshes import SKIN, cell_moments, turned
+from meshes import SKIN, Stated, cell_moments, own_body, turned
 from rigid import Faceted, ShapeError, Turned, shapes
 
 RHO = 2700.0
@@ -194,3 +195,15 @@ def test_a_section_and_a_side_hold_no_gaps(channel):
     along = np.array([24e-3, 0.0]), np.array([24e-3, 0.2])
     assert channel.half_widths(*along, share) == pytest.approx(np.full(5, 3e-3))
     assert not channel.half_widths(np.array([24e-3, 0.0]), np.array([3e-3, 0.2]), share).any()
+
+
+def test_a_collar_of_a_mesh_has_edges():
+    """The convex outline turns by 8 and 5 degrees there, and stood for a cylinder of 60 mm radius."""
+    points, cells = box(10, 5, 20, (-10e-3, 0.0, 0.0), (10e-3, 10e-3, 80e-3))
+    x, y, z = points[cells].mean(axis=1).T
+    collar = (np.abs(x) < 6e-3) & (y < 6e-3) | (z > 28e-3) & (z < 36e-3)
+    body = of_mesh(own_body(points, cells[collar], Stated("half")).half)
+    touch = np.radians(86.0)
+    assert body.contact_point(touch) == pytest.approx((10e-3, 28e-3))
+    assert body.tip_curvature(touch) == 0.0
+    assert not any(one.radius for side in (1.0, -1.0) for one in body.curves(side))
