@@ -59,8 +59,8 @@ def turned(
         Point of the surface, by default the centre of the last zone: where its shape allows it, it lies in
         the middle of a finest cell.
     flush : bool
-        Whether the line of nodes in y = 0 on the side of the contact lies on the surface along all of the
-        body. Elsewhere sections have the area of the circle, so that their nodes stand out over it.
+        Whether both lines of nodes in y = 0 lie on the surface along all of the body. Other nodes of sections
+        that have the area of the circle stand out over it.
 
     Raises
     ------
@@ -82,10 +82,10 @@ def turned(
     exact = ((-np.inf, start), (low, high), (tail_start, np.inf))
     nodes = len(body.half.unit)
     points, cells, layer_of = _sections(body, heights, exact)
-    if flush and contact is not None:
-        (x, y), side = body.half.unit.T, np.sign(contact[0])
-        line = (body.half.radius > 1.0 - SAME) & (y == 0.0) & (x * side > 0.0)
-        points.reshape(len(heights), nodes, 3)[:, line, 0] = side * body.radius(heights)[:, None]
+    if flush:
+        x, y = body.half.unit.T
+        line = (body.half.radius > 1.0 - SAME) & (y == 0.0)
+        points.reshape(len(heights), nodes, 3)[:, line, 0] = np.sign(x[line]) * body.radius(heights)[:, None]
     for edge, row in ((body.line[1], 0), (body.line[-1], len(heights) - 1)):
         if body.is_stack and np.linalg.norm(closest_on(body.exact, edge[None]) - edge) > SAME * edge[0]:
             rim = row * nodes + np.flatnonzero(body.half.radius > 1.0 - SAME)  # it stands for a rounding
