@@ -131,7 +131,7 @@ MUTANTS = (
     Mutant(
         "stopping at the first separation",
         "fem_impact/solid/separation.py",
-        "not self._stays_away(state, motion, flight, max(ahead, self._sample), alone)",
+        "not self._stays_away(state, motion, flight, until, alone)",
         "False",
         f"{RUNS}::test_elastic_frictionless_long_rod_touches_twice_and_grazes_between",
     ),

@@ -70,9 +70,8 @@ class Separation:
         flight = self.view.flight(state, self.model)
         half = self._half_strikes(state, motion, flight)
         ahead = min(self.horizon, self._tail_strikes(state, motion), half)
-        if not self._stays_away(
-            state, motion, flight, max(ahead, self._sample), half == ahead < self.horizon
-        ):
+        until, alone = max(ahead, self._sample), half == ahead < self.horizon
+        if not self._stays_away(state, motion, flight, until, alone):
             return False
         self.finished = True
         self.reason = (
