@@ -20,6 +20,7 @@ CANDIDATES = 12  # ends of the nose grid that are tried
 FAIR = 0.4  # least scaled Jacobian beyond which the length of the shortest edge decides
 LONGEST = 2.0  # length of a nose grid's shape over its radius
 SLIM = 4.0  # longest over shortest edge of a cell that counts as no fault
+WIDE = 1.35  # widest part of a flange over the height of its nose grid, room for a shoulder's cone included
 HALF = 0.485  # of the length, that a nose may take of a body that is closed at both ends
 POOR = 0.15  # least scaled Jacobian of a nose
 
@@ -80,6 +81,7 @@ def end_of(
     if plain is None or not score >= POOR:
         if np.isfinite(closed) and replace(builder, closed=np.inf).best()[0] >= POOR:
             raise ClosedEndError(closed)
+        _require_width(builder)
         if bore is not None:
             raise MeshError(
                 f"the wall at the open end, {bore[0, 0]:.6g} m and more from the axis, is too thin for the "
@@ -192,3 +194,18 @@ class _Builder:
         edges = np.linalg.norm(corners[:, EDGES[:, 1]] - corners[:, EDGES[:, 0]], axis=-1)
         slim = float((edges.max(axis=1) / edges.min(axis=1)).max())
         return min(worst, FAIR) * min(1.0, SLIM / slim), float(edges.min())
+
+
+def _require_width(builder: _Builder) -> None:
+    """Refuse (MeshError) an end that would be filled if the body kept its width behind it, as a flange."""
+    line = builder.line
+    narrows = np.append(np.flatnonzero(np.diff(line[:, 0]) < 0.0), -1)[0]
+    radius, height = line[narrows]
+    straight = np.concatenate([line[: narrows + 1], [[radius, line[-1, 1]]]])
+    score, _, end = replace(builder, line=straight).best() if height < line[-1, 1] else (0.0, 0, None)
+    if end is not None and score >= POOR:
+        raise MeshError(
+            f"an end is a flange: behind it the body narrows too soon for the cells that fill it. Keep its "
+            f"radius of {radius:.4g} m up to {WIDE * end.start:.2g} m from the end or more, or "
+            "give a mesh of your own"
+        )

@@ -351,3 +351,14 @@ def test_a_random_profile_is_meshed_without_folds_or_refused(line, across):
 def test_a_pin_with_a_chamfer_of_45_degrees_of_any_size_is_meshed_with_eight_cells_across(chamfer):
     line = 4e-3 * np.array([[0, 0], [1 - chamfer, 0], [1, chamfer], [1, 20]])
     assert quality(meshes.turned(line, 8).mesh).min_scaled_jacobian > 0.2
+
+
+def test_a_flange_at_an_end_is_told_how_long_it_must_be():
+    def pipe(long):
+        return np.array([[0, 0], [82e-3, 0], [82e-3, long], [44.5e-3, long], [44.5e-3, 0.8]])
+
+    with pytest.raises(
+        MeshError, match=r"is a flange: behind it the body narrows .* 0\.082 m up to 0\.074 m"
+    ):
+        meshes.turned(pipe(20e-3), 8)
+    assert quality(meshes.turned(pipe(74e-3), 8).mesh).min_scaled_jacobian > WORST
