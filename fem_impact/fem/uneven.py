@@ -19,9 +19,14 @@ def uneven(meshed: MeshedBodies) -> str:
     if abs(off) < UNEVEN * bodies.rod.length:
         return ""
     side = "behind" if off > 0 else "before"
-    return (
-        f"the mass centre of the mesh lies {1e3 * abs(off):.2g} mm {side} that of the body: its cells do not "
+    why = (
         "follow a collar, groove or step of the outline or bore, and the mass that they miss is put at the "
         "tip. Make it longer, take more cells (accuracy.across), or give the body as a mesh "
         "(projectile.mesh)."
+    )
+    if bodies.scene.projectile.is_ball:
+        why = "follow the sphere so well behind its tip as there. Give more of them (accuracy.across = 16)."
+    return (
+        f"the mass centre of the mesh lies {1e3 * abs(off):.2g} mm {side} that of the body: its cells do not "
+        + why
     )

@@ -20,3 +20,11 @@ def test_a_step_of_the_bore_that_cells_do_not_follow_is_told(bore, told):
     stated = {"projectile.bore": bore, "projectile.tip": "plain", "impact.angle": "20 deg"}
     meshed = MeshedBodies(Case(replace_all(load("t5b"), stated)))
     assert ("mass centre of the mesh" in uneven(meshed)) == told
+
+
+def test_a_ball_is_told_what_makes_its_mesh_rounder():
+    """A step was told, which it has not."""
+    ball = replace_all(load("t5b"), {"projectile.shape": "ball"})
+    assert "step" not in (told := uneven(MeshedBodies(Case(ball))))
+    assert "accuracy.across = 16" in told
+    assert not uneven(MeshedBodies(Case(replace_all(ball, {"accuracy.across": 16}))))
