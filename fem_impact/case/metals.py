@@ -1,6 +1,7 @@
 """What a scene's materials say of their flow stress, what they do not say, and what that leaves out."""
 
 import json
+from itertools import pairwise
 from math import sqrt
 
 from fem_impact.case.bodies import Bodies
@@ -10,6 +11,7 @@ from fem_impact.case.effects.plasticity import hardening_of
 from fem_impact.case.effects.registry import is_wanted
 from fem_impact.case.elastic_only import left_out
 from fem_impact.errors import SceneError
+from fem_impact.physics.contact import ContactEstimate
 from fem_impact.physics.hardening import TABOR_STRAIN, rate_gain, rate_law, tabor_stress
 from fem_impact.scene import material as materials
 from fem_impact.scene.inputs import first_melting, materials_of, melting
@@ -39,8 +41,9 @@ def flow_stresses(bodies: Bodies) -> dict[str, list[float]]:
 
 def unknowns(bodies: Bodies) -> tuple[str, ...]:
     """Return what materials do not say and the model would use, a sentence each; heat, one number, last."""
-    under = [("barrier", metal) for _, metal in bodies.barrier.strata[1:]]
-    of_metals = [_body(body, metal, bodies) for body, metal in (*bodies.metals.items(), *under)]
+    under = [("barrier", metal, depth) for (depth, _), (_, metal) in pairwise(bodies.barrier.strata)]
+    touching = [(body, metal, 0.0) for body, metal in bodies.metals.items()]
+    of_metals = [_body(*one, bodies) for one in (*touching, *under)]
     stated = materials_of(bodies.scene).items()
     unlikely = [ask(key, metal) for key, metal in stated for ask in (_unlike_solids, _unlike_hardness)]
     ambient = _ambient(bodies.scene.heating)
@@ -67,10 +70,10 @@ def _ambient(heating: Heating) -> str:
     )
 
 
-def _body(body: str, metal: materials.Material, bodies: Bodies) -> str:
+def _body(body: str, metal: materials.Material, depth: float, bodies: Bodies) -> str:
     if not metal.yields and (body == "rod" or bodies.contact.compliant):
         lost = left_out(metal, "contact-loss" in bodies.effects)
-        breaks = _breaking(metal, bodies.estimate.pressure)
+        breaks = _breaking(metal, bodies.estimate, depth)
         return f"The {body} ({metal.name}) has no yield stress and stays elastic. {lost}{breaks}"
     hardens = YIELDS[body] in bodies.effects and is_wanted("rate-hardening", bodies.scene.effects)
     if hardens and rate_law(metal) is None:
@@ -118,24 +121,29 @@ def _unlike_hardness(key: str, metal: materials.Material) -> str:
     )
 
 
-def _breaking(metal: materials.Material, pressure: float) -> str:
-    """Return what breaks a body: the contact's mean pressure, Pa, beside the strength of a brittle one.
+def _breaking(metal: materials.Material, contact: ContactEstimate, depth: float) -> str:
+    """Return what breaks a body: the contact's mean pressure beside the strength of a brittle one.
 
     A metal or a plastic flows where a round contact presses it with three times its yield stress (Tabor).
 
-    At its edge a round contact pulls the surface with (1 - 2 nu) / 3 of the largest pressure, 3/2 of the mean
-    (Johnson 1985, Contact Mechanics, section 3.4, doi:10.1017/CBO9781139171731).
+    At its edge a round contact pulls the surface with (1 - 2 nu) / 3 of the largest pressure, 3/2 of the
+    mean; ``depth`` m under it, beneath layers, p0 / (1 + (z/a)^2) is left of that pressure, taken as in one
+    body (Johnson 1985, Contact Mechanics, section 3.4, doi:10.1017/CBO9781139171731).
     """
-    kind = kind_of(family_of(metal))
+    kind, pressure, how = kind_of(family_of(metal)), contact.pressure, "in the mean"
+    if depth:
+        pressure *= 1.5 / (1 + (depth / contact.radius) ** 2)
+        how = f"{1e3 * depth:.3g} mm deep"
+    presses = f" The contact, estimated, presses it with {_MPa(pressure)} {how}"
     if kind in ("plastic", "metal"):
         flows = "beyond three times its yield stress it flows, and e and the forces told are too high"
-        return f" The contact, estimated, presses it with {_MPa(pressure)} in the mean: {flows}."
-    if kind not in ("ground", "brittle"):
-        return ""
+        return f"{presses}: {flows}."
     of_edge = kind == "brittle"
+    if kind not in ("ground", "brittle") or (of_edge and depth):
+        return ""
     stress = 0.5 * (1 - 2 * metal.nu) * pressure if of_edge else pressure
     edge = f", and pulls its surface at the edge with some {_MPa(stress)}" if of_edge else ""
-    told = f" The contact, estimated, presses it with {_MPa(pressure)} in the mean{edge}"
+    told = f"{presses}{edge}"
     mode = "tension" if of_edge else "compression"
     if metal.strength is None:
         return f"{told}. State its strength in {mode} to see how far that is beyond it."

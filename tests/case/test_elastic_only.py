@@ -190,6 +190,18 @@ def test_the_pressure_on_a_brittle_barrier_is_told_beside_its_strength():
     assert f"at the edge with some {0.3 * pressure:.4g} MPa" in text and "it holds by this estimate" in text
 
 
+def test_a_layer_leaves_less_of_the_pressure_on_what_lies_under_it():
+    """Concrete under 3 mm of epoxy was told to break under the 332 MPa that press the epoxy."""
+    layer = {"thickness": "3 mm", "material": "pmma"}
+    scene = drop(CONCRETE | {"strength": "50 MPa"}, effects=["auto", "barrier-elastic"])
+    bodies = Case(read_dict(scene | {"barrier": scene["barrier"] | {"layers": [layer]}})).bodies
+    size = bodies.estimate
+    pressure = 1.5e-6 * size.pressure / (1 + (3e-3 / size.radius) ** 2)
+    assert f"presses it with {pressure:.4g} MPa 3 mm deep, {pressure / 50:.2g} times" in " ".join(
+        unknowns(bodies)
+    )
+
+
 def test_a_note_calls_the_body_what_it_is():
     texts = [one.text for one in Case(read_dict(drop("s235", rod=OWN_STEEL))).limitations]
     assert any(text.startswith("The ball (own steel) has no yield stress") for text in texts)
