@@ -26,6 +26,10 @@ UNSORTED = (
 )
 VISCOUS = ("plastic", "rubber", "wood")
 NOT_TAKEN = f" What it loses inside is left out, {UPPER}."
+DAMPED = (
+    " Its loss_factor damps its vibration, by finite elements alone. What its contact loses is left out, "
+    f"{UPPER}."
+)
 NOT_STATED = NOT_TAKEN + " State loss_factor, which says it."
 TAKEN = " Its loss_factor says what it loses inside; nothing else of this is followed."
 CRUSHED = (
@@ -34,16 +38,18 @@ CRUSHED = (
 )
 
 
-def left_out(material: Material, taken: bool = False) -> str:
+def left_out(material: Material, taken: bool = False, damped: bool = False) -> str:
     """Return what an elastic answer leaves out of a material, by its family, or by how soft it is.
 
-    `taken` says whether the model takes the material's loss factor.
+    `taken` says whether the contact takes the material's loss factor, `damped` whether the vibration does.
     """
     kind = kind_of(family_of(material))
     nature = LEFT_OUT[kind] if kind else UNSORTED[sum(material.E > limit for limit in SOFT)]
     if not (kind in VISCOUS or nature in UNSORTED[:2]):
         return nature
-    return nature + (NOT_STATED if material.loss_factor is None else TAKEN if taken else NOT_TAKEN)
+    if material.loss_factor is None:
+        return nature + NOT_STATED
+    return nature + (TAKEN if taken else DAMPED if damped else NOT_TAKEN)
 
 
 def require_crushing_named(scene: Scene) -> None:

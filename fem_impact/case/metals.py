@@ -72,7 +72,8 @@ def _ambient(heating: Heating) -> str:
 
 def _body(body: str, metal: materials.Material, depth: float, bodies: Bodies) -> str:
     if not metal.yields and (body == "rod" or bodies.contact.compliant):
-        lost = left_out(metal, "contact-loss" in bodies.effects)
+        damped = body == "rod" and "material-damping" in bodies.effects
+        lost = left_out(metal, "contact-loss" in bodies.effects, damped)
         breaks = _breaking(metal, bodies.estimate, depth)
         return f"The {body} ({metal.name}) has no yield stress and stays elastic. {lost}{breaks}"
     hardens = YIELDS[body] in bodies.effects and is_wanted("rate-hardening", bodies.scene.effects)

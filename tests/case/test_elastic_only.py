@@ -202,6 +202,17 @@ def test_a_layer_leaves_less_of_the_pressure_on_what_lies_under_it():
     )
 
 
+def test_a_tube_that_is_damped_is_not_told_to_lose_nothing_inside():
+    """Damping took 1.4 % of the energy of one of which "what it loses inside is left out" was said."""
+    scene = drop("aluminium-2024-t3", rod=OWN_STEEL | {"family": "plastic", "loss_factor": 0.012})
+    for effects, told in (
+        ("material-damping", "damps its vibration"),
+        ("-material-damping", "is left out, so"),
+    ):
+        bodies = Case(read_dict(scene | {"effects": ["auto", "-contact-loss", effects]})).bodies
+        assert told in " ".join(unknowns(bodies))
+
+
 def test_a_note_calls_the_body_what_it_is():
     texts = [one.text for one in Case(read_dict(drop("s235", rod=OWN_STEEL))).limitations]
     assert any(text.startswith("The ball (own steel) has no yield stress") for text in texts)

@@ -4,7 +4,7 @@ import pytest
 
 from fem_impact.case.case import Case
 from fem_impact.case.choose import neglected
-from fem_impact.case.elastic_only import NOT_STATED, NOT_TAKEN, TAKEN
+from fem_impact.case.elastic_only import DAMPED, NOT_STATED, NOT_TAKEN, TAKEN
 from fem_impact.case.metals import unknowns
 from fem_impact.errors import SceneError
 from fem_impact.physics.viscous import viscous_restitution
@@ -149,7 +149,8 @@ def test_a_body_that_flows_is_refused_in_the_reduced_model():
     [
         (None, ("auto",), NOT_STATED),
         (0.1, ("auto",), TAKEN),
-        (0.1, ("auto", "-contact-loss"), NOT_TAKEN),
+        (0.1, ("auto", "-contact-loss"), DAMPED),
+        (0.1, ("auto", "-contact-loss", "-material-damping"), NOT_TAKEN),
     ],
 )
 def test_what_is_left_out_says_whether_the_loss_is_taken(eta, effects, words):
