@@ -13,13 +13,15 @@ from fem_impact.scene.fields import SKIN
 from fem_impact.tables.table import Table
 from fem_impact.tables.text import wrapped
 
+NONE = "No material states a hardness beside strengths or a curve that give its flow stress without it."
+
 
 def hardness(options: Options) -> int:
     """Print the layers that meet the hardness of each material."""
     loads = [_load(text) for text in options.loads.split(",")] if options.loads else []
     scatter = _number("--scatter", options.scatter) if options.scatter else 0.0
     found = list(hardnesses(asked_scene(options), loads, scatter))
-    lines = [line for one in found for line in _lines(one)] or wrapped("No material states a hardness.")
+    lines = [line for one in found for line in _lines(one)] or wrapped(NONE)
     print_answer(options, [_document(one) for one in found], "\n".join(lines) + "\n")
     return 0
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import rigid
 from fem_impact.case.case import Case
-from fem_impact.case.effects.heating import halves
+from fem_impact.case.effects.heating import halves, why_off
 from fem_impact.outcome.groups import Energy, Heat, Markers, RodMotion, RunCost, limitations
 from fem_impact.outcome.keys import Num, Unknown, known, unknown
 from fem_impact.outcome.record import Outcome
@@ -67,7 +67,7 @@ def rigid_outcome(case: Case) -> Outcome:
         ),
     )
     energy = _energy(case, path, loss, reduction.motion, base)
-    thermal = unknown(Heat, UNKNOWN)
+    thermal = replace(unknown(Heat, why_off(case.bodies)), less_vibration=Unknown(UNKNOWN))
     crushed = _sharp(case)
     if case.slots.heat:
         friction_work = known(energy.friction) * energy.E_0

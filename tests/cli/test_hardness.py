@@ -2,6 +2,7 @@
 
 import json
 
+from fem_impact.cli.hardness import NONE
 from fem_impact.cli.main import main
 from fem_impact.physics.indentation import HardnessTest
 from fem_impact.scene.shipped import load, replace_all
@@ -61,3 +62,13 @@ def test_a_hardness_below_yield_names_the_place_that_states_it(cli, tmp_path):
     )
     (tmp_path / "own.toml").write_text(own)
     assert "own.toml: hardness of plate-steel (changed)" in cli("check", "own.toml")[2]
+
+
+def test_a_curve_through_the_hardness_itself_has_no_layer(cli):
+    """It was told that no material states a hardness."""
+    own = {"name": "own steel", "E": "210 GPa", "nu": 0.3, "rho": "7850 kg/m3", "yield_stress": "300 MPa"}
+    table = ", ".join(
+        f"{key} = {value!r}" for key, value in (own | {"law": "hardness", "hardness": 150}).items()
+    )
+    stated = ("--set", f"projectile.material={{{table}}}", "--set", "barrier.material=s235")
+    assert cli("hardness", "t5b", *stated)[1].split() == NONE.split()

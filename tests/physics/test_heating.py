@@ -327,3 +327,8 @@ def test_a_hardness_below_three_times_the_ultimate_stress_does_not_lower_the_bou
         == bound_of(load("t5b"))
         == pytest.approx(bound_of(low) * 163 * 9.80665e6 / 0.927 / (3 * 446e6))
     )
+
+
+def test_rigid_theory_says_that_the_heat_is_off_not_that_it_never_knows_it():
+    scene = replace(load("t5b"), effects=("auto", "-contact-heating"))
+    assert "contact-heating effect is off" in simulate(scene, "rigid").heat.temperature.reason
