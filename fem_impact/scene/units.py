@@ -47,13 +47,25 @@ class Unit:
 
 @dataclass(frozen=True, slots=True)
 class Dimension:
-    """A physical dimension: its accepted units (first is SI), the suffix of SI keys, an example."""
+    """A physical dimension: its accepted units (first is SI), the suffix of SI keys, an example.
+
+    Of ``others``, units that are not accepted, it says what one is; of a temperature x, what x of them are.
+    """
 
     name: str
     suffix: str
     written: str
     example: str
     units: tuple[Unit, ...]
+    others: tuple[tuple[str, str], ...]
+
+    def hint(self, symbol: str) -> str:
+        """Return what a unit that is not accepted is, or which accepted one it may be a slip of."""
+        known = {spelt(other): value for other, value in self.others}
+        if symbol not in known:
+            return did_you_mean(symbol, [unit.symbol for unit in self.units], "")
+        number, are = ("x", "are") if self.name == "temperature" else ("1", "is")
+        return f"{number} {symbol} {are} {known[symbol]}."
 
     def unit(self, symbol: str) -> Unit | None:
         """Return the unit of that symbol, with or without its spaces and in its usual spellings, or None."""
@@ -126,8 +138,9 @@ def parse_quantity(value: Any, dimension: str, key: str, si_key: str = "") -> fl
         asked = "State one value; assess and validate take intervals: --uncertain impact.angle=30,50deg."
         raise SceneError("states an interval.", key=key, value=value, remedy=asked)
     if unit is None:
-        hint = did_you_mean(symbol, [unit.symbol for unit in dim.units], "")
-        unknown_unit = f"{symbol[:20]!r} is not a unit of {dim.name} ({dim.symbols}). {hint}".rstrip()
+        unknown_unit = (
+            f"{symbol[:20]!r} is not a unit of {dim.name} ({dim.symbols}). {dim.hint(symbol)}".rstrip()
+        )
         raise SceneError(unknown_unit, key=key, value=value, remedy=remedy)
     if not math.isfinite(float(number)):
         raise SceneError("is too large for a number.", key=key, value=value)

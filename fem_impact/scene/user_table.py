@@ -203,7 +203,8 @@ def unit_of(stated: str, dimension: str, name: str, place: str) -> Unit:
     unit = kind.unit(text.strip().replace("_per_", "/"))
     if unit is None:
         wrong = f"{place} {stated!r}: {text!r} is not a unit of {kind.name}"
-        raise ResultError(f"{wrong} ({kind.symbols}).")
+        hint = kind.hint(text.strip().replace("_per_", "/"))
+        raise ResultError(f"{wrong} ({kind.symbols}). {hint}".rstrip())
     return unit
 
 

@@ -1,6 +1,7 @@
 """Quantities: exact to write and read, strict about units."""
 
 import math
+import re
 
 import pytest
 from hypothesis import given
@@ -160,3 +161,43 @@ def test_rounding_of_a_unit_is_not_shown_among_the_inputs():
     shown = {row[0]: row[1] for row in inputs(scene).rows}
     assert (shown["projectile.length"], shown["impact.angle"]) == ("50 mm", "33.3333333 deg")
     assert scene.projectile.length != 0.05
+
+
+@pytest.mark.parametrize(
+    ("value", "dimension", "si"),
+    [
+        ("30 kgf/mm2", "stress", 9.80665e6),
+        ("1 rev/s", "angular speed", 2 * math.pi),
+        ("490 lb/ft^3", "density", 0.45359237 / 0.3048**3),
+        ("2 st", "mass", 14 * 0.45359237),
+        ("5 1/ms", "strain rate", 1e3),
+        ("8 kn", "speed", 1852 / 3600),
+        ("3 tsi", "stress", 2240 * 4.4482216152605 / 0.0254**2),
+        ("3 lb in2", "inertia", 0.45359237 * 0.0254**2),
+        ("3 lb ft2", "inertia", 0.45359237 * 0.3048**2),
+        ("2 kip", "force", 4448.2216152605),
+        ("1 yd", "length", 0.9144),
+        ("1 gon", "angle", math.pi / 200),
+        ("1 cal/(g K)", "heat capacity", 4186.8),
+    ],
+)
+def test_a_unit_that_is_not_taken_is_told_in_one_that_is(value, dimension, si):
+    """The nearest letters were proposed: rad/s for rev/s, N/mm2 for kgf/mm2, t for st, degC for degF."""
+    with pytest.raises(SceneError) as refused:
+        parse_quantity(value, dimension, "key")
+    told = re.search(r"\)\. 1 \S+ is (.*?)\. Write", str(refused.value))
+    assert told and parse_quantity(told[1], dimension, "key") == pytest.approx(si, rel=1e-5)
+
+
+def test_a_fahrenheit_is_no_slip_of_a_degree_celsius():
+    with pytest.raises(SceneError, match=r"x degF are \(x - 32\) / 1\.8 degC\. Write") as refused:
+        parse_quantity("900 °F", "temperature", "key")
+    assert "Did you mean" not in str(refused.value)
+
+
+def test_every_other_unit_is_told_in_one_that_is_taken():
+    for name, dimension in DIMENSIONS.items():
+        for symbol, told in dimension.others:
+            assert dimension.unit(symbol) is None
+            if name != "temperature":
+                parse_quantity(told.removesuffix(" of weight"), name, symbol)
