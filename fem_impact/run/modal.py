@@ -117,7 +117,8 @@ def reduce(case: Case, result: ModalResult) -> Outcome:
     place = place_of(case, outcome)
     halves = half_widths(place, outcome, case.contact.approach, common.part_of_last(case))
     waves = _waves(case, result)
-    halves = with_waves(waves, outcome, with_barrier(case.scene.barrier, outcome, halves))
+    halves = with_barrier(case.scene.barrier, outcome, halves)
+    halves = with_waves(waves, outcome, halves, case.contact.approach)
     if digs_in(outcome) and (half := halves.get("e_edge", 0.0)) >= 1.0:
         outcome = without_coefficients(outcome, Unknown(OPEN.format(half)))
     said = replace(

@@ -197,9 +197,12 @@ def _without_each(weights: Array, errors: Array) -> Array:
 
 
 def unit_of(key: str, outcome: Outcome) -> float:
-    """Return 1, the speed over the barrier, m/s, or that over the radius of gyration, by a key's unit."""
-    motion, barrier, unit = outcome.motion, outcome.barrier, KEY_TABLE[key].unit
-    speed = hypot(motion.v_n - barrier.v_bn, motion.v_t - barrier.v_bt)
+    """Return 1, the speed over the barrier, m/s, or that over the radius of gyration, by a key's unit.
+
+    The speed is that of all of E_0: a body that turns may strike fast though its mass centre hardly moves.
+    """
+    motion, unit = outcome.motion, KEY_TABLE[key].unit
+    speed = sqrt(2.0 * outcome.energy.E_0 / motion.mass)
     return {"m/s": speed, "rad/s": speed / sqrt(motion.k_squared)}.get(unit, 1.0)
 
 
@@ -283,17 +286,19 @@ def with_barrier(struck: Barrier, outcome: Outcome, halves: Mapping[str, float])
     return rod | {"E_barrier_over_E_0": min(share, 1.0)}
 
 
-def with_waves(share: float, outcome: Outcome, halves: Mapping[str, float]) -> dict[str, float]:
+def with_waves(
+    share: float, outcome: Outcome, halves: Mapping[str, float], approach: float
+) -> dict[str, float]:
     """Return half-widths, by key, that hold waves in the barrier, which the reduced model leaves out.
 
-    They take a ``share`` of the normal energy.
+    They take a ``share`` of the normal energy. ``approach``, m/s, is that of the contact point.
     """
     e, wider = or_none(outcome.restitution.edge.e), dict(halves)
     if not share or e is None or "E_r_over_E_0" not in halves:
         return wider
-    v_n, slower = outcome.motion.v_n - outcome.barrier.v_bn, e - sqrt(max(e**2 - share, 0.0))
-    more = {"e_edge": slower, "V_n_m_per_s": slower * abs(v_n)}
-    more["E_r_over_E_0"] = share * (v_n / unit_of("V_n_m_per_s", outcome)) ** 2
+    slower = e - sqrt(max(e**2 - share, 0.0))
+    more = {"e_edge": slower, "V_n_m_per_s": slower * approach}
+    more["E_r_over_E_0"] = share * min(approach / unit_of("V_n_m_per_s", outcome), 1.0) ** 2
     return wider | {key: halves[key] + by for key, by in more.items() if key in halves}
 
 

@@ -2,12 +2,12 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from math import hypot, sqrt
 
 from fem_impact.case.case import Case
 from fem_impact.errors import SceneError, UsageError
 from fem_impact.outcome.keys import Key, Num, or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
+from fem_impact.run.modal_error import unit_of
 from fem_impact.scene.types import Scene
 
 
@@ -30,10 +30,7 @@ class TargetQuantity:
 
     def scale(self, value: float, outcome: Outcome) -> float:
         """Return the scale that an error is divided by."""
-        m, unit = outcome.motion, 1.0
-        if self.unit == "rad/s":
-            unit = hypot(m.v_n, m.v_t) / sqrt(m.k_squared)
-        return max(abs(value), self.floor * unit)
+        return max(abs(value), self.floor * unit_of(self.keys[0].name, outcome))
 
 
 def sum_of(keys: Iterable[Key], outcome: Outcome) -> float | None:

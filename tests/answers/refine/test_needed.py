@@ -47,8 +47,10 @@ def test_what_is_zero_by_physics_stays_so_but_not_the_work_of_a_body_that_may_fl
 
 
 def test_the_widest_is_over_speeds_and_spins_of_the_approach():
-    motion = replace(RUN.motion, v_n=3.0, v_t=4.0, k_squared=0.04)
-    assert widest({"Omega_rad_per_s": 5.0, "e_edge": 0.1}, replace(RUN, motion=motion)) == pytest.approx(0.2)
+    """Speed and spin are those of all of E_0, here 5 m/s and 25 rad/s."""
+    motion = replace(RUN.motion, mass=2.0, k_squared=0.04)
+    run = replace(RUN, motion=motion, energy=replace(RUN.energy, E_0=25.0))
+    assert widest({"Omega_rad_per_s": 5.0, "e_edge": 0.1}, run) == pytest.approx(0.2)
 
 
 def test_half_widths_that_the_study_finds_hold_as_many_of_other_scenes():
