@@ -39,7 +39,7 @@ DEEP = 0.2  # plastic strain at a wedge, that of an indentation as deep as wide 
 SQUARE = 0.8
 ROUND = 0.25
 """Turn of an outline within the contact, over 90 degrees, up to which it bears as a half-space does."""
-SOON = 0.25  # of a contact's time: the other end may have come down before its end in another model
+SOON = 1.0  # of a contact's time: the other end may have come down before its end in another model
 NEAR_END = 1.5  # of the time that parts two impacts, up to which a gap may lie on its other side
 ROUND_OFF = 1e-6  # a moment impulse over that of the normal impulse at arm d_d: below it there is none
 
