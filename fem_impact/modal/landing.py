@@ -1,6 +1,6 @@
 """Whether a straight part of the rod lands flat as one of its ends touches, and the law that it then gets."""
 
-from math import cos, dist, pi, sin, sqrt
+from math import atan2, cos, dist, pi, sin, sqrt
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from rigid import Faceted
 NEAR = 0.5  # radii of gyration, beyond which a flank presses too far from its end to act there
 LEANS = 0.25  # rise over length beyond which a straight part that touches with an end does not land flat
 FINE = 11  # places in each cell at which the width of a flat side is looked at
+OFF_PLANE = 0.01  # slope of a straight part that crosses the axis, up to which it is a face
 RIGID = 1e-9  # share of the contact's give that a barrier which gives nothing is taken to have
 
 
@@ -104,9 +105,12 @@ def _roundness(rod: ModalRod, s: int) -> float:
 
 
 def _is_face(ends: list[tuple[float, float]]) -> bool:
-    """Return whether a straight part between two places (x, z) lies across the rod's axis."""
+    """Return whether a straight part between two places (x, z) lies across the rod's axis.
+
+    A corner counts as an arc through the place that touched, which is a little off the plane of its face.
+    """
     (x, z), (u, w) = ends
-    return abs(w - z) < 1e-6 * abs(u - x)
+    return abs(w - z) < (OFF_PLANE if x * u < 0.0 else 1e-6) * abs(u - x)
 
 
 def _is_straight(case: Case, ends: list[tuple[float, float]], depth: float) -> bool:
@@ -144,7 +148,8 @@ def _set_face(
     held.flats.share[f] = np.clip(0.5 * (1.0 - np.sign(x) * place / flat), 0.0, 1.0)
     held.flats.base[f] = wide**2 - place**2
     held.flats.inner[f] = np.sqrt(np.maximum(bore**2 - place**2, 0.0))
-    _set_row(case, held, f, pair, flow, pair.modulus, _of_face(flow), 2 * wide / CELLS, 0.0)
+    bears = _of_face(flow, _spreads(case, z, flat, edge))
+    _set_row(case, held, f, pair, flow, pair.modulus, bears, 2 * wide / CELLS, 0.0)
 
 
 def _set_facet(
@@ -163,12 +168,27 @@ def _set_facet(
     _set_row(case, held, f, pair, flow, stiffness, _of_face(flow), length / CELLS, 0.0)
 
 
-def _of_face(flow: FlowLaw) -> float:
-    """Return what a face bears, Pa: a rod that is pressed over all of it yields as a column."""
+def _spreads(case: Case, z: float, flat: float, edge: float) -> float:
+    """Return the angle, over a right one, by which a body widens behind a face of a radius at a place z, m.
+
+    It is that of the first radius behind the face, beyond a round ``edge``, m.
+    """
+    body = case.bodies.body
+    behind = z + flat if z < 0.5 * body.length else z - flat
+    wider = float(body.radius(np.array(min(max(behind, 0.0), body.length)))) - flat - edge
+    return atan2(max(wider, 0.0), flat) / (0.5 * pi)
+
+
+def _of_face(flow: FlowLaw, spreads: float = 0.0) -> float:
+    """Return what a face bears, Pa: a rod that is pressed over all of it yields as a column.
+
+    One that ``spreads`` behind it, by an angle over a right one, bears more in proportion to that: slip lines
+    turn by so much on their way to its flank (truncated wedge, Hill 1950, chapter 9).
+    """
     plane, column = flow.yield_stress, flow.other_yield_stress
     if not flow.ploughs:
         plane, column = column, plane
-    return min(FULLY_PLASTIC * plane, column)
+    return min(FULLY_PLASTIC * plane, column * (1.0 + (FULLY_PLASTIC - 1.0) * spreads))
 
 
 def _set_side(
