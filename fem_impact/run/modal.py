@@ -68,8 +68,8 @@ def closed(
 
 def reduce(case: Case, result: ModalResult) -> Outcome:
     """Return the Outcome of a modal impact."""
-    barrier, base = case.scene.barrier, (result.V_bn, result.V_bt)
-    turns, flows = barrier.inertia is not None, case.contact.rod_yields or case.contact.barrier_yields
+    barrier, flows = case.scene.barrier, case.contact.rod_yields or case.contact.barrier_yields
+    turns = barrier.inertia is not None
     omitted, strange = common.flow_omitted(case), [_too_light(case), _unlike_layer(case), _lossy(case)]
     strange.append(bends_beyond(case.bodies, float(result.energies.max(initial=0.0))))
     strange.append("" if result.laid else _level_flank(case))
@@ -79,7 +79,7 @@ def reduce(case: Case, result: ModalResult) -> Outcome:
         Omega=result.Omega,
         mass=result.rod.mass,
         k2=result.rod.k2,
-        base=base,
+        base=(result.V_bn, result.V_bt),
         leaving=result.V_n - result.V_bn,
         contacts=result.contacts,
         missing=result.residual / result.E_0,
@@ -103,7 +103,7 @@ def reduce(case: Case, result: ModalResult) -> Outcome:
             "model",
             *ASSUMPTIONS,
             DENTED.format("tip" if common.rod_flows(case) else "barrier") if flows else "",
-            LAYERED if case.scene.barrier.layers else "",
+            LAYERED if barrier.layers else "",
             omitted,
             *strange,
             LAID if result.laid else "",
@@ -114,11 +114,9 @@ def reduce(case: Case, result: ModalResult) -> Outcome:
     said = outcome.validity
     if why := next(filter(None, (omitted, *strange)), ""):
         return replace(outcome, validity=replace(said, model_band=Unknown(why)))
-    place = place_of(case, outcome)
-    halves = half_widths(place, outcome, case.contact.approach, common.part_of_last(case))
-    waves = _waves(case, result)
-    halves = with_barrier(case.scene.barrier, outcome, halves)
-    halves = with_waves(waves, outcome, halves, case.contact.approach)
+    place, speed = place_of(case, outcome), case.contact.approach
+    halves, waves = half_widths(place, outcome, speed, common.part_of_last(case)), _waves(case, result)
+    halves = with_waves(waves, outcome, with_barrier(barrier, outcome, halves), speed)
     if digs_in(outcome) and (half := halves.get("e_edge", 0.0)) >= 1.0:
         outcome = without_coefficients(outcome, Unknown(OPEN.format(half)))
     said = replace(
