@@ -83,7 +83,8 @@ def nastran(path: Path) -> StoredMesh:
     MeshError
         If the file makes nodes or cells by rules, or names what is not there.
     """
-    cards = list(_cards(lines_of(path, "nastran")))
+    # meshio writes cells with middles of edges as CHEXA_ or CTETRA_
+    cards = [(name.rstrip("_"), fields) for name, fields in _cards(lines_of(path, "nastran"))]
     grids, defined, found, scale = dict[int, tuple[int, tuple[float, ...]]](), {}, Elements(), 1.0
     default = next((fields[1] for name, fields in cards if name == "GRDSET"), "")
     for name, fields in cards:

@@ -741,3 +741,21 @@ def test_a_kratos_prism_of_15_nodes_has_its_upright_edges_before_the_upper_ones(
     found = stored_mesh(path)
     cells = as_hexahedra(found.points, found.blocks)
     assert corner_jacobians(cells.points[cells.cells]).min() > 0.5
+
+
+@pytest.mark.parametrize("kind", ["tetra10", "hexahedron20"])
+def test_cells_with_middles_of_edges_that_meshio_wrote_as_nastran_are_read(tmp_path, kind):
+    """It names them CTETRA_ and CHEXA_, which were refused."""
+    corners = np.array(
+        [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]], float
+    )
+    edges = [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)]
+    if kind == "tetra10":
+        corners, edges = corners[[0, 1, 3, 4]], [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)]
+    points = np.concatenate([corners, [corners[list(pair)].mean(axis=0) for pair in edges]])
+    written = meshio.Mesh(points, [(kind, np.arange(len(points))[None])])
+    written.write(tmp_path / "c.bdf")
+    found = stored_mesh(tmp_path / "c.bdf")
+    assert [name for name, _ in found.blocks] == [kind]
+    cells = as_hexahedra(found.points, found.blocks)
+    assert corner_jacobians(cells.points[cells.cells]).min() > 0.1
