@@ -299,7 +299,8 @@ def _cut(part: Part) -> Part:
             raise MeshError(
                 f"is not symmetric about the plane {plane}: {int(lonely.sum())} of {len(places)} {what}s "
                 f"have no mirror image, the first at {place_text(part.frame.place(places[lonely][0]))}. The "
-                "model holds half of a symmetric body: mirror the mesh, turn it, or give half of it."
+                "model holds half of a symmetric body: mirror the mesh, turn it, move its plane of symmetry "
+                "there, or give half of it."
             )
     places, cells, kept = made
     used, new = np.unique(cells[kept], return_inverse=True)
