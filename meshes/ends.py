@@ -11,7 +11,6 @@ from meshes.nose import NoseMesh, inner_corner, lay_nose
 from meshes.quality import corner_jacobians
 from meshes.rod import nose_cells
 from meshes.section import Section, section
-from meshes.shoulders import SPREAD
 
 # The nose grid ends where the surface is steeper than this, rad from the radial direction; scaled sections
 # lean as the surface does
@@ -93,24 +92,12 @@ def end_of(
                 f"a wall of {1.0 - half.bore:.2g} of the outer radius is too thin beside {across} cells "
                 "across"
             )
-        if farther := builder.farther():
-            raise MeshError(
-                f"an end is too short for hexahedra: its radius shrinks {line[_shrinks(line), 1]:.3g} m from "
-                f"it. Let it do so {farther:.2g} m farther from it"
-            )
         raise MeshError(
             f"an end is too sharp for hexahedra: round it with a radius of {0.1 * radius:.2g} m or more, or "
             "cut it off flat"
         )
     shifted = builder.tried(cut, near, levels) if near is not None else None
     return shifted if shifted and builder.score(shifted)[0] >= 0.8 * score else plain
-
-
-def _shrinks(line: FloatArray) -> int:
-    """Return the vertex from which on a surface shrinks, the last one where it does not."""
-    step = np.diff(line, axis=0)
-    shrinks = np.arctan2(step[:, 1], step[:, 0]) > 0.5 * np.pi + 1e-9
-    return int(np.argmax(shrinks)) if shrinks.any() else len(step)
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,7 +115,8 @@ class _Builder:
         """Return the score of the best nose grid, the vertex of the line at which it ends, and the grid."""
         line, step = self.line, np.diff(self.line, axis=0)
         slope = np.arctan2(step[:, 1], step[:, 0])
-        last = _shrinks(line)
+        shrinks = slope > 0.5 * np.pi + 1e-9
+        last = int(np.argmax(shrinks)) if shrinks.any() else len(slope)
         # where it may end: steep behind, never shrinking before
         steep = 1 + np.flatnonzero(slope[1 : last + 1] >= STEEP)
         steep = steep[line[steep, 1] <= LONGEST * line[steep, 0]]
@@ -142,18 +130,6 @@ class _Builder:
         scored = [(self.score(end), cut, end) for cut, end in tried if end is not None]
         score, cut, end = max(scored, key=lambda one: one[:2], default=((0.0, 0.0), 0, None))
         return score[0], cut, end
-
-    def farther(self) -> float:
-        """Return how much farther from the end, m, the surface has to shrink; 0 where that does not help."""
-        first, step = _shrinks(self.line), 0.05 * float(self.line[:, 0].max())
-        before = self.line[: first + (self.line[first - 1, 0] < self.line[first, 0])]
-        drop, along = np.diff(self.line[first : first + 2], axis=0).sum(axis=0)
-        cone = 0.0 if along > 0.0 else -0.5 * SPREAD * float(drop)  # begins that much before its shoulder
-        for more in step * np.arange(1, 21) * (first < len(self.line) - 1):
-            moved = np.concatenate([before, self.line[first:] + np.array([0.0, more])])
-            if replace(self, line=moved).best()[0] >= POOR:
-                return float(more) + cone
-        return 0.0
 
     def tried(self, cut: int, near: FloatArray | None = None, levels: int = 0) -> ShapeEnd | None:
         """Return the nose grid that ends at a vertex of the line, or None where there is no room for it."""

@@ -60,6 +60,12 @@ class Section:
         return np.concatenate([self.quads, self.quads + len(self.unit)], axis=1)
 
     @property
+    def flush_swell(self) -> float:
+        """Factor of outer nodes beside y = 0 that does so where those in y = 0 stay on the circle."""
+        count = len(self.unit) - self.plug_nodes - 1  # of chords
+        return float(np.sqrt(1.0 + count * (count - 2) * self.swell**2) - 1.0) / (count - 2)
+
+    @property
     def radius(self) -> FloatArray:
         """(n,) distance from the axis; exact on the two circles."""
         return np.asarray(np.hypot(self.unit[:, 0], self.unit[:, 1]))

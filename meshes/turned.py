@@ -5,7 +5,6 @@ a lid, a short pin. Chamfers are rows of their own.
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -59,8 +58,8 @@ def turned(
         Point of the surface, by default the centre of the last zone: where its shape allows it, it lies in
         the middle of a finest cell.
     flush : bool
-        Whether both lines of nodes in y = 0 lie on the surface along all of the body. Other nodes of sections
-        that have the area of the circle stand out over it.
+        Whether both lines of nodes in y = 0 lie on the surface along all of the body. Nodes of sections that
+        have the area of the circle stand out over it elsewhere.
 
     Raises
     ------
@@ -83,9 +82,12 @@ def turned(
     nodes = len(body.half.unit)
     points, cells, layer_of = _sections(body, heights, exact)
     if flush:
-        x, y = body.half.unit.T
-        line = (body.half.radius > 1.0 - SAME) & (y == 0.0)
-        points.reshape(len(heights), nodes, 3)[:, line, 0] = np.sign(x[line]) * body.radius(heights)[:, None]
+        outer, radius = np.arange(body.half.plug_nodes, nodes), body.radius(heights)
+        ring = points.reshape(len(heights), nodes, 3)[:, outer]
+        swollen = ring[:, 0, 0] > (1.0 + SAME) * radius
+        ring[swollen, 1:-1, :2] *= body.half.flush_swell / body.half.swell
+        ring[:, [0, -1], 0] = radius[:, None] * [1.0, -1.0]
+        points.reshape(len(heights), nodes, 3)[:, outer] = ring
     for edge, row in ((body.line[1], 0), (body.line[-1], len(heights) - 1)):
         if body.is_stack and np.linalg.norm(closest_on(body.exact, edge[None]) - edge) > SAME * edge[0]:
             rim = row * nodes + np.flatnonzero(body.half.radius > 1.0 - SAME)  # it stands for a rounding
@@ -102,8 +104,7 @@ def turned(
                 below = below[:, TURNED]
             points = np.concatenate([points, more])
             parts.append((below, np.full(len(below), len(heights) if flipped else -1)))
-    made = _finished(body, points, parts, heights, exact, zones, buffer)
-    return replace(made, on_surface=((-np.inf, np.inf),)) if flush else made
+    return _finished(body, points, parts, heights, exact, zones, buffer)
 
 
 def contact_radius(

@@ -20,8 +20,9 @@ def test_a_landing_nearly_on_the_side_is_meshed(body, angle):
     points = bodies.geometry.rod_points
     lowest = points[points[:, 2].argmin()]
     assert np.linalg.norm(lowest) < 1e-3, "within a cell of the place that touches first"
-    body = bodies.case.bodies.body
-    assert 2 * bodies.true_rod.mass.sum() == pytest.approx(body.mass, rel=1e-9)
+    rod, body = bodies.true_rod, bodies.case.bodies.body
+    centre = (rod.mass * rod.mesh.points[rod.mesh.cells, 2]).sum() / rod.mass.sum()
+    assert centre == pytest.approx(body.z_c, abs=1e-3 * body.length), "mass lies where it is"
 
 
 def test_both_lines_of_a_flush_body_lie_on_its_surface_and_its_centre_on_the_axis():
@@ -29,5 +30,6 @@ def test_both_lines_of_a_flush_body_lie_on_its_surface_and_its_centre_on_the_axi
     plain, flush = (meshes.turned(SIDE, 6, flush=asked).mesh for asked in (False, True))
     assert np.abs(plain.points[:, 0]).max() > 1.01 * 9.5e-3
     assert np.abs(flush.points[:, 0]).max() == pytest.approx(9.5e-3, rel=1e-12)
-    of = meshes.cell_moments(flush)
+    of, whole = meshes.cell_moments(flush), meshes.cell_moments(plain)
     assert of.x.sum() / of.volume.sum() == pytest.approx(0.0, abs=1e-12)
+    assert of.volume.sum() == pytest.approx(whole.volume.sum(), rel=1e-3), "the section keeps its area"

@@ -172,7 +172,7 @@ def test_what_hexahedra_cannot_fill_is_refused(line, told):
 @pytest.mark.parametrize(
     ("head", "edge", "neck"), [(3e-3, 0.0, 3e-3), (1e-3, 5e-4, 3e-3), (5e-3, 2e-3, 7e-3)]
 )
-def test_a_thin_head_is_refused_as_too_short_with_a_remedy_that_works(head, edge, neck):
+def test_a_thin_head_is_refused_as_a_flange_with_a_remedy_that_works(head, edge, neck):
     """A bolt's head of 20 mm across was "too sharp", its flat end to be rounded or cut off flat."""
 
     def bolt(head):
@@ -181,10 +181,10 @@ def test_a_thin_head_is_refused_as_too_short_with_a_remedy_that_works(head, edge
             [[0, 0], [10e-3 - edge, 0], *chamfer, [10e-3, head + edge], [neck, head + edge], [neck, 0.06]]
         )
 
-    with pytest.raises(meshes.MeshError, match=r"end is too short .* Let it do so \S+ m farther") as told:
+    with pytest.raises(meshes.MeshError, match=r"end is a flange: .* up to \S+ m from the end") as told:
         meshes.turned(bolt(head), 8)
-    farther = float(re.search(r"do so (\S+) m", str(told.value))[1])
-    assert len(meshes.turned(bolt(head + farther), 8).mesh.cells) > 100
+    thick = float(re.search(r"up to (\S+) m", str(told.value))[1])
+    assert len(meshes.turned(bolt(thick - edge), 8).mesh.cells) > 100
 
 
 def tube(bore, depth, closed="tip", edge=0.0):
