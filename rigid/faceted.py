@@ -309,6 +309,8 @@ class Faceted:
         edges = np.zeros(len(line), bool)
         for k in np.flatnonzero(steps_of(line, CORNER)[0] < CORNER):
             at = np.abs(self.points[:, [0, 2]] - line[k]).max(axis=1) <= LEVEL * self.length
+            middle = at & (np.abs(self.points[:, 1]) <= LEVEL * self.length)
+            at = middle if middle.any() else at  # a notch beside the plane of motion makes no edge in it
             here = across[at[facets].any(axis=1)]
             edges[k] = (np.abs(here @ along[k]) > STEEP * np.hypot(*along[k])).any()
         return edges

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from math import cos, sin
 
 import numpy as np
 
@@ -116,10 +117,13 @@ class Bodies:
         stated, rod = self.scene.surface.friction, self.rod
         if not rod.faces:
             return stated
-        half = self._own_half
-        touching = self._at_contact[half.faces].sum(axis=1) * (half.face_tag == SKIN)
-        # of an edge that lies along the barrier the faces on both sides, not those beside its ends
-        there = touching >= min(2, touching.max())
+        half, angle, skin = self._own_half, self.scene.impact.angle, self._own_half.face_tag == SKIN
+        height = half.points[:, 2] * cos(angle) - half.points[:, 0] * sin(angle)
+        there = (height <= height.min() + SAME_PLACE * rod.length)[half.faces].all(axis=1) & skin
+        if not there.any():  # no face lies on the barrier
+            touching = self._at_contact[half.faces].sum(axis=1) * skin
+            # of an edge that lies along the barrier the faces on both sides, not those beside its ends
+            there = touching >= min(2, touching.max())
         return float(rod.face_friction(stated)[there].max())
 
     @cached_property

@@ -171,15 +171,17 @@ def _too_thin(bodies: Bodies, zones: AnyZones, share: float) -> SceneError:
 
 
 def _too_deep(bodies: Bodies, base: float, count: float) -> SceneError:
-    number, last = len(bodies.barrier.layers), bodies.barrier.layers[-1]
-    depth, wide = 1e3 * float(interfaces(bodies)[-1]), 2e3 * bodies.estimate.radius
+    thick = int(np.argmax([layer.thickness for layer in bodies.barrier.layers]))
+    layer, wide = bodies.barrier.layers[thick], 2e3 * bodies.estimate.radius
+    depth = 1e3 * float(interfaces(bodies)[-1])
     return SceneError(
         f"makes a block of {count:.1g} cells, {base * 1e3:.3g} mm wide, down to the base under the layers, "
         f"{depth:.3g} mm deep.",
-        key=f"barrier.layers[{number}].thickness",
-        value=f"{1e3 * last.thickness:.3g} mm",
-        remedy=f'Give "{last.material.name}" as barrier.material and leave this layer out: a contact of '
-        f"about {wide:.2g} mm does not feel what lies so deep. Or give a thinner layer.",
+        key=f"barrier.layers[{thick + 1}].thickness",
+        value=f"{1e3 * layer.thickness:.3g} mm",
+        remedy=f'Give "{layer.material.name}" as barrier.material, without this layer and those under it: a '
+        f"contact of about {wide:.2g} mm does not feel what lies so deep. Or give a thinner layer, or a "
+        "smaller accuracy.across.",
     )
 
 

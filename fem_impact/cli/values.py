@@ -133,6 +133,4 @@ def _value(text: str, unit: str | None) -> Any:
 def _with_unit(number: str, unit: str | None) -> Any:
     if unit:
         return f"{number} {unit.strip()}"
-    # TOML wants digits on both sides of a point
-    number = re.sub(r"\.(?!\d)", ".0", re.sub(r"(?<!\d)\.", "0.", number))
-    return tomllib.loads(f"value = {number}")["value"]
+    return float(number) if {*number.lower()} & {".", "e"} else int(number)

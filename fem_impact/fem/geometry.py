@@ -212,6 +212,8 @@ def _require_tip_first(points: Array, base: float, on_feet: bool) -> None:
     A mesh of a user's own may stand ``on_feet`` beside the plane of symmetry.
     """
     tip = np.hypot(points[:, 0], 0.0 if on_feet else points[:, 1]) < 1.5 * base
+    if not tip.any():  # the nose of a rigid rest ends before the contact
+        raise no_rest()
     ahead = float(points[tip, 2].min() - points[:, 2].min())
     if ahead > AHEAD * base:
         raise SceneError(

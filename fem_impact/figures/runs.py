@@ -301,7 +301,7 @@ def partition_picture(outcome: Outcome) -> Picture:
     if above := above_modes(outcome.energy):
         at = [row[0] for row in rows].index("vibration") + 1
         rows.insert(at, (ABOVE, "E_vib_above_modes", above, rows[at - 1][3], percent(above)))
-    labels, names, values, colours, texts = zip(*rows, strict=True)
+    labels, names, values, colours, texts = zip(*rows, strict=True) if rows else ((),) * 5
     # bars below UNSEEN are 0: the number beside a negative one would cover its name
     widths = [100.0 * value if abs(value) > UNSEEN else 0.0 for value in values]
     bars = tuple(
@@ -309,7 +309,7 @@ def partition_picture(outcome: Outcome) -> Picture:
         for at, (width, colour, text) in enumerate(zip(widths, colours, texts, strict=True))
     )
     right = 1.3 * max([*widths, 1e-3])  # leaves room for the numbers
-    panel = Panel("", AXIS, "", bars, rows=labels, x_range=(min(0.0, *widths), right))
+    panel = Panel("", AXIS, "", bars, rows=labels, x_range=(min([0.0, *widths]), right))
     numbers = Table.of(("account", "fraction_of_E_0"), zip(names, values, strict=True))
     return Picture("partition", "Shares of E₀ after the last separation.", (panel,), 1, numbers)
 

@@ -59,7 +59,7 @@ def bending_group_speed(rod: ProjectileSpec) -> float:
 def bending_period(rod: ProjectileSpec) -> float:
     """Return the first free-free bending period, s; that of prongs or of a short body's plate, if longer.
 
-    A mesh that is shorter than wide counts as a plate as thick as it is long.
+    Of a mesh that is shorter than wide the plate is as thick as it is long.
     """
     as_beam = 2 * pi / float(bending_frequencies(rod)[0])
     return max(as_beam, prongs(rod).period, disc_period(rod) if rod.length < rod.diameter else 0.0)

@@ -336,7 +336,8 @@ def _require_joints(low: Array, high: Array, joints: Sequence[float]) -> None:
             starts, ends = np.sort(low + slack), np.sort(high - slack)
             rows = np.unique(low.round(9))[1:]  # those between cells of which none lies on both sides
             rows = rows[np.searchsorted(starts, rows) == np.searchsorted(ends, rows, "right")]
-            remedy = "No row of cells ends level: name those of another material by a set (mesh_materials)."
+            remedy = "No row of cells ends level. Leave out segments, and name the other cells by a set: "
+            remedy += "mesh_materials."
             if len(rows):
                 near = float(rows[np.argmin(np.abs(rows - joint))])
                 remedy = f"The nearest nodes between two rows are at {near * 1e3:.6g} mm from the tip."

@@ -144,8 +144,9 @@ class Watchers:
             stop.tail = _far_tail(case, model)
         if len(stop.tail) < 2 and scene.impact.until == FIRST:  # it may touch; a followed body goes on
             z, middle = model.geometry.rod.mesh.points[:, 2], 0.5 * case.bodies.body.length
-            stop.behind = z[nodes_of(model.layout.rod, view.rim)] > middle
-            stop.touched = lambda: bool((z[contact.rod[contact.last >= 0.0]] > middle).any())
+            other = (z > middle) != (case.bodies.lowest_point[2] > middle)
+            stop.behind = other[nodes_of(model.layout.rod, view.rim)]
+            stop.touched = lambda: bool(other[contact.rod[contact.last >= 0.0]].any())
         # a level is run again without thin cells, a strike of a body that is followed is not
         again = case.record is not None and not case.record.crushed and scene.impact.until == FIRST
         rows = case.zones.skin_rows + case.zones.rod_rows

@@ -34,7 +34,10 @@ pytestmark = pytest.mark.usefixtures("unrendered")
         ("projectile.length=0.2,0.4,.8m", ["0.2 m", "0.4 m", ".8 m"]),
         ("projectile.length=200 mm, 40 cm", ["200 mm", "40 cm"]),
         ("accuracy.across=8,12", [8, 12]),
-        ("impact.omega=-.5,+.5,1.e3,2.", [-0.5, 0.5, 1000.0, 2.0]),  # ended in a fault of the reader of TOML
+        (
+            "impact.omega=-.5,+.5,1.e3,2.,07",
+            [-0.5, 0.5, 1000.0, 2.0, 7],
+        ),  # no TOML
         ("projectile.tip=A,B", ["A", "B"]),
         ("projectile.material=100cr6,42crmo4", ["100cr6", "42crmo4"]),
         ("projectile.material=s235,42crmo4", ["s235", "42crmo4"]),

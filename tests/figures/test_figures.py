@@ -1,6 +1,7 @@
 import json
 import subprocess
 import sys
+from dataclasses import replace
 from itertools import pairwise
 from xml.etree import ElementTree
 
@@ -20,7 +21,7 @@ from fem_impact.figures.runs import (
     study_partition_picture,
 )
 from fem_impact.figures.still import draw, percent
-from fem_impact.outcome.keys import known
+from fem_impact.outcome.keys import Unknown, known
 from fem_impact.outcome.record import Outcome
 from fem_impact.outcome.shares import ACCOUNTS, shares
 from fem_impact.tables.history import HISTORY
@@ -60,6 +61,15 @@ def test_every_energy_column_is_drawn_or_named():
 def test_accounts_differ_in_colour():
     for accounts in (ACCOUNTS, shares("figure")):
         assert len({account.colour for account in accounts}) == len(accounts)
+
+
+def test_a_run_whose_shares_are_all_withheld_has_a_picture_without_bars(record):
+    """The report ended in a fault of Python."""
+    outcome = Outcome.from_dict(record)
+    names = [share.key.path[-1] for share in shares("figure")]
+    energy = replace(outcome.energy, **{name: Unknown("withheld") for name in names if name != "residual"})
+    (panel,) = partition_picture(replace(outcome, energy=energy)).panels
+    assert len(panel.series) <= 1  # what is not accounted for is always known
 
 
 def test_figures_of_a_run_are_pictures_with_their_numbers(history, tmp_path, record):

@@ -84,6 +84,8 @@ def test_an_edge_has_the_friction_of_the_faces_on_both_sides_of_it(tmp_path):
         path.write_text(f"{path.read_text()}\n*SURFACE, NAME={name}\n{faces}")
     assert Case.of(scene(path, {"SOLE": GREASED, "FRONT": GREASED}), "rigid").contact.f == 0.1
     assert Case.of(scene(path, {"SOLE": GREASED}), "rigid").contact.f == 0.6
+    level = scene(path, {"SOLE": GREASED}, angle="0 deg")
+    assert Case.of(level, "solid").contact.f == 0.1, "the sides beside a face that lies flat do not touch"
     assert Case.of(scene(path, {"FRONT": GREASED}), "rigid").contact.f == 0.6
 
 

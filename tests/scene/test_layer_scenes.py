@@ -66,7 +66,7 @@ def test_a_written_scene_reads_back_equal_and_layers_are_part_of_it():
             r"layers\[1\].thickness = .0.3 mm.: fits no row of .* cells, 2.38 mm wide: .*across = \d+",
         ),
         (
-            [PLATE, {**PLATE, "thickness": "120 mm"}],
+            [PLATE, {**PLATE, "thickness": "120 mm"}, PLATE],
             {},
             r"layers\[2\].thickness = .120 mm.: makes a block .* Give .steel-4340. as barrier.material",
         ),

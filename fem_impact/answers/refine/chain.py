@@ -388,13 +388,13 @@ class LevelChain:
 
         ``before_s`` of the budget, s, went by before this chain; the errors are to be halved so often.
         """
-        number, used_s = len(self.done) + 1, before_s + self.spent_s
+        number = len(self.done) + 1
         if self.refused:
             reason = f"Level {number}, finer, gave no result: {self.refused}"
             return reason, forecast.budget_of(self.refused, before_s)
-        then, last = self.following, self.done[-1].splits + halvings
+        then = self.following
         if then is None:
             return f"No finer level is tried: {self._finer}.", None
-        if last > max(then, self.finest + MOST_FINER):
-            return forecast.TOO_OFTEN.format(halvings), None
-        return forecast.advice(number, used_s, [*map(self.forecast_s, range(then, last + 1))])
+        last = max(then, min(self.done[-1].splits + halvings, self.finest + MOST_FINER))
+        each_s = [self.forecast_s(splits) for splits in range(then, last + 1)]
+        return forecast.advice(number, before_s + self.spent_s, each_s)

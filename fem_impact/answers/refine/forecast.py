@@ -241,9 +241,6 @@ def advice(number: int, used_s: float, each_s: Sequence[float]) -> tuple[str, in
     return f"{sentence}, for which give a budget of {enough} s.", enough
 
 
-TOO_OFTEN = (
-    "No levels that can be made decide: each about halves the error, which would have to be halved {} times."
-)
 FOR_TWO = "For it and a finer one, which tell the error of each number, give a budget of {} s."
 
 

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 from math import ceil, log2
 from typing import Any, Protocol, TypeVar
 
-from fem_impact.answers.refine.chain import LevelChain
+from fem_impact.answers.refine.chain import MOST_FINER, LevelChain
 from fem_impact.answers.refine.forecast import about_s, for_levels_s, turns
 from fem_impact.answers.refine.level import LevelRun
 from fem_impact.answers.refine.level_meshes import LevelMeshes
@@ -122,7 +122,11 @@ def by_levels(
     return estimated, *_open(levels, over, before_s, needed)
 
 
-FAR = 1e6  # times too large: as far as an error is told to be
+HOPELESS = 1000.0  # times that an error is too large, from which on no level is advised
+ON_THE_LIMIT = (
+    "It lies so near the limit that finer levels will hardly decide: an error about halves on each, and "
+    "would have to be a thousandth of this one or less."
+)
 NO_ANSWER = "Finite elements have no answer here"
 STOPPED = "It was stopped by hand after {} levels of finite elements; those count."
 
@@ -133,6 +137,8 @@ def _open(levels: LevelChain, over: float | None, before_s: float, needed: int) 
     ``over`` is their error over the one with which there would be an answer, None where they tell no number,
     of which fewer than ``needed`` never do.
     """
+    if over is not None and over >= HOPELESS:
+        return [ON_THE_LIMIT], {}
     lacking = needed - len(levels.done)
     note, enough = levels.advice(before_s, max(lacking, 1) if over is None else halvings(over))
     if over is not None:
@@ -150,7 +156,7 @@ def _open(levels: LevelChain, over: float | None, before_s: float, needed: int) 
 
 def halvings(over: float) -> int:
     """Return how many levels bring down an error so many times too large: each about halves it."""
-    return ceil(log2(min(max(2.0, over), FAR)))
+    return ceil(log2(min(max(2.0, over), 2.0**MOST_FINER)))
 
 
 def with_budget(budget_s: int | None) -> Means:
