@@ -5,6 +5,7 @@ import pytest
 
 import meshes
 from fem_impact.case.case import Case
+from fem_impact.errors import SceneError
 from fem_impact.fem.body import MeshedBodies
 from fem_impact.scene.shipped import load, replace_all
 
@@ -33,3 +34,12 @@ def test_both_lines_of_a_flush_body_lie_on_its_surface_and_its_centre_on_the_axi
     of, whole = meshes.cell_moments(flush), meshes.cell_moments(plain)
     assert of.x.sum() / of.volume.sum() == pytest.approx(0.0, abs=1e-12)
     assert of.volume.sum() == pytest.approx(whole.volume.sum(), rel=1e-3), "the section keeps its area"
+
+
+@pytest.mark.parametrize("angle", [85.0, -89.5])
+def test_a_nose_that_ends_before_the_contact_is_refused(angle):
+    """It ended in a fault of numpy."""
+    rigid = {"effects": ["friction", "barrier-rigid"], "accuracy.tip_size": "2 mm"}
+    bodies = MeshedBodies(Case(replace_all(load("ogive"), rigid | {"impact.angle": f"{angle} deg"})))
+    with pytest.raises(SceneError, match="deforms as a whole"):
+        assert bodies.geometry

@@ -279,6 +279,24 @@ def test_an_impact_ends_before_the_other_end_strikes_a_meshed_barrier_too():
     assert solid.motion.Omega == pytest.approx(modal.motion.Omega, rel=0.1)
 
 
+@pytest.mark.long
+def test_an_impact_of_the_tail_ends_before_the_tip_strikes():
+    """The other end was the half of the tail, which had touched: the slap of the tip was counted with it."""
+    taper = {"profile": [["0 mm", "5 mm"], ["80 mm", "7 mm"]], "material": "rod-steel"}
+    scene = load(
+        {
+            "id": "taper",
+            "projectile": taper,
+            "barrier": {"material": "plate-steel"},
+            "surface": {"state": "custom", "friction": 0.3, "source": "assumed"},
+            "impact": {"angle": "88.9 deg", "v_n": "-1.5 m/s", "v_t": "-0.2 m/s"},
+            "accuracy": {"tip_size": "1.2 mm", "levels": 1},
+        }
+    )
+    for fidelity in ("modal", "solid"):
+        assert "other end strikes 0.0" in simulate(scene, fidelity).validity.stopped_because
+
+
 def test_an_other_end_that_strikes_at_once_leaves_the_end_of_the_impact_open():
     case, contacts = Case.of(load("t5b"), "modal"), np.array([[0.0, 100e-6]])
     assert open_end(case, contacts, 1.0, 0.0, 20e-6).startswith("The other end strikes 20 us after")

@@ -207,3 +207,15 @@ def test_a_collar_of_a_mesh_has_edges():
     assert body.contact_point(touch) == pytest.approx((10e-3, 28e-3))
     assert body.tip_curvature(touch) == 0.0
     assert not any(one.radius for side in (1.0, -1.0) for one in body.curves(side))
+
+
+def test_a_notch_beside_the_plane_of_motion_makes_no_edge_in_it():
+    """A slot at y > 8 mm made an edge of a barrel of 150 mm radius."""
+    points, cells = box(8, 6, 40, (-10e-3, 0.0, 0.0), (10e-3, 12e-3, 80e-3))
+    points[:, 0] *= 1.0 - (points[:, 2] - 40e-3) ** 2 / (2 * 150e-3 * 10e-3)
+    x, y, z = points[cells].mean(axis=1).T
+    slot = (x > 5e-3) & (y > 8e-3) & (np.abs(z - 40e-3) < 4e-3)
+    whole, slotted = (of_mesh(own_body(points, cells[kept], Stated("half")).half) for kept in (x < 1, ~slot))
+    near = np.radians(89.0)
+    assert whole.tip_curvature(near) > 0.1
+    assert slotted.tip_curvature(near) == pytest.approx(whole.tip_curvature(near), rel=1e-6)
