@@ -5,7 +5,7 @@ from math import cos, pi, sin, sqrt
 
 import numpy as np
 
-from fem_impact.case.bodies import Bodies
+from fem_impact.case.bodies import SAME_PLACE, Bodies
 from fem_impact.physics.beam import prongs
 from fem_impact.physics.contact import section_frequency
 from fem_impact.physics.stepped_beam import sections
@@ -145,7 +145,10 @@ def coned(bodies: Bodies) -> str:
     *_, heights = without_shoulders(body.outline, bore, bodies.scene.across)
     places = " and ".join(f"{z * 1e3:.3g} mm" for z in heights)
     are = ("shoulder {} from the tip is a cone", "shoulders {} from the tip are cones")[len(heights) > 1]
-    return f"in a mesh the {are.format(places)} of 63 degrees or less" if places else ""
+    foot = float(bodies.lowest_point[2])
+    on_one = any(abs(z - foot) < SAME_PLACE * body.length for z in heights)
+    beside = ", whose edge touches first: finite elements land beside it" * on_one
+    return f"in a mesh the {are.format(places)} of 63 degrees or less{beside}" if places else ""
 
 
 def lands_on_ridge(bodies: Bodies) -> bool:

@@ -216,6 +216,6 @@ def test_a_notch_beside_the_plane_of_motion_makes_no_edge_in_it():
     x, y, z = points[cells].mean(axis=1).T
     slot = (x > 5e-3) & (y > 8e-3) & (np.abs(z - 40e-3) < 4e-3)
     whole, slotted = (of_mesh(own_body(points, cells[kept], Stated("half")).half) for kept in (x < 1, ~slot))
-    near = np.radians(89.0)
+    near = np.radians(88.47)  # on the nodes at one end of the slot
     assert whole.tip_curvature(near) > 0.1
     assert slotted.tip_curvature(near) == pytest.approx(whole.tip_curvature(near), rel=1e-6)
