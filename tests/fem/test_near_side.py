@@ -12,8 +12,7 @@ from fem_impact.scene.shipped import load, replace_all
 SIDE = np.array([[0, 0], [9.5, 0], [9.5, 80]]) * 1e-3
 
 
-@pytest.mark.parametrize("body", ["t5b", "tube", "ogive"])
-@pytest.mark.parametrize("angle", [89.5, 89.8, -89.9])
+@pytest.mark.parametrize(("body", "angle"), [("t5b", 89.5), ("t5b", -89.9), ("tube", 89.8), ("ogive", 89.8)])
 def test_a_landing_nearly_on_the_side_is_meshed(body, angle):
     """It was refused: "the meshed rod's side, a polygon, strikes 61 um before its tip"."""
     landing = {"impact.angle": f"{angle} deg", "impact.v_n": "-1.5 m/s", "impact.v_t": "-0.2 m/s"}
