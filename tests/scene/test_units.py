@@ -201,3 +201,13 @@ def test_every_other_unit_is_told_in_one_that_is_taken():
             assert dimension.unit(symbol) is None
             if name != "temperature":
                 parse_quantity(told.removesuffix(" of weight"), name, symbol)
+
+
+def test_other_units_of_density_are_worked_out_from_their_parts():
+    """A kg/mm3 was told to be 1000 t/m3, a thousandth of it."""
+    masses = {"mg": 1e-6, "g": 1e-3, "kg": 1.0, "lb": 0.45359237}
+    lengths = {"mm3": 1e-9, "cm3": 1e-6, "m3": 1.0, "ft3": 0.3048**3, "l": 1e-3, "L": 1e-3, "ml": 1e-6}
+    for symbol, told in DIMENSIONS["density"].others:
+        mass, volume = symbol.split("/")
+        found = parse_quantity(told, "density", symbol)
+        assert found == pytest.approx(masses[mass] / lengths[volume], rel=1e-5), symbol
