@@ -115,6 +115,11 @@ def outer_quads(cells: IntArray) -> IntArray:
     return np.asarray(cells[owner[:, None], FACES[local]])
 
 
+def quad_normals(corners: FloatArray) -> FloatArray:
+    """(k, 3) normals of quads with corners (k, 4, 3), each as long as twice its area."""
+    return np.asarray(np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]))
+
+
 def match_faces(mesh: HexMesh) -> npt.NDArray[np.int8]:
     """(m, 6) tag of every face of every cell, -1 inside."""
     keys = face_keys(mesh.cells[:, FACES].reshape(-1, 4))

@@ -8,7 +8,7 @@ import numpy as np
 from meshes.common import BoolArray, FloatArray, IntArray, MeshError
 from meshes.gauss import gauss_points
 from meshes.halving import across, halved_layer
-from meshes.hexmesh import TURNED, outer_quads
+from meshes.hexmesh import TURNED, outer_quads, quad_normals
 
 PARTS = ("whole", "half", "quarter", "eighth")  # by the number of planes of symmetry in which it was cut
 NEAR = 1e-5  # of the largest diameter: nodes so near to a plane of symmetry lie on it
@@ -177,7 +177,7 @@ def _stated(part: Part, flat: set[int], stated: str, cuts: tuple[tuple[int, floa
 def _example(part: Part) -> str:
     """Return the end of the body, along y or x, with the most of its flat faces as the plane of a cut."""
     corners = part.points[outer_quads(part.cells)]
-    normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
+    normal = quad_normals(corners)
     most, found = 0.0, (1, float(part.points[:, 1].min()))
     for axis in ORDER[:2]:
         for end in (float(part.points[:, axis].min()), float(part.points[:, axis].max())):
@@ -243,7 +243,7 @@ def _is_turned(part: Part, planes: tuple[int, ...]) -> bool:
     corners = part.points[outer_quads(part.cells)]
     for axis in planes:
         corners = corners[~(corners[:, :, axis] == 0.0).all(axis=1)]
-    normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
+    normal = quad_normals(corners)
     area = np.linalg.norm(normal, axis=1)
     radius = corners.mean(axis=1)[:, :2] - centre
     away = np.linalg.norm(radius, axis=1)

@@ -11,6 +11,7 @@ import numpy as np
 from fem_impact.arrays import Array, Ints
 from fem_impact.figures.still import INK, PALETTE, QUIET, WIDTH, figure
 from meshes import SKIN, SYMMETRY, HexMesh, owners
+from meshes.hexmesh import quad_normals
 from rigid import Body, Faceted, Turned
 
 if TYPE_CHECKING:
@@ -167,7 +168,7 @@ def draw_mesh(
         mark(left, touch, centre)
         left.set(aspect="equal", xlabel="z, from the tip, mm", ylabel="-x, mm")
         corners = mm[front[0]]
-        normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
+        normal = quad_normals(corners)
         seen = normal[:, 2] < 0.0
         order = np.argsort(-corners[seen][:, :, 2].mean(axis=1))  # those nearest to the barrier last
         for sign in (1, -1):

@@ -15,7 +15,7 @@ from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer
 from fem_impact.figures.still import INK, PALETTE, QUIET
 from fem_impact.films.frame import CLOSE_WIDTH, Rectangle, font
 from fem_impact.films.motion import FIELDS, FilmData, nice_factor, to_points
-from meshes.hexmesh import FACES, outer_faces
+from meshes.hexmesh import FACES, outer_faces, quad_normals
 
 MARGIN = 0.45
 """Free space around the rod in diameters."""
@@ -126,7 +126,7 @@ class _Faces:
 
 def _shade(corners: np.ndarray, towards: np.ndarray) -> np.ndarray:
     """Return the brightness ``(k, 1, 1)`` of faces lit from the eye."""
-    across = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
+    across = quad_normals(corners)
     lit = across @ towards / np.maximum(np.linalg.norm(across, axis=1), 1e-30)
     return np.asarray((0.25 + 0.8 * lit).clip(0.25, 1.0))[:, None, None]
 

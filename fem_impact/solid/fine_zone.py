@@ -16,12 +16,13 @@ from fem_impact.arrays import Array, Ints
 from fem_impact.case.record import ContactRecord
 from fem_impact.fem.hexmodes import CORNERS, SIGNS
 from fem_impact.physics.hardening import PROOF_STRAIN
-from fem_impact.solid.contact.patch import bilinear, quad_normals
+from fem_impact.solid.contact.patch import bilinear
 from fem_impact.solid.contact.surface import SurfaceContact
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
 from fem_impact.solid.stepguard import when_and_where
 from meshes import SKIN
+from meshes.hexmesh import quad_normals
 
 if TYPE_CHECKING:
     from scipy.spatial import Delaunay

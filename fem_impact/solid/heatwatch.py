@@ -7,12 +7,12 @@ import numpy as np
 
 from fem_impact.arrays import Array, Ints
 from fem_impact.solid.contact.moving_plane import MovingPlane
-from fem_impact.solid.contact.patch import quad_normals
 from fem_impact.solid.contact.plane import PlaneContact
 from fem_impact.solid.contact.surface import SurfaceContact
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
 from meshes import SKIN
+from meshes.hexmesh import quad_normals
 
 HEAT_WINDOW = 0.5e-6  # s, of the means of power and patch: single nodes open and close from step to step
 

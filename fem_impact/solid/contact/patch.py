@@ -8,6 +8,7 @@ from fem_impact.arrays import Array, Bools, Ints
 from fem_impact.fem.body import MeshedBody
 from fem_impact.fem.kernels import inlined, kernel
 from meshes import SKIN
+from meshes.hexmesh import quad_normals
 
 # a point this far outside the last quad (in its own units) still belongs to it: symmetry plane, round-off
 SLACK = 1e-6
@@ -181,11 +182,6 @@ class Patch(NamedTuple):
         np.minimum.at(least, self.quads, np.einsum("qi,qai->qa", flat, around[self.quads]))
         bend = np.where((least > EDGE) & (around[:, 2] > STEEP), 0.5, 0.0)
         return self._replace(bend=bend, sag=_sag(corners, around[self.quads], bend[self.quads]))
-
-
-def quad_normals(corners: Array) -> Array:
-    """Return normals (m, 3) of quads with ``corners`` (m, 4, 3), each as long as twice its area."""
-    return np.asarray(np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]))
 
 
 def facing_skin(body: MeshedBody) -> Ints:
