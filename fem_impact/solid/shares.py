@@ -25,7 +25,8 @@ def run_time_shares(
 ) -> dict[str, float | None]:
     """Return the share of the mean step, ``step_time`` in s, that each effect's own items take.
 
-    It is None where the processor's clock does not resolve it. Friction and rate hardening have no items of
+    A processor that is slower after the run than in it would make the items longer than their step: a step
+    takes their sum at least. A share is None where the processor's clock does not resolve it. Friction and rate hardening have no items of
     their own: they are in the contact's and the zones' time. The state of the items is used up; call it last.
     """
     still = State(state.x.copy(), state.v.copy(), state.force.copy(), dt=0.0, kick=model.step)
@@ -45,9 +46,8 @@ def run_time_shares(
         turning = localising + _shortest(lambda: rod.frame.add_force(rod.d, rod.y, still.force[:n]))
         seconds["large-rotation"] += turning
         seconds[model.rod.effect] -= turning
-    return {
-        effect: time / step_time if min(time, step_time) > 0 else None for effect, time in seconds.items()
-    }
+    step = max(step_time, sum(time for time in seconds.values() if time > 0))
+    return {effect: time / step if min(time, step_time) > 0 else None for effect, time in seconds.items()}
 
 
 def _shortest(act: Callable[[], object]) -> float:
