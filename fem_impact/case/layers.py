@@ -27,7 +27,9 @@ Layers of the barrier's own material change e of a steel rod on aluminium by at 
 # half-space springs of a layer are too stiff at its sides: 8 mm of steel on aluminium gave 9 % less under a
 # static load than a layered half-space (Burmister 1945) with 6 mm around, 4 % with 12 mm and 2 % with 24 mm
 AROUND = 1.5
-# share of a free barrier's mass that its block has at most, and how many times smaller its margin is tried
+# share of a free barrier's mass that its block has at most, and how many times smaller its margin is tried: an
+# aluminium cone of 6 mm on steel at -17 m/s has mu and E_vib / E_0 of .2185 and .01622 with margins of 4 and
+# 2 mm, .2181 and .01622 with 1 mm
 MOST_OF_BARRIER, SMALLER = 0.5, 0.8
 MOST_CELLS = 3e5  # largest number of cells of a block before refinement: about 1 GB
 UNDER = 2.0  # rows of the base's cells under the last layer, at least
@@ -43,8 +45,9 @@ def block_of(bodies: Bodies, zones: AnyZones) -> Corners:
 
     It is wider than its fine zone by the margin of the scene, of a thin body by its diameter at most, and of
     layers by `AROUND` times their depth, which it holds; its rows are as high as wide. Of a light free
-    barrier it is no more than a half, as far as it can be. A plate that is meshed through its thickness goes
-    on to its edges instead, before its cells widen.
+    barrier it is no more than a half, and of cells it has no more than `MOST_CELLS` where no layers are, as
+    far as it can be. A plate that is meshed through its thickness goes on to its edges instead, before its
+    cells widen.
     """
     if zones.edges:
         low, high = zones.block(2 * zones.edges / (1 + widening(bodies, zones.base)))
@@ -53,11 +56,12 @@ def block_of(bodies: Bodies, zones: AnyZones) -> Corners:
     margin = min(bodies.scene.accuracy.block_margin, bodies.scene.projectile.diameter)
     margin = max(margin, AROUND * ends.max(initial=0.0))
     low, high = zones.block(margin)
+    most = inf if len(ends) else MOST_CELLS * zones.base**3
     if whole is not None:
-        most = MOST_OF_BARRIER * whole / (2 * bodies.barrier.material.rho)
-        while np.prod(high - low) > most and margin > zones.base:
-            margin *= SMALLER
-            low, high = zones.block(margin)
+        most = min(most, MOST_OF_BARRIER * whole / (2 * bodies.barrier.material.rho))
+    while np.prod(high - low) > most and margin > zones.base:
+        margin *= SMALLER
+        low, high = zones.block(margin)
     if len(ends):
         deep = max(-float(low[2]), float(ends[-1]) + UNDER * zones.base + zones.rise)
         low = np.array([low[0], low[1], -ceil(deep / zones.base) * zones.base])

@@ -234,17 +234,17 @@ def material_numbers(rod: ProjectileSpec, mesh: HexMesh) -> Ints:
 def _block(bodies: Bodies, zones: AnyZones) -> HexMesh:
     """Return the barrier block, rows of its cells at the interfaces of its layers and at its underside."""
     h, base = zones.barrier_size, zones.base
-    margin = bodies.scene.accuracy.block_margin  # springs replace the half-space beyond
-    low, high = block_of(bodies, zones)
+    low, high = block_of(bodies, zones)  # springs replace the half-space beyond
     rows, depths = moved_rows(bodies, zones)
     boxes = [_before_moving(zone, zones, rows, depths) for zone in zones.in_barrier()]
     count = float(np.prod((high - low) / base))
     if count > MOST_CELLS:
         raise SceneError(
-            f"makes a block of {count:.1g} cells, since they are {base * 1e6:.3g} um wide.",
-            key="accuracy.block_margin",
-            value=f"{margin * 1e3:g} mm",
-            remedy="Give less: a third of the diameter does.",
+            f"makes a block of {count:.1g} cells, {base * 1e6:.3g} um wide, under a contact that is many times "
+            "as wide.",
+            key="accuracy.across",
+            value=str(bodies.scene.across),
+            remedy="Give a smaller one.",
         )
     ends = zones.ends if isinstance(zones, RecordedZones) else None
     columns = None if ends is None else meshes.drawn_to_ends(ends, h, (float(low[0]), float(high[0])))

@@ -1,8 +1,11 @@
 """What the model builder refuses before any work."""
 
+import numpy as np
 import pytest
 
 from fem_impact.case.case import Case
+from fem_impact.case.layers import block_of
+from fem_impact.case.zones import zones_of
 from fem_impact.errors import SceneError
 from fem_impact.scene.shipped import load, replace, replace_all
 from fem_impact.solid.build import build
@@ -30,10 +33,25 @@ def test_steel_that_no_power_law_fits_is_refused():
 
 
 def test_a_block_of_too_many_cells_is_refused(monkeypatch):
-    monkeypatch.setattr("fem_impact.fem.geometry.MOST_CELLS", 100)  # a million take twenty seconds to reach
-    scene = replace_all(load("t5b"), {"accuracy.tip_size": "1.2 mm", "accuracy.block_margin": "100 mm"})
-    with pytest.raises(SceneError, match=r'accuracy\.block_margin = "100 mm": makes a block of .* cells'):
+    monkeypatch.setattr("fem_impact.fem.geometry.MOST_CELLS", 10)  # a million take twenty seconds to reach
+    monkeypatch.setattr("fem_impact.case.layers.MOST_CELLS", 10)
+    scene = replace_all(load("t5b"), {"accuracy.tip_size": "0.8 mm", "accuracy.across": 16})
+    with pytest.raises(SceneError, match=r'accuracy\.across = "16": makes a block of .* cells'):
         build(Case.of(scene))
+
+
+def test_the_margin_of_a_block_leaves_no_more_cells_than_it_may_have(monkeypatch):
+    """A cone of 6 mm with cells of 142 um was refused for the margin that it had not stated."""
+    case = Case.of(replace_all(load("t5b"), {"accuracy.tip_size": "0.1 mm", "accuracy.across": 32}))
+    zones = zones_of(case.bodies)
+
+    def cells():
+        low, high = block_of(case.bodies, zones)
+        return np.prod((high - low) / zones.base)
+
+    assert cells() > 5000
+    monkeypatch.setattr("fem_impact.case.layers.MOST_CELLS", 2000)
+    assert 1000 < cells() <= 2000
 
 
 def test_a_rod_without_room_for_its_cells_is_refused():
