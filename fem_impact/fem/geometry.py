@@ -240,8 +240,8 @@ def _block(bodies: Bodies, zones: AnyZones) -> HexMesh:
     count = float(np.prod((high - low) / base))
     if count > MOST_CELLS:
         raise SceneError(
-            f"makes a block of {count:.1g} cells, {base * 1e6:.3g} um wide, under a contact that is many times "
-            "as wide.",
+            f"makes a block of {count:.1g} cells, {base * 1e6:.3g} um wide, under a contact that is much "
+            "wider.",
             key="accuracy.across",
             value=str(bodies.scene.across),
             remedy="Give a smaller one.",
