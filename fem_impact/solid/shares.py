@@ -27,7 +27,8 @@ def run_time_shares(
 
     A processor that is slower after the run than in it would make the items longer than their step: a step
     takes their sum at least. A share is None where the processor's clock does not resolve it. Friction and
-    rate hardening have no items of their own: they are in the contact's and the zones' time. The state of the items is used up; call it last.
+    rate hardening have no items of their own: they are in the contact's and the zones' time. The state of
+    the items is used up; call it last.
     """
     still = State(state.x.copy(), state.v.copy(), state.force.copy(), dt=0.0, kick=model.step)
     seconds: dict[str, float] = defaultdict(float)
