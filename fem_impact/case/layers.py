@@ -28,8 +28,8 @@ Layers of the barrier's own material change e of a steel rod on aluminium by at 
 # static load than a layered half-space (Burmister 1945) with 6 mm around, 4 % with 12 mm and 2 % with 24 mm
 AROUND = 1.5
 # share of a free barrier's mass that its block has at most, and how many times smaller its margin is tried:
-# an aluminium cone of 6 mm on steel at -17 m/s has mu and E_vib / E_0 of .2185 and .01622 with margins of 4 and
-# 2 mm, .2181 and .01622 with 1 mm
+# an aluminium cone of 6 mm on steel at -17 m/s has mu and E_vib / E_0 of .2185 and .01622 with margins of
+# 4 and 2 mm, .2181 and .01622 with 1 mm
 MOST_OF_BARRIER, SMALLER = 0.5, 0.8
 MOST_CELLS = 3e5  # largest number of cells of a block before refinement: about 1 GB
 UNDER = 2.0  # rows of the base's cells under the last layer, at least
