@@ -97,7 +97,7 @@ class Reduction:
         held = (fallen + g * borne) * cos(alpha), fallen * sin(alpha)
         barrier = barrier_motion(case, *end.base, momentum_error(case, rod, end.base, held))
         if end.turn is not None:
-            error = angular_momentum_error(case, rod, barrier, *end.turn)
+            error = angular_momentum_error(case, rod, barrier, *end.turn, held)
             barrier = replace(barrier, Omega_b=end.turn[0], angular_momentum_error=error)
         return cls(case, end, rod, barrier, restitution(case, rod, barrier, fallen))
 

@@ -186,17 +186,21 @@ def angular_momentum_error(
     Omega_b: float,
     start: tuple[float, float],
     away: tuple[float, float],
+    fallen: tuple[float, float],
 ) -> float:
     """Return the change of the angular momentum of rod and barrier about their common mass centre.
 
     It is over the rod's momentum as seen from the barrier times the distance of the mass centres before.
     ``start`` and ``away`` (n, t), m, are the rod's mass centre from the barrier's before and after.
+    ``fallen`` (n, t), m/s, is what gravity gave the rod, as far as its motion still holds it: it pulls at the
+    rod alone, half way between ``start`` and ``away``.
     """
     before, struck, (start_n, start_t) = case.scene.relative, case.scene.barrier, start
     inertia, M = struck.inertia or 0.0, struck.mass or 0.0
     reduced_mass = motion.mass * M / (motion.mass + M)
     V_n, V_t, Omega = relative(motion, barrier)
     orbit = reduced_mass * (away[0] * V_t - away[1] * V_n - start_n * before.v_t + start_t * before.v_n)
+    orbit += 0.5 * reduced_mass * ((start_n + away[0]) * fallen[1] - (start_t + away[1]) * fallen[0])
     spun = motion.mass * motion.k_squared * (Omega - before.omega) + inertia * Omega_b
     scale = motion.mass * hypot(before.v_n, before.v_t) * hypot(start_n, start_t)
     return abs(orbit + spun) / scale

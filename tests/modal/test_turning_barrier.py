@@ -118,6 +118,14 @@ def test_the_rigid_fidelity_refuses_it():
         run(TURNING, fidelity="rigid")
 
 
+@pytest.mark.parametrize("slope", ["0 deg", "-50 deg"])
+def test_the_error_of_angular_momentum_holds_nothing_of_gravity(slope):
+    """Gravity pulls at the ball alone, with m g in the contact of .8 ms: that was 2.7 % of its moment."""
+    slow = {"impact.v_n": "-0.02 m/s", "impact.v_t": "-0.01 m/s", "impact.slope": slope}
+    outcome = run(BALL, TURNING, slow, {"effects": ["friction", "gravity", "barrier-elastic"]})
+    assert known(outcome.barrier.angular_momentum_error) < 1e-4
+
+
 BELOW = {
     "impact.v_t": "0 m/s",
     "barrier.mass": "2 kg",
