@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
-from math import ceil, cos, sin
+from math import ceil
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -17,7 +17,7 @@ from fem_impact.films.film import RenderResult, target
 from fem_impact.films.movement import FPS
 from fem_impact.outcome.record import Outcome
 from fem_impact.outcome.strikes import StrikeRecord
-from fem_impact.run.common import gravity_of
+from fem_impact.run.common import pull_of
 from fem_impact.scene.read import read_toml
 from rigid.strikes import FlightState, Outline, outline
 
@@ -51,8 +51,7 @@ def render_path(
     if not isinstance(each, tuple):
         raise ResultError(f"{folder}: holds no strikes to film. Run its scene with --until rest.")
     scene = read_toml(folder / "scene.toml")
-    g, vertical = gravity_of(scene), scene.impact.vertical
-    shape, pull = outline(scene.projectile.rigid_body), (g * cos(vertical), g * sin(vertical))
+    shape, pull = outline(scene.projectile.rigid_body), pull_of(scene)
     frames = list(_course(each[:SHOWN], shape, pull))
     path, notes = target(folder, out, "film-path")
     left_out = [f"The film shows {SHOWN} of {len(each)} strikes."] if len(each) > SHOWN else []

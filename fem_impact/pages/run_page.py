@@ -4,7 +4,6 @@ import json
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from html import escape
-from math import cos, sin
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +23,7 @@ from fem_impact.outcome.strikes import spread_table, strikes_table, told
 from fem_impact.pages import html, sections
 from fem_impact.physics.flash import ASSUMPTIONS
 from fem_impact.run.certain import other_end_curve
-from fem_impact.run.common import gravity_of
+from fem_impact.run.common import pull_of
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.inputs import inputs
 from fem_impact.scene.read import read_toml
@@ -192,8 +191,7 @@ def _strikes(outcome: Outcome, scene: Scene | None, folder: Path) -> html.Markup
     each = or_none(outcome.strikes.each)
     if not each or scene is None:
         return html.Markup("")
-    g, vertical = gravity_of(scene), scene.impact.vertical
-    shape, pull = outline(scene.projectile.rigid_body), (g * cos(vertical), g * sin(vertical))
+    shape, pull = outline(scene.projectile.rigid_body), pull_of(scene)
     figures, spread = folder / "figures", or_none(outcome.strikes.spread)
     ratio, over_angles = outcome.strikes.other_end, html.Markup("")
     if not isinstance(ratio, Unknown):

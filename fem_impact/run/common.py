@@ -49,6 +49,12 @@ def gravity_of(scene: Scene) -> float:
     return rigid.GRAVITY if is_wanted("gravity", scene.effects) else 0.0
 
 
+def pull_of(scene: Scene) -> tuple[float, float]:
+    """Return the accelerations of flights by gravity, m/s2, out of -n and -t."""
+    g, vertical = gravity_of(scene), scene.impact.vertical
+    return g * cos(vertical), g * sin(vertical)
+
+
 def next_strike(case: Case, V_n: float, Omega: float) -> float | None:
     """Return when, s from now, a body strikes again as it leaves the barrier with V_n, m/s, and Omega, rad/s.
 
@@ -65,7 +71,7 @@ def next_strike(case: Case, V_n: float, Omega: float) -> float | None:
     state = FlightState(0.0, height, 0.0, alpha, V_n, 0.0, Omega)
     if next_touch(shape, state, 0.0) is None:
         return None
-    touch = next_touch(shape, state, gravity_of(case.scene) * cos(case.scene.impact.vertical))
+    touch = next_touch(shape, state, pull_of(case.scene)[0])
     return None if touch is None else touch[0]
 
 

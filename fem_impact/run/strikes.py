@@ -2,14 +2,14 @@
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from math import copysign, cos, hypot, inf, pi, remainder, sin
+from math import copysign, hypot, inf, pi, remainder
 
 from fem_impact.case.bodies import WEAKEST, LaterStrike
 from fem_impact.case.case import Case
 from fem_impact.outcome.keys import Num, Unknown, unknown
 from fem_impact.outcome.strikes import PHASED, StrikeRecord, Strikes, hardest, hardest_force, other_end
 from fem_impact.physics.contact import ContactPair
-from fem_impact.run.common import gravity_of, rod_flows
+from fem_impact.run.common import pull_of, rod_flows
 from fem_impact.run.rigid import NormalLoss, normal_loss
 from rigid import Body, kinetic_energy
 from rigid.strikes import (
@@ -97,8 +97,7 @@ class Followed:
     @classmethod
     def of(cls, case: Case) -> "Followed":
         """Return the body of a case, that has not struck."""
-        g, vertical = gravity_of(case.scene), case.scene.impact.vertical
-        pull = Pull(g * cos(vertical), g * sin(vertical), case.contact.body.k2, case.contact.f)
+        pull = Pull(*pull_of(case.scene), case.contact.body.k2, case.contact.f)
         return cls(case, outline(case.contact.body), pull)
 
     @property

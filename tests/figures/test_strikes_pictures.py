@@ -1,7 +1,6 @@
 """The path of a body with its strikes, and its energy after each."""
 
 from dataclasses import replace
-from math import cos, sin
 
 import numpy as np
 import pytest
@@ -13,7 +12,7 @@ from fem_impact.options import RunOptions
 from fem_impact.outcome.strikes import strikes_table, told
 from fem_impact.pages.run_page import run_page
 from fem_impact.pages.sheet import write_sheet
-from fem_impact.run.common import gravity_of
+from fem_impact.run.common import pull_of
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace_all
 from rigid.strikes import outline
@@ -27,9 +26,7 @@ def strikes():
 
 
 def path(strikes):
-    g, vertical = gravity_of(SCENE), SCENE.impact.vertical
-    pull = g * cos(vertical), g * sin(vertical)
-    return path_picture(strikes.each, outline(SCENE.projectile.rigid_body), pull)
+    return path_picture(strikes.each, outline(SCENE.projectile.rigid_body), pull_of(SCENE))
 
 
 def test_the_body_stands_on_the_barrier_at_each_strike_and_above_it_in_flight(strikes):
