@@ -104,7 +104,8 @@ def turned(
                 below = below[:, TURNED]
             points = np.concatenate([points, more])
             parts.append((below, np.full(len(below), len(heights) if flipped else -1)))
-    return _finished(body, points, parts, heights, exact, zones, buffer)
+    joint = max((z for z in planes if z < (1.0 - SAME) * body.length), default=0.0)
+    return _finished(body, points, parts, heights, exact, zones, buffer, joint)
 
 
 def contact_radius(
@@ -223,8 +224,9 @@ def _finished(
     exact: tuple[tuple[float, float], ...],
     zones: Sequence[Zone | Cloud],
     buffer: int,
+    joint: float,
 ) -> RodMesh:
-    """Put the parts together, the cells that stay whole first; refine; find the slices."""
+    """Put the parts together, the cells that stay whole first; refine; find the slices above a ``joint``, m."""
     cells, layer = (np.concatenate(part) for part in zip(*parts, strict=True))
     (low, high), nodes = exact[1], len(body.half.unit)
     first = min(int(np.searchsorted(heights, high - SAME * body.length)), len(heights) - 1)
@@ -254,7 +256,7 @@ def _finished(
     section_nodes = place[: nodes * len(heights)].reshape(-1, nodes)
     interface = section_nodes[first] if rest else np.zeros(0, dtype=np.int64)
     start = float(heights[first]) if rest else body.length
-    run = _run(body, heights, first, high) if rest else len(heights)
+    run = _run(body, heights, first, high, joint) if rest else len(heights)
     whole = [np.flatnonzero(layer[:rest] == k) for k in range(run, len(heights) - 1)]
     body_cells = np.array(whole, dtype=np.int64).T if whole else np.zeros((0, 0), dtype=np.int64)
     kept = section_nodes[-1] >= 0
@@ -282,16 +284,18 @@ def _refined(
     return fine
 
 
-def _run(body: Revolved, heights: FloatArray, first: int, high: float) -> int:
+def _run(body: Revolved, heights: FloatArray, first: int, high: float, joint: float) -> int:
     """Return the first section from which on to a flat tail all slices are the same; else their number.
 
-    Sections up to the height ``high`` are round, those above have the area of the circle.
+    Sections up to the height ``high`` are round, those above have the area of the circle. Slices below the last
+    ``joint``, m, may be of another material.
     """
     if body.line[-1, 0] <= 0.0:
         return len(heights)
     step, outer, split = np.diff(heights), body.radius(heights), body.split_radius(heights)
     hollow = body.bored(heights[:-1], heights[1:])
     same = (np.abs(step / step[-1] - 1.0) < SAME) & (hollow == hollow[-1]) & (heights[:-1] > high)
+    same &= heights[:-1] > joint - SAME * body.length
     for radius in (outer, split):
         same &= np.abs(radius[:-1] / radius[-1] - 1.0) < SAME
     start = int(np.flatnonzero(~same)[-1]) + 1 if (~same).any() else 0

@@ -151,6 +151,16 @@ def test_no_cell_straddles_a_plane():
     assert not ((heights.min(axis=1) < z - 1e-9) & (heights.max(axis=1) > z + 1e-9)).any()
 
 
+def test_slices_are_of_the_last_segment_even_where_rows_of_two_are_as_high():
+    """All had the stiffness of the first: a rod of two metals was unstable, or rang as one of the first."""
+    line = np.concatenate([sphere_tip(10e-3), [[10e-3, 0.3]]])
+    for planes in ([0.15, 0.3], [0.1, 0.15, 0.3]):
+        body = meshes.turned(line, 8, planes=planes)
+        assert body.slice_length == pytest.approx(2.5e-3)
+        lowest = body.mesh.points[body.mesh.cells[body.body_cells], 2].min()
+        assert lowest == pytest.approx(0.15) and body.body_cells.shape[1] == 60
+
+
 @pytest.mark.parametrize(
     ("line", "told"),
     [
