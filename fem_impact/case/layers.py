@@ -10,7 +10,7 @@ from fem_impact.arrays import Array
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.effects.plasticity import buried_yield_ratio, hardening_of, struck
 from fem_impact.case.plates import rows_through, widening
-from fem_impact.case.recorded import AnyZones
+from fem_impact.case.recorded import AnyZones, RecordedZones
 from fem_impact.case.zones import Corners, zones_of
 from fem_impact.errors import SceneError
 from fem_impact.physics import layered
@@ -27,6 +27,9 @@ Layers of the barrier's own material change e of a steel rod on aluminium by at 
 # half-space springs of a layer are too stiff at its sides: 8 mm of steel on aluminium gave 9 % less under a
 # static load than a layered half-space (Burmister 1945) with 6 mm around, 4 % with 12 mm and 2 % with 24 mm
 AROUND = 1.5
+# springs are those of a force at a point: a rod of 160 x 16 mm on its side, on coarse levels and with plain
+# dashpots, has e .823, .802, .801 and .801 with margins of .08, .2, .5 and .9 of half its length
+BESIDE = 0.25
 # share of a free barrier's mass that its block has at most, and how many times smaller its margin is tried:
 # an aluminium cone of 6 mm on steel at -17 m/s has mu and E_vib / E_0 of .2185 and .01622 with margins of
 # 4 and 2 mm, .2181 and .01622 with 1 mm
@@ -44,7 +47,8 @@ def block_of(bodies: Bodies, zones: AnyZones) -> Corners:
     """Return the corners of the barrier's block, before its rows are moved.
 
     It is wider than its fine zone by the margin of the scene, of a thin body by its diameter at most, and of
-    layers by `AROUND` times their depth, which it holds; its rows are as high as wide. Of a light free
+    layers by `AROUND` times their depth, which it holds, and of a contact that is a line by `BESIDE` times
+    half of its length; its rows are as high as wide. Of a light free
     barrier it is no more than a half, and of cells it has no more than `MOST_CELLS` where no layers are, as
     far as it can be. A plate that is meshed through its thickness goes on to its edges instead, before its
     cells widen.
@@ -54,7 +58,8 @@ def block_of(bodies: Bodies, zones: AnyZones) -> Corners:
         return np.array([*low[:2], -rows_through(bodies, zones.base) * zones.base]), high
     ends, whole = interfaces(bodies), bodies.barrier.mass
     margin = min(bodies.scene.accuracy.block_margin, bodies.scene.projectile.diameter)
-    margin = max(margin, AROUND * ends.max(initial=0.0))
+    line = zones.line if isinstance(zones, RecordedZones) else 0.0
+    margin = max(margin, AROUND * ends.max(initial=0.0), BESIDE * line)
     low, high = zones.block(margin)
     most = inf if len(ends) else MOST_CELLS * zones.base**3
     if whole is not None:

@@ -27,6 +27,7 @@ from meshes import Cloud, HexMesh, thin_skin_rise
 # Plastic strain above which metal gets cells of the finest level, and half-widths of the contact around the
 # skin that is pressed in which all does: small cells pay where metal flows most, right under the contact
 FLOWING, UNDER = 0.02, 0.6
+LINE = 2.0  # cells of the body, half of the length by which a contact is longer than wide, to be a line
 ROD_ROWS = 2  # thin rows under the pressed skin of a rod that yields: three ask for a smaller step, or mass
 
 
@@ -78,6 +79,25 @@ class RecordedZones:
             return 0.0
         touched = self.record.barrier.touched[:, 0]
         return 0.5 * float(touched.min() + touched.max())
+
+    @property
+    def line(self) -> float:
+        """Return half of the length, m, by which a contact is longer than wide; 0 of a short one.
+
+        It is pressed all along: a tip and a tail that strike one after the other are no line.
+        """
+        if self.record.barrier is None:
+            return 0.0
+        touched = self.record.barrier.touched
+        t = np.sort(touched[:, 0])
+        half = 0.5 * float(t[-1] - t[0]) - float(np.abs(touched[:, 1]).max())
+        return half if half > LINE * self.base and np.diff(t).max() < half / 2 else 0.0
+
+    @property
+    def lasts(self) -> float | None:
+        """Return how long, s, the place that took most of the impulse was touched; None before a run."""
+        strongest = max(self.record.sites, key=lambda site: site.impulse_n, default=None)
+        return None if strongest is None else strongest.end - strongest.start
 
     @property
     def ends(self) -> tuple[float, float] | None:

@@ -58,9 +58,12 @@ def mean_dilatation_stiffness(u, v, w):  # type: ignore[no-untyped-def]
 
 @BilinearForm
 def springs(u, v, w):  # type: ignore[no-untyped-def]
-    """Springs of a half-space loaded at t = ``middle``, m, r away from the face's centre; ``G``, Pa."""
+    """Springs of a half-space, ``G``, Pa, loaded r away from the face's centre.
+
+    That is at t = ``middle``, m, or over a line along t, ``half`` m long to each side of it.
+    """
     t, b, n = w.x.mean(axis=-1, keepdims=True)
-    r = np.sqrt((t - w.middle) ** 2 + b**2 + n**2)
+    r = np.sqrt(np.maximum(np.abs(t - w.middle) - w.half, 0.0) ** 2 + b**2 + n**2)
     return w.G / r * along_and_across(u, v, w.n, NORMAL_SPRING, TANGENTIAL_SPRING)
 
 

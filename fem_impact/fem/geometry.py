@@ -41,6 +41,7 @@ class Geometry:
     may_yield : for ``rod`` and ``barrier``, (m,) bool, cells that yield if the material does
     touching : (m,) bool, cells of the rod that may touch a meshed barrier
     middle : place along t of the middle of a face that is pressed in, m; 0 of a contact about a point
+    half : how far a contact that is a line goes to each side of it, m; else 0
     """
 
     rod: RodMesh
@@ -53,6 +54,7 @@ class Geometry:
     may_yield: Mapping[str, Bools] = field(default_factory=dict)
     touching: Bools | None = None
     middle: float = 0.0
+    half: float = 0.0
 
     @property
     def count(self) -> int:
@@ -112,6 +114,7 @@ def build_geometry(
         may_yield,
         touching,
         zones.middle,
+        zones.line if isinstance(zones, RecordedZones) else 0.0,
     )
 
 

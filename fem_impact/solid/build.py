@@ -15,6 +15,7 @@ import numpy as np
 from fem_impact.arrays import Array, Bools
 from fem_impact.case.case import Case
 from fem_impact.case.effects.registry import EFFECTS
+from fem_impact.case.recorded import RecordedZones
 from fem_impact.fem.body import Elastic, MeshedBodies, MeshedBody, slices_of
 from fem_impact.fem.eigen import MassStiffness, rod_modes
 from fem_impact.fem.geometry import POINTS, Geometry
@@ -146,8 +147,8 @@ class Builder:
 
         assert self.meshed.barrier is not None, "the barrier is meshed"
         effect = "barrier-elastoplastic" if any(self.spec.barrier_laws) else "barrier-elastic"
-        where, middle = (self.meshed.layout, self.meshed.x), self.meshed.geometry.middle
-        return elastic_block(self.meshed.barrier, *where, effect, self.spec.bending, middle)
+        where, g = (self.meshed.layout, self.meshed.x), self.meshed.geometry
+        return elastic_block(self.meshed.barrier, *where, effect, self.spec.bending, g.middle, g.half)
 
     @cached_property
     def ground(self) -> Ground:
@@ -168,7 +169,10 @@ class Builder:
         step = stable_step(block.stiffness, inverse[layout.barrier_slice], share)
         if self.scene.barrier.mass is not None:
             step = self.foundation_step(step)
-        pots = [dashpots(self.meshed.barrier, layout, inverse, block)] if self.spec.radiating else []
+        zones, radiating = self.case.zones, self.spec.radiating
+        found = zones.lasts if isinstance(zones, RecordedZones) else None
+        lasts = found or self.case.estimate.duration
+        pots = [dashpots(self.meshed.barrier, layout, inverse, block, lasts)] if radiating else []
         if self.spec.bending:
             pots = [plate_dashpots(layout, inverse, block)]
         if not self.ground.turns:

@@ -124,7 +124,9 @@ def test_the_block_on_springs_is_the_form():
         assemble(mesh.points, mesh.cells, (LAME, G), "bbar", sp.identity(places.size, format="csr")) + springs
     )
     product, force = NodeProduct.of(sp.csr_matrix(ours), places), np.zeros(places.size)
-    outside = forms.springs.assemble(forms.face_basis(body, mesh.faces_with(OUTER)), G=G, middle=0.0)
+    outside = forms.springs.assemble(
+        forms.face_basis(body, mesh.faces_with(OUTER)), G=G, middle=0.0, half=0.0
+    )
     u = np.random.default_rng(6).normal(size=places.size)
     product.multiply(u)
     product.add_to(force)
