@@ -48,7 +48,7 @@ def block_of(bodies: Bodies, zones: AnyZones) -> Corners:
 
     It is wider than its fine zone by the margin of the scene, of a thin body by its diameter at most, and of
     layers by `AROUND` times their depth, which it holds, and of a contact that is a line by `BESIDE` times
-    half of its length; its rows are as high as wide. Of a light free
+    half of its length where the barrier is not free; its rows are as high as wide. Of a light free
     barrier it is no more than a half, and of cells it has no more than `MOST_CELLS` where no layers are, as
     far as it can be. A plate that is meshed through its thickness goes on to its edges instead, before its
     cells widen.
@@ -58,7 +58,7 @@ def block_of(bodies: Bodies, zones: AnyZones) -> Corners:
         return np.array([*low[:2], -rows_through(bodies, zones.base) * zones.base]), high
     ends, whole = interfaces(bodies), bodies.barrier.mass
     margin = min(bodies.scene.accuracy.block_margin, bodies.scene.projectile.diameter)
-    line = zones.line if isinstance(zones, RecordedZones) else 0.0
+    line = zones.line if isinstance(zones, RecordedZones) and whole is None else 0.0
     margin = max(margin, AROUND * ends.max(initial=0.0), BESIDE * line)
     low, high = zones.block(margin)
     most = inf if len(ends) else MOST_CELLS * zones.base**3
