@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 
 
 MOST_E = 1.2  # of an impact whose energy comes back by friction and bending
+TRAPPED = 0.02  # of E_0 in waves of a block that lets none out: e may change by half of it
 RINGING, LEAST = 0.1, 1e-4  # of E_vib and of E_0: so much above the modes is told
 STIFF = Unknown("the vibration effect is off: the body is rigid behind its nose")
 IN_WAVES = Unknown(
@@ -89,7 +90,7 @@ def reduce(result: SolidResult) -> Outcome:
         choices=tuple(choices),
         unmeshed=ONE_MESH,
         limited=(
-            *limitations("resolution", narrow, _ringing(result)),
+            *limitations("resolution", narrow, _ringing(result), _trapped(result.case, energy)),
             *result.limitations,
             *limitations(
                 "result",
@@ -155,6 +156,18 @@ def _ringing(result: SolidResult) -> str:
         f"E_vib lacks {above / E_0:.1e} of E_0 that vibrates above its {len(result.flight.a)} modes and that "
         "E_vib_check holds: fine cells of the tip ring by themselves, or the blow was too short for modes. "
         "To check it, double accuracy.across, or choose another accuracy.tip_size or accuracy.grid_shift."
+    )
+
+
+def _trapped(case: Case, energy: Energy) -> str:
+    """Tell of waves that a block which lets none out keeps: an elastic barrier at rest holds no energy."""
+    held, elastic = or_none(energy.locked_barrier) or 0.0, "barrier-elastic" in case.active
+    if held <= TRAPPED or not elastic or "radiation" in case.active or case.scene.barrier.boundary == "fixed":
+        return ""
+    return (
+        f"The elastic barrier keeps {held:.2g} of E_0: waves that its block lets not out, for the effect "
+        "radiation is off. They may push the body anew, so that e is not sure. Give effects = "
+        '["auto", "radiation"].'
     )
 
 

@@ -11,6 +11,7 @@ from fem_impact.outcome.groups import texts
 from fem_impact.outcome.keys import Unknown
 from fem_impact.run.common import open_end, strikes_again
 from fem_impact.run.simulate import simulate
+from fem_impact.run.solid import _trapped
 from fem_impact.run.unusual import pierced, unusual
 from fem_impact.scene.shipped import load, replace_all
 
@@ -155,3 +156,20 @@ def test_a_dent_deep_beside_its_plate_is_told_with_how_far_it_flows():
     assert told.startswith("The dent that stays is 1.3 mm deep, 0.13 of the plate's 10 mm; ")
     assert "down to 0.6 of its thickness, by up to 0.3 of plastic strain" in told
     assert pierced(case, record, 0.0009) == pierced(Case(load("t5b")), record, 0.0013) == ""
+
+
+@pytest.mark.parametrize(
+    ("effects", "held", "told"),
+    [
+        (["friction", "barrier-elastic"], 0.65, True),
+        (["friction", "barrier-elastic"], 0.01, False),
+        (["friction", "barrier-elastic", "radiation"], 0.65, False),
+        (["friction", "rod-plasticity", "barrier-elastoplastic"], 0.65, False),
+    ],
+)
+def test_waves_that_an_elastic_block_keeps_are_told(outcome, effects, held, told):
+    """A round edge of 120 mm had e .55 +- .19, and 65 % of E_0 as elastic energy left in the barrier."""
+    case = Case.of(replace_all(load("t5b"), {"effects": effects}), "solid")
+    sentence = _trapped(case, replace(outcome.energy, locked_barrier=held))
+    assert bool(sentence) == told
+    assert not told or ("0.65 of E_0" in sentence and '["auto", "radiation"]' in sentence)
