@@ -27,6 +27,7 @@ from fem_impact.scene.material import Material
 
 HARDNESS = 3.0  # hardness over ultimate stress: largest mean pressure on an asperity of the softer body
 VICKERS = KGF_PER_MM2 / FACES  # Pa, mean pressure on the projected area of the print over Vickers' number
+COOLING = np.geomspace(1e-3, 1e6, 181)  # times after the heating, over its length, at which a patch cools
 ASSUMPTIONS = (
     "every touching spot carries the hardness of the softer body: three times its ultimate stress, or its "
     "stated Vickers hardness if that is more, times what strain rate and skin add",
@@ -71,10 +72,11 @@ def short_rise(t: ArrayLike, q: ArrayLike, body: Half) -> Array:
 
 @dataclass(frozen=True, slots=True)
 class Flash:
-    """Rise of the patch, K, at the times t, s."""
+    """Rise of the patch, K, at the times t, s, and after the last of them, `COOLING`."""
 
     t: Array
     rise: Array
+    cooling: Array
 
     @property
     def peak(self) -> float:
@@ -82,9 +84,18 @@ class Flash:
         return float(self.rise.max(initial=0.0))
 
     def time_above(self, rise: float) -> float:
-        """Return how long the rise is above a given one, s."""
-        mean = 0.5 * (self.rise[1:] + self.rise[:-1])
-        return float(np.diff(self.t)[mean > rise].sum())
+        """Return how long the rise is above a given one, s, until the patch has cooled."""
+        t, all_rises = _cooled(self.t), np.concatenate([self.rise, self.cooling])
+        low, high = (of(all_rises[1:], all_rises[:-1]) for of in (np.minimum, np.maximum))
+        above = np.where(low > rise, 1.0, 0.0)
+        crosses = (low <= rise) & (high > rise)
+        above[crosses] = ((high - rise) / np.where(crosses, high - low, 1.0))[crosses]
+        return float(np.diff(t) @ above)
+
+
+def _cooled(t: Array) -> Array:
+    """Return times of heating and, after them, of cooling, s."""
+    return np.concatenate([t, t[-1] + np.ptp(t) * COOLING])
 
 
 def flash(t: Array, q: Array, a: Array, V: Array, rod: Half, barrier: Half) -> Flash:
@@ -95,16 +106,22 @@ def flash(t: Array, q: Array, a: Array, V: Array, rod: Half, barrier: Half) -> F
     t : (n,) s; q, a, V : (n - 1,) flux W/m2, patch radius m and sliding speed m/s between the times
     rod, barrier : the source rests on the rod and moves over the barrier
     """
-    steady = (moving_rise(q, a, v, body) for v, body in ((np.zeros_like(V), rod), (V, barrier)))
+    still, cools = np.zeros_like(V), np.zeros_like(COOLING)
+    t, q, a, V, still = (_cooled(t), *(np.concatenate([one, cools]) for one in (q, a, V, still)))
+    steady = (moving_rise(q, a, v, body) for v, body in ((still, rod), (V, barrier)))
     so_far = (np.concatenate([[0.0], np.maximum.accumulate(rise)]) for rise in steady)
     short = (short_rise(t, q, body) for body in (rod, barrier))
     return _shared(t, *map(np.minimum, short, so_far))
 
 
 def _shared(t: Array, resting: Array, moving: Array) -> Flash:
-    """Return the rise of a patch whose flux both bodies share, by the rise that each alone would have, K."""
-    total = resting + moving
-    return Flash(t, np.divide(resting * moving, total, out=np.zeros_like(total), where=total > 0))
+    """Return the rise of a patch whose flux both bodies share, by the rise that each alone would have, K.
+
+    The last of the times are those of `COOLING`.
+    """
+    total, heated = resting + moving, len(t) - len(COOLING)
+    rise = np.divide(resting * moving, total, out=np.zeros_like(total), where=total > 0)
+    return Flash(t[:heated], rise[:heated], rise[heated:])
 
 
 Halves = tuple[Half, Half]
@@ -120,11 +137,12 @@ def expected_rise(pair: ContactPair, friction: float, halves: Halves) -> float:
 def steady_flash(pair: ContactPair, q: float, speed: float, halves: Halves) -> Flash:
     """Return the flash of the estimated contact under an even flux, W/m2, that moves at a speed, m/s.
 
-    The short-time rise under an even flux is 2 q sqrt(t / pi) over the effusivity.
+    The short-time rise under an even flux is 2 q sqrt(t / pi) over the effusivity, less that since its end.
     """
     size, speeds = pair.estimate, (0.0, speed)
-    t = np.linspace(0.0, size.duration, 101)
-    short = (2 * q * np.sqrt(t / pi) / body.effusivity for body in halves)
+    t = _cooled(np.linspace(0.0, size.duration, 101))
+    roots = np.sqrt(t / pi) - np.sqrt(np.maximum(t - size.duration, 0.0) / pi)
+    short = (2 * q * roots / body.effusivity for body in halves)
     steady = (moving_rise(q, size.radius, v, body) for v, body in zip(speeds, halves, strict=True))
     return _shared(t, *map(np.minimum, short, steady))
 
