@@ -1,5 +1,6 @@
 """The heat of the contact, and the temperature that no spot exceeds."""
 
+from dataclasses import replace
 from math import inf
 
 import numpy as np
@@ -13,8 +14,8 @@ from fem_impact.physics.plate import contact_time
 from fem_impact.scene.inputs import first_melting, melting
 
 HARD = "neither body yields, so that no hardness limits the pressure of a touching spot"
-MELTS = "melt; melting is left out"
-"""End of the reason of a temperature beyond a melting point."""
+LEAST, MELTS = "at least", "melt; melting is left out"
+"""Begin and end of the reason of a temperature beyond a melting point."""
 
 
 def heat(
@@ -31,7 +32,7 @@ def heat(
     ``fastest`` is the highest sliding speed, m/s, that was computed.
     """
     ambient, ignition = case.scene.heating.ambient, case.scene.heating.ignition
-    temperature = below_melting(case, ambient + flash.peak, "at least {limit:.0f} K; ")
+    temperature = below_melting(case, ambient + flash.peak, LEAST + " {limit:.0f} K; ")
     return Heat(
         patch=patch,
         power=power,
@@ -43,6 +44,21 @@ def heat(
         bound=_bound(case, ambient, float(np.ptp(flash.t)), fastest),
         less_vibration=less_vibration,
     )
+
+
+def beyond_melting(temperature: Num) -> bool:
+    """Say whether a temperature is not known because a body melts."""
+    return isinstance(temperature, Unknown) and temperature.reason.endswith(MELTS)
+
+
+def open_melting(told: Heat) -> Heat:
+    """Return a heat whose error leaves open whether a body melts: a melting point is not its least."""
+
+    def without(value: Num) -> Num:
+        sure = isinstance(value, Unknown) and beyond_melting(value) and value.reason.startswith(LEAST)
+        return Unknown(value.reason.partition("; ")[2]) if isinstance(value, Unknown) and sure else value
+
+    return replace(told, rise=without(told.rise), temperature=without(told.temperature))
 
 
 def _bound(case: Case, ambient: float, lasted: float, fastest: float) -> Num:

@@ -19,7 +19,7 @@ from fem_impact.physics.flash import closed_form
 from fem_impact.physics.viscous import viscous_restitution
 from fem_impact.run.assemble import ImpactEnd, Reduction
 from fem_impact.run.common import MASSIVE, after, flow_omitted, plastic_shares
-from fem_impact.run.heated import heat
+from fem_impact.run.heated import heat, open_melting
 
 STIFF_PLATE = "Bending of the plate, which takes energy and lowers e, is left out."
 MEAN_HEAT = (
@@ -72,7 +72,7 @@ def rigid_outcome(case: Case) -> Outcome:
     if case.slots.heat:
         friction_work = known(energy.friction) * energy.E_0
         closed = closed_form(pair, friction_work, halves(case.bodies))
-        thermal = heat(case, *closed, Unknown(UNKNOWN))
+        thermal = open_melting(heat(case, *closed, Unknown(UNKNOWN)))  # see MEAN_HEAT
         if crushed:
             open_still = dict.fromkeys(("rise", "temperature", "time_above_ignition"), Unknown(CRUSHED))
             thermal = replace(thermal, **open_still)

@@ -370,7 +370,7 @@ class LevelChain:
             outcome,
             validity=validity,
             strikes=strikes,
-            heat=needed.known_heat(outcome, lost),
+            heat=needed.known_heat(outcome, lost, upto[-2].outcome if len(upto) > 1 else None),
             provenance=replace(outcome.provenance, scene_digest=digest(self.scene)),
         )
 

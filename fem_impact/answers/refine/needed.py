@@ -16,6 +16,7 @@ from fem_impact.case.measured import needed_half_widths
 from fem_impact.outcome.groups import Heat
 from fem_impact.outcome.keys import Unknown, or_none
 from fem_impact.outcome.record import KEY_TABLE, ROUND_OFF, Outcome
+from fem_impact.run.heated import beyond_melting, open_melting
 from fem_impact.run.modal_error import PLASTIC, VIBRATION, unit_of
 
 MeshNumbers = Mapping[str, float] | Unknown
@@ -92,13 +93,17 @@ def unresolved_heat(
     return {TIME_ABOVE: OPEN}
 
 
-def known_heat(run: Outcome, lost: Mapping[str, Unknown]) -> Heat:
+def known_heat(run: Outcome, lost: Mapping[str, Unknown], before: Outcome | None = None) -> Heat:
     """Return the heat of a run without the numbers, by key, that are lost for a reason.
 
-    What the run did not know keeps its own reason.
+    What the run did not know keeps its own reason, but for a body that melts under a patch that is lost. It
+    is sure to melt only where it does so on the level ``before`` as well.
     """
     heat = run.heat
     if isinstance(heat.power, Unknown):  # not followed
         return heat
     paths = {KEY_TABLE[key].path[1]: why for key, why in lost.items()}
-    return replace(heat, **{at: why for at, why in paths.items() if or_none(getattr(heat, at)) is not None})
+    told = {at: getattr(heat, at) for at in paths}
+    told = {at: paths[at] for at, one in told.items() if or_none(one) is not None or beyond_melting(one)}
+    sure = before is None or beyond_melting(before.heat.rise)
+    return replace(heat if sure else open_melting(heat), **told)

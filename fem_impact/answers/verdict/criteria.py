@@ -24,7 +24,7 @@ from fem_impact.outcome.shares import heat_ends
 from fem_impact.physics.contact_law import contact_law
 from fem_impact.physics.flash import flash
 from fem_impact.run.common import part_of_last
-from fem_impact.run.heated import MELTS
+from fem_impact.run.heated import beyond_melting
 from fem_impact.run.modal import closed, reduce
 from fem_impact.run.modal_error import SPLIT, factor_of, farness, place_of
 from fem_impact.scene.fields import LEVELS, check_choice
@@ -281,7 +281,7 @@ class HeatCriterion(Limited):
             return None
         scene = levels[-1].cases[0].scene
         rises = [level.outcome.heat.rise for level in levels[-2:]]
-        before, last = (isinstance(rise, Unknown) and rise.reason.endswith(MELTS) for rise in rises)
+        before, last = map(beyond_melting, rises)
         if last:
             return _solid_metal(scene, Bound(inf, inf if before else self.base(scene), inf))
         bound = super().solid(levels)

@@ -346,7 +346,7 @@ def solid_effect(levels: Sequence[extrapolate.MeshRuns], of: str = "e") -> Vibra
         band,
         E_vib,
         E_vib_band,
-        replace(free, heat=needed.known_heat(free, lost)),
+        replace(free, heat=needed.known_heat(free, lost, pairs_of(coarse)[0][0])),
         stiff,
         f"Finite elements on {len(levels)} levels, the last two with cells of {_size(coarse)} and "
         f"{_size(fine)} at the contact{ONCE if len(changes[-1]) == 1 else TWICE} at least half of the "

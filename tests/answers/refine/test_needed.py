@@ -21,6 +21,8 @@ from fem_impact.answers.refine.needed import (
 )
 from fem_impact.case.measured import needed_half_widths
 from fem_impact.evidence.studies.coverage.level_bands import LEAST, needed
+from fem_impact.outcome.keys import Unknown
+from fem_impact.run.heated import MELTS
 
 RUN = outcome(effects=["friction", "rod-plasticity"])
 HALVES = {"e_edge": 0.05, "mu": 1e-5, "E_vib_over_E_0": 1e-7, "V_n_m_per_s": 0.1, "dent_depth_m": 1e-9}
@@ -112,3 +114,20 @@ def test_heat_over_a_patch_that_is_hardly_wider_than_a_cell_is_not_told():
     )
     assert heat.power == 10.0
     assert {*OF_PATCH} <= {*level_limits([replace(level, wide=True, rows=4) for level in levels])[0]}
+
+
+@pytest.mark.parametrize(
+    ("rise", "lost", "begins"),
+    [
+        (Unknown(f"at least 855 K; it begins to {MELTS}"), {}, "at least 855 K; it"),
+        (400.0, {}, "it begins to"),
+        (Unknown(f"at least 855 K; it begins to {MELTS}"), {"flash_temperature_K": OPEN}, "not resolved"),
+    ],
+)
+def test_a_body_surely_melts_where_it_does_on_two_levels_and_the_patch_is_resolved(rise, lost, begins):
+    """Reported: at least 855 K of one level, where the others or the width of the patch leave it open."""
+    melts = Unknown(f"at least 855 K; it begins to {MELTS}")
+    run = outcome(friction_power_W=10.0)
+    last = replace(run, heat=replace(run.heat, rise=melts, temperature=melts))
+    before = replace(run, heat=replace(run.heat, rise=rise))
+    assert known_heat(last, lost, before).temperature.reason.startswith(begins)
