@@ -12,6 +12,7 @@ from fem_impact.outcome.keys import Num, Unknown
 from fem_impact.physics.flash import Flash, flash_bound
 from fem_impact.physics.plate import contact_time
 from fem_impact.scene.inputs import first_melting, melting
+from fem_impact.scene.types import Scene
 
 HARD = "neither body yields, so that no hardness limits the pressure of a touching spot"
 LEAST, MELTS = "at least", "melt; melting is left out"
@@ -32,7 +33,7 @@ def heat(
     ``fastest`` is the highest sliding speed, m/s, that was computed.
     """
     ambient, ignition = case.scene.heating.ambient, case.scene.heating.ignition
-    temperature = below_melting(case, ambient + flash.peak, LEAST + " {limit:.0f} K; ")
+    temperature = below_melting(case.scene, ambient + flash.peak, LEAST + " {limit:.0f} K; ")
     return Heat(
         patch=patch,
         power=power,
@@ -81,15 +82,15 @@ def _bound(case: Case, ambient: float, lasted: float, fastest: float) -> Num:
         return Unknown(
             f"not resolved: conduction of heat alone has no end where a body melts; state {missing}"
         )
-    return below_melting(case, ambient + rise)
+    return below_melting(case.scene, ambient + rise)
 
 
-def below_melting(case: Case, temperature: float, known: str = "") -> Num:
+def below_melting(scene: Scene, temperature: float, known: str = "") -> Num:
     """Return a temperature of the contact, K; it is not known where a body melts: latent heat is left out.
 
     ``known`` is what is said of it then, of the melting point ``limit``.
     """
-    lowest, name = first_melting(case.scene)
+    lowest, name = first_melting(scene)
     if temperature < lowest:
         return temperature
     return Unknown(

@@ -325,8 +325,8 @@ class LevelChain:
         """Return the outcome of the level that counts, of the scene as stated, with limits and bands."""
         upto = self.done[: self.counted]
         counted, beyond = upto[-1], self.done[self.counted :]
-        limits, bands = extrapolate.level_limits([level.runs for level in upto])
-        lost = needed.unresolved_heat(limits, bands, counted.outcome, counted.runs.across)
+        found = extrapolate.level_limits([level.runs for level in upto])
+        limits, bands, lost = needed.told_heat(found, counted.outcome, counted.runs.across, self.scene)
         why = bands if isinstance(bands, Unknown) else extrapolate.UNRESOLVED
         if bands is why:
             limits = bands = Unknown(f"{why.reason}; {self._finer}")

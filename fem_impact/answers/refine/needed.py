@@ -16,8 +16,9 @@ from fem_impact.case.measured import needed_half_widths
 from fem_impact.outcome.groups import Heat
 from fem_impact.outcome.keys import Unknown, or_none
 from fem_impact.outcome.record import KEY_TABLE, ROUND_OFF, Outcome
-from fem_impact.run.heated import beyond_melting, open_melting
+from fem_impact.run.heated import below_melting, beyond_melting, open_melting
 from fem_impact.run.modal_error import PLASTIC, VIBRATION, unit_of
+from fem_impact.scene.types import Scene
 
 MeshNumbers = Mapping[str, float] | Unknown
 """Numbers by the key of an outcome that they are about, or why there are none."""
@@ -91,6 +92,23 @@ def unresolved_heat(
     if at is None or half is None or ignition is None or abs(at - ignition) > half:
         return {}
     return {TIME_ABOVE: OPEN}
+
+
+def told_heat(
+    told: tuple[MeshNumbers, MeshNumbers], run: Outcome, across: int, scene: Scene
+) -> tuple[MeshNumbers, MeshNumbers, dict[str, Unknown]]:
+    """Return limits and half-widths, and why some of the heat, by key, are not known (`unresolved_heat`).
+
+    Levels may lead beyond a melting point that each of them stays below.
+    """
+    limits, bands = told
+    lost = unresolved_heat(limits, bands, run, across)
+    if isinstance(limits, Unknown) or isinstance(bands, Unknown) or TEMPERATURE not in limits:
+        return limits, bands, lost
+    if isinstance(beyond := below_melting(scene, limits[TEMPERATURE]), Unknown):
+        lost |= {RISE: beyond, TEMPERATURE: beyond}
+        limits, bands = ({key: of[key] for key in of if key not in lost} for of in (limits, bands))
+    return limits, bands, lost
 
 
 def known_heat(run: Outcome, lost: Mapping[str, Unknown], before: Outcome | None = None) -> Heat:

@@ -21,6 +21,7 @@ from fem_impact.outcome.groups import texts
 from fem_impact.outcome.keys import Unknown, or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome, installed_versions
 from fem_impact.outcome.shares import SHARES, heat_ends
+from fem_impact.run.heated import below_melting
 from fem_impact.run.simulate import simulate
 from fem_impact.run.unusual import ROUND_OFF
 from fem_impact.scene.barrier import Barrier
@@ -204,26 +205,27 @@ def basis(v: Verdict) -> tuple[Line, ...]:
         *(((f"with vibration{on}", _motion(here.free)), (twin + on, _motion(here.stiff))) if here else ()),
         *((f"step {number}", f"{step}.") for number, step in enumerate(v.steps, 1)),
         *((("fidelity", f"{v.fidelity}. {here.source}"),) if here else ()),
-        *((("heat of the contact", _heat(here)),) if here else ()),
+        *((("heat of the contact", _heat(here, v.scene)),) if here else ()),
         *_other_angles(v),
         _friction(v),
         *(("note", note) for note in v.notes),
     )
 
 
-def _heat(effect: VibrationEffect) -> str:
+def _heat(effect: VibrationEffect, scene: Scene) -> str:
     """Return how hot the contact becomes, or why that is not known."""
     heat = effect.free.heat
     if isinstance(heat.power, Unknown):
         return f"not known: {heat.power.reason}."
-    if isinstance(heat.temperature, Unknown):
-        return f"the mean temperature of the patch is {heat.temperature.reason}."
+    mean = below_melting(scene, effect.heat[0]) if effect.heat else heat.temperature
+    if isinstance(mean, Unknown):
+        return f"the mean temperature of the patch is {mean.reason}."
     spot = (
         f"What single spots reach is {heat.bound.reason}"
         if isinstance(heat.bound, Unknown)
         else f"No spot exceeds {heat.bound:.0f} K, under the assumptions of the report"
     )
-    told = f"{heat.temperature:.0f}"
+    told = f"{mean:.0f}"
     error = "The error of this mesh is not known: finer elements may give more. "
     if effect.heat is not None:
         ends = effect.free.ends_of(KEY_TABLE["flash_temperature_K"])

@@ -15,6 +15,7 @@ from fem_impact.answers.refine.needed import (
     PLASTIC,
     known_heat,
     scale_of,
+    told_heat,
     unresolved_heat,
     widened,
     widest,
@@ -23,6 +24,7 @@ from fem_impact.case.measured import needed_half_widths
 from fem_impact.evidence.studies.coverage.level_bands import LEAST, needed
 from fem_impact.outcome.keys import Unknown
 from fem_impact.run.heated import MELTS
+from fem_impact.scene.shipped import load
 
 RUN = outcome(effects=["friction", "rod-plasticity"])
 HALVES = {"e_edge": 0.05, "mu": 1e-5, "E_vib_over_E_0": 1e-7, "V_n_m_per_s": 0.1, "dent_depth_m": 1e-9}
@@ -131,3 +133,12 @@ def test_a_body_surely_melts_where_it_does_on_two_levels_and_the_patch_is_resolv
     last = replace(run, heat=replace(run.heat, rise=melts, temperature=melts))
     before = replace(run, heat=replace(run.heat, rise=rise))
     assert known_heat(last, lost, before).temperature.reason.startswith(begins)
+
+
+@pytest.mark.parametrize(("limit", "known"), [(1600.0, True), (1800.0, False)])
+def test_levels_that_lead_beyond_a_melting_point_tell_no_temperature(limit, known):
+    """Reported: 900 (300 to 2800) K of aluminium that melts at 855 K, from levels that stayed below it."""
+    told = {"flash_temperature_K": limit, "flash_rise_K": limit - 293.15, "mu": 0.2}
+    limits, bands, lost = told_heat((told, dict.fromkeys(told, 10.0)), RUN, 4, load("t5b"))
+    assert ("flash_temperature_K" in limits) is ("flash_rise_K" in bands) is known and "mu" in limits
+    assert known or "gives 1800 K, above 1700 K" in lost["flash_temperature_K"].reason
