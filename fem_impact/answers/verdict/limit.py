@@ -127,7 +127,7 @@ def judge(
         bound,
         by,
         (min(one.value for one in known.values()), known[worst].value) if known else None,
-        len(bounds),
+        len(known),
         why,
         len(limits),
         len(solids),

@@ -51,7 +51,7 @@ class LimitVerdict:
     worst, bound, by : values by key where the number is largest, the number there, and by which model; by
         finite elements the worse of the places that these computed
     reduced : smallest and largest number of the reduced model over the intervals, None where it has none
-    places, not_known : where the reduced model looked, and why it has no answer at some
+    places, not_known : where the reduced model has a number, and why it has none at some
     planned, computed : places at which finite elements are to tell the number, and how many do
     steps, notes : what was computed one after the other, and what the reader should know
     more : arguments of `judge` with which it may decide what is undecided
@@ -162,7 +162,8 @@ def limit_document(v: LimitVerdict, command: str) -> dict[str, Any]:
     if bound is not None and bound.counts:
         box.append(["It counts", bound.counts])
     if v.reduced and over:
-        least, most = (number_text(of, number) for number in v.reduced)
+        top = inf if bound is None else bound.ceiling
+        least, most = (number_text(of, one) + (" or more" if one == top else "") for one in v.reduced)
         box.append([f"Of {v.places} places of the reduced model", f"the least has {least}, the most {most}."])
     lacking = [f"The reduced model does not answer everywhere: {v.not_known}"] if v.not_known else []
     lacking += [UNLIKE] if v.by == "the reduced model" and bound is not None and not bound.alike else []

@@ -82,6 +82,19 @@ def test_no_yes_stands_beside_a_place_that_is_undecided(scene):
 def test_a_place_without_an_answer_forbids_yes(scene):
     found = judge(scene, Sloped(missing=(40.0,)), 75.0, ANGLE, "modal")
     assert found.answer == "undecided" and found.not_known == "it slides on"
+    assert limit_document(found, "")["box"][2][0] == "Of 20 places of the reduced model"
+
+
+def test_of_a_number_beyond_a_melting_point_the_least_and_the_most_are_no_less(scene):
+    """Reported: "the least has 855 K, the most 855 K" where aluminium melts at 855 K at all places."""
+
+    class Capped(Sloped):
+        def reduced(self, scene):
+            bound = super().reduced(scene)
+            return replace(bound, value=min(bound.value, 50.0), ceiling=50.0, beyond="it melts")
+
+    told = limit_document(judge(scene, Capped(), 40.0, ANGLE, "modal"), "")["box"][2][1]
+    assert told == "the least has 0.02 kN, the most 0.05 kN or more."
 
 
 def test_a_body_without_a_reduced_model_is_decided_by_none(monkeypatch, scene):
