@@ -101,8 +101,13 @@ def heat_ends(outcome: Outcome) -> str:
     Nothing where it is not known or has one, or where friction has none either.
     """
     skin, half = outcome.estimate(HEATS)
+    return "" if half is not None or isinstance(skin, Unknown) else work_ends(outcome)
+
+
+def work_ends(outcome: Outcome) -> str:
+    """Say the same wherever friction has a half-width, nothing elsewhere."""
     (rubbed, half_rubbed), *flowed = (outcome.estimate(f"{name}_over_E_0") for name in WORKS)
-    if half is not None or half_rubbed is None or isinstance(skin, Unknown) or isinstance(rubbed, Unknown):
+    if half_rubbed is None or isinstance(rubbed, Unknown):
         return ""
     high = rubbed + half_rubbed + sum((or_none(work) or 0.0) + (error or 0.0) for work, error in flowed)
     others = [share.key for share in SHARES if share.key.name.removesuffix("_over_E_0") not in WORKS]

@@ -20,7 +20,7 @@ from fem_impact.case.case import Case
 from fem_impact.outcome.groups import texts
 from fem_impact.outcome.keys import Unknown, or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome, installed_versions
-from fem_impact.outcome.shares import SHARES, heat_ends
+from fem_impact.outcome.shares import SHARES, heat_ends, work_ends
 from fem_impact.run.heated import below_melting
 from fem_impact.run.simulate import simulate
 from fem_impact.run.unusual import ROUND_OFF
@@ -189,6 +189,8 @@ def _heating(effect: VibrationEffect) -> str:
         ends = "" if "skin" in effect.errors else heat_ends(effect.free)
         told = f"{share} can heat the contact (friction, and plastic work of {of} down to 0.1 mm)"
         return f"{told}; no error of it is known: {ends}" if ends else told
+    if ends := work_ends(effect.free):
+        return f"what can heat the contact is not known: {ends}"
     plastic = or_none(energy.plastic) or 0.0
     least, most = (plain(100 * part, 2) for part in (friction, friction + plastic))
     return f"{least} % (friction alone) to {most} % (with all plastic work) can heat the contact"

@@ -229,13 +229,16 @@ def test_a_small_share_that_can_heat_is_not_told_as_none(short):
     errors.pop("skin", None)
     for skin, told in (
         (0.00206, "0.21 % can heat"),
-        (Unknown("not told"), "0 % (friction alone) to 0.31 % ("),
+        (Unknown("not told"), "what can heat the contact is not known: it lies between 0 % (friction) and "),
     ):
         free = replace(
             short.here.free, energy=replace(energy, skin=skin, plastic_rod=0.0031, plastic_barrier=0.0)
         )
         told_box = box(replace(short, here=replace(short.here, free=free, errors=errors)))
         assert told in told_box[2][1]
+    bare = replace(free, validity=replace(free.validity, model_band=Unknown("no errors")))
+    told_box = box(replace(short, here=replace(short.here, free=bare, errors=errors)))
+    assert "0 % (friction alone) to 0.31 % (" in told_box[2][1]
 
 
 def test_a_share_that_two_meshes_know_has_its_band(short):
