@@ -35,8 +35,8 @@ FACETS = (
     "the contact keep them"
 )
 BONDED_LAYERS = (
-    "idealised: layers are bonded; closed formulas (for the choice of effects, and for the restitution "
-    "of the rigid fidelity) know the first layer alone"
+    "idealised: layers are bonded; closed formulas (for the choice of effects, the restitution of the "
+    "rigid fidelity, and the heat of the contact) know the first layer alone"
 )
 TIPS = {("A", 0.007), ("B", 0.003)}
 SLOPE = (

@@ -352,3 +352,10 @@ def test_a_closed_form_does_not_know_that_a_body_melts():
     hot = replace_all(load("t5b"), {"heating.rod_melting": "50 degC", "effects": ["auto", "contact-heating"]})
     told = simulate(hot, "rigid").heat.temperature
     assert beyond_melting(told) and told.reason.startswith("not resolved: conduction of heat alone gives")
+
+
+def test_without_friction_no_effect_is_proposed_that_is_forced_already():
+    """Reported: effects = ["auto", "contact-heating"] "turns it on", of a scene that states just that."""
+    smooth = {"surface.state": "custom", "surface.source": "none", "surface.friction": 0.0}
+    scene = replace_all(load("t5b"), {**smooth, "effects": ["auto", "contact-heating"]})
+    assert simulate(scene, "rigid").heat.rise == Unknown("the friction effect is off, so that nothing rubs")

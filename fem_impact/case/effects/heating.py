@@ -42,6 +42,8 @@ def halves(bodies: Bodies) -> Halves:
 
 def why_off(bodies: Bodies) -> str:
     """Return why the heat of a contact is not followed, and what turns it on."""
+    if "friction" not in bodies.effects:
+        return "the friction effect is off, so that nothing rubs"
     missing = [f"heating.{key}" for key, value in thermal(bodies).items() if value is None]
     if missing:
         return f"state {', '.join(missing)}"
