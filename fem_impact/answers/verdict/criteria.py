@@ -20,7 +20,7 @@ from fem_impact.modal.impact import ModalResult
 from fem_impact.modal.motion import ROW
 from fem_impact.outcome.keys import Num, Unknown
 from fem_impact.outcome.record import Outcome
-from fem_impact.outcome.shares import heat_ends
+from fem_impact.outcome.shares import heat_ends, work_ends
 from fem_impact.physics.contact_law import contact_law
 from fem_impact.physics.flash import flash
 from fem_impact.run.common import part_of_last
@@ -178,7 +178,8 @@ class Limited(Criterion):
         far = farness(place, outcome)
         factor = factor_of(place, self.column, far)
         ends = base + value, base + value / factor, base + value * factor
-        counts = self.counts(lambda name: outcome.told(name, 100.0), heat_ends(outcome))
+        heats = heat_ends(outcome) or work_ends(outcome) * isinstance(outcome.energy.skin, Unknown)
+        counts = self.counts(lambda name: outcome.told(name, 100.0), heats)
         return Bound(*ends, far == 0.0, counts=counts)
 
     def meshed(self, scene: Scene) -> tuple[Scene, Scene | None]:
@@ -227,7 +228,9 @@ class HeatCriterion(Limited):
         sure = "its error is not known"
         unsure = {"W_friction_over_E_0": sure, "W_skin_over_E_0": f"{sure}: {heats}" if heats else sure}
         friction, skin = (
-            share if share == "not known" else f"{share} % of E_0" + f" ({doubt})" * (" " not in share)
+            share + doubt[len(sure) :]
+            if share == "not known"
+            else f"{share} % of E_0" + f" ({doubt})" * (" " not in share)
             for share, doubt in ((told(name), doubt) for name, doubt in unsure.items())
         )
         return (

@@ -336,6 +336,13 @@ def test_a_temperature_beyond_the_melting_point_is_at_least_that(scene):
     assert LIMITED["heat"].solid(levels) is None
 
 
+def test_what_can_heat_lies_between_ends_where_its_share_is_not_known():
+    """Reported: W_skin of an aluminium bar "not known", though friction and all plastic work were."""
+    shares = {"W_friction_over_E_0": "18 +- 4", "W_skin_over_E_0": "not known"}
+    told = LIMITED["heat"].counts(shares.__getitem__, "it lies between 14 % and 85 %")
+    assert told.endswith("both surfaces, not known: it lies between 14 % and 85 %.")
+
+
 def test_a_temperature_is_never_below_that_of_the_surroundings(monkeypatch, scene):
     """Levels of a nylon pin told 218 to 550 K in a room of 293 K."""
     monkeypatch.setattr(Limited, "solid", lambda self, levels: Bound(360.0, 218.0, 550.0))
