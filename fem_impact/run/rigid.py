@@ -24,8 +24,9 @@ from fem_impact.run.heated import heat, open_melting
 STIFF_PLATE = "Bending of the plate, which takes energy and lowers e, is left out."
 MEAN_HEAT = (
     "Heat by closed form, from the mean friction power of the estimated contact: in seven scenes its flash "
-    "temperature rise was 0.3 to 1.3 times that of finite elements. Where the body's vibration lets its tip "
-    "slide to and fro, friction takes several times what rigid theory knows, and the temperature is higher."
+    "temperature rise was 0.3 to 1.3 times that of finite elements. Where vibration, or the give of a "
+    "contact that sticks here, lets the tip slide, friction takes far more than rigid theory knows, and the "
+    "temperature is higher."
 )
 UNKNOWN = "a rigid body in an impact without duration does not know it"
 UNASSIGNED = Unknown("what a stated restitution loses is not assigned to a body that does not yield")
