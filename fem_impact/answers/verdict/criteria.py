@@ -55,10 +55,10 @@ class Bound:
             return "no"
         return "yes" if self.high < limit else "undecided"
 
-    def rank(self, limit: float) -> tuple[int, float, float]:
-        """Return how bad the answer is, 0 of a yes, 2 of a no; then the end that decides it; the number."""
+    def rank(self, limit: float) -> tuple[int, float, float, float]:
+        """Return how bad the answer is, 0 of a yes, 2 of a no; the end that decides; number and least."""
         bad = ("yes", "undecided", "no").index(self.answer(limit))
-        return bad, self.low if bad == 2 else self.high, self.value
+        return bad, self.low if bad == 2 else self.high, self.value, self.low
 
     def graded(self, limit: float) -> vibration.Answer:
         """Return the answer: of a limit none is probable."""

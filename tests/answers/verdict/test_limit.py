@@ -3,7 +3,7 @@
 import json
 import re
 from dataclasses import replace
-from math import pi, sqrt
+from math import inf, pi, sqrt
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -91,8 +91,10 @@ def test_of_a_number_beyond_a_melting_point_the_least_and_the_most_are_no_less(s
     class Capped(Sloped):
         def reduced(self, scene):
             bound = super().reduced(scene)
-            return replace(bound, value=min(bound.value, 50.0), ceiling=50.0, beyond="it melts")
+            return replace(bound, value=min(bound.value, 50.0), high=inf, ceiling=50.0, beyond="it melts")
 
+    # of places that all may melt that of the highest least is the worst: the first one was told
+    assert judge(scene, Capped(), 90.0, ANGLE, "modal").worst == {"impact.angle": "60 deg"}
     told = limit_document(judge(scene, Capped(), 40.0, ANGLE, "modal"), "")["box"][2][1]
     assert told == "the least has 0.02 kN, the most 0.05 kN or more."
 
