@@ -222,10 +222,23 @@ class ContactPair:
     @cached_property
     def estimate(self) -> ContactEstimate:
         """The size of the first contact."""
-        R1, R2 = self.principal_radii
+        R2 = self.principal_radii[1]
+        size = self._widened(R2)
+        # of a face nearly flat all may touch, whatever the depth
+        if self.body.face > 0 and self.nearly_flat(size.depth):
+            return self.round_contact
+        if self.lands_flat or isinstance(self.body, Faceted) or not self.angle:
+            return size
+        # what is pressed in of a face that leans is a part of its circle, however flat its rim is
+        rim = self.touch_point[0] / sin(self.angle)
+        return self._widened(rim) if self.body.face > 0 and rim > R2 else size
+
+    def _widened(self, R2: float) -> ContactEstimate:
+        """Return the size of the first contact of a tip that has the radius ``R2``, m, around the rod."""
+        R1 = self.principal_radii[0]
         steep = abs(sin(self.angle))
         around = max(R1, 0.5 * self.body.diameter / steep) if steep else inf  # no section is flatter
-        size = self.round_contact
+        size = self._pressed_in(R1, R2)
         for _ in range(ROUNDS):
             down, up = self.body.reaches(self.angle, size.depth)
             wide = (down + up) ** 2 / (8 * size.depth)
@@ -237,8 +250,7 @@ class ContactPair:
             else:
                 size = self._pressed_in(wide, max(R2, min(wide, around)))
             size = replace(size, shift=self.side * max(0.0, self.side * 0.5 * (down - up)), wider=wide / R1)
-        # of a face nearly flat all may touch, whatever the depth
-        return self.round_contact if self.body.face > 0 and self.nearly_flat(size.depth) else size
+        return size
 
     def nearly_flat(self, depth: float) -> bool:
         """Return whether the middle of the face stands so low that all of it may touch at a depth, m."""

@@ -341,6 +341,16 @@ def test_a_sharp_edge_is_pressed_in_as_the_parabola_that_is_as_wide(angle):
     assert low[0] < -found.depth / tangent and high[0] > found.depth * tangent
 
 
+@pytest.mark.parametrize("angle", [-1, 1, 2, 5])
+def test_what_is_pressed_in_of_a_face_that_leans_is_as_wide_as_its_chord(angle):
+    """Its rim was taken to be no flatter than 10.5 diameters: 0.6 of the chord at 1 degree."""
+    slow = {"impact.height": "10 mm", "impact.angle": f"{angle} deg"}
+    case = bodies(replace_all(load("t5b"), SHARP | slow))
+    found, lean = case.estimate, abs(np.radians(angle))
+    assert not case.contact.all_may_touch
+    assert 2 * found.R2 * found.depth == pytest.approx(2 * 9.5e-3 * found.depth / np.sin(lean))
+
+
 @pytest.mark.parametrize("name", ["t2", "t4", "t5d", "t6-17", "t6-60", "t3-machined-tip-a"])
 def test_the_measured_tips_are_pressed_in_as_round_as_they_are(name):
     found = bodies(load(name)).estimate
