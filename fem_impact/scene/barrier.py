@@ -52,7 +52,6 @@ class Barrier:
         fields.check_choice(self.boundary, get_args(fields.Boundary), "boundary")
         fields.check_choice(self.support, get_args(fields.Support), "support")
         fields.check_numbers(self, fields.BARRIER)
-        # a barrier that is stated in two ways
         if self.bends and self.thickness is None:
             raise SceneError("is missing: how much a plate bends depends on it.", key="thickness")
         if self.bends and self.mass is not None:
@@ -65,7 +64,6 @@ class Barrier:
         if self.boundary == "fixed" and (self.bends or self.mass is not None):
             remedy = 'Leave out boundary = "fixed", or the mass and the support.'
             raise SceneError("holds the barrier, which is stated to give way.", key="boundary", remedy=remedy)
-        # one that turns of which something is missing, and the place of a centre without a turn
         if self.inertia is None and (self.centre_depth is not None or self.centre_offset != 0.0):
             key = "centre_offset" if self.centre_depth is None else "centre_depth"
             remedy = "Add its mass and inertia, or leave this out."
@@ -75,7 +73,6 @@ class Barrier:
         if self.inertia is not None and self.centre_depth is None:
             problem = "is missing: friction turns the barrier by it. State how deep its mass centre lies."
             raise SceneError(problem, key="centre_depth")
-        # layers on one that bends or is free to move
         if self.layers and self.bends:
             remedy = 'Leave out the layers, or support = "infinite".'
             problem = "lie on a plate that bends, whose impedance is known for one material alone."

@@ -153,6 +153,7 @@ Unresolved = Literal["withhold", "report"]  # what becomes of numbers that the m
 TargetOf = Literal["e", "mu", "Omega", "E_vib", "E_lt", "E_ln", "plastic", "friction"]  # a wanted error alone
 Fields = Literal["shown", "all"]  # that a run keeps
 SkinShape = Literal["even", "exponential"]  # of the gain of flow stress over the depth under the surface
+SurfaceState = Literal["machined", "contaminated", "cleaned", "pair", "custom"]  # what friction is known of
 FlowLaw = Literal["tensile", "hardness"]  # what the power law of hardening passes through beside yield
 
 

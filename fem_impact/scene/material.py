@@ -368,7 +368,7 @@ class Surface:
     ``sliding_law`` is how friction changes with speed; None: it does not.
     """
 
-    state: Literal["machined", "contaminated", "cleaned", "pair", "custom"]
+    state: fields.SurfaceState
     friction: float
     friction_low: float
     friction_high: float
@@ -376,7 +376,7 @@ class Surface:
     sliding_law: SlidingLaw | None = None
 
     def __post_init__(self) -> None:
-        fields.check_choice(self.state, ("machined", "contaminated", "cleaned", "pair", "custom"), "state")
+        fields.check_choice(self.state, get_args(fields.SurfaceState), "state")
         fields.check_numbers(self, fields.SURFACE)
         if not fields.check_text(self.source, "source", 1000).strip():
             raise SceneError("says nothing.", key="source", remedy="Say where the friction is known from.")

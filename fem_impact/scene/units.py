@@ -239,7 +239,6 @@ _EXAMPLES = {
     "--angle": "45 deg",
     "--tip-radius": "3 mm",
     "--budget": "30 s",
-    "--finest": "0.25 mm",
 }
 """Example value of an option, for messages; of others that of their dimension."""
 

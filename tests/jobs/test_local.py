@@ -10,6 +10,7 @@ from concurrent.futures import BrokenExecutor
 from pathlib import Path
 
 import pytest
+from other_processes import alive, children_of, wait_until
 from scale_tasks import LOG, Acting, job
 
 from fem_impact.errors import RunError
@@ -101,25 +102,6 @@ def test_a_worker_of_another_version_is_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(run_module, "source_digest", lambda: "another program")
     with LocalProcesses(1) as processes, pytest.raises(RunError, match="another version"):
         run_jobs([job("a")], tmp_path / "store.sqlite", NullMeter(), Acting(processes))
-
-
-def children_of(pid):
-    listed = subprocess.run(["ps", "-o", "pid=", "--ppid", str(pid)], capture_output=True, text=True)
-    return [int(word) for word in listed.stdout.split()]
-
-
-def alive(pid):
-    try:
-        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
-    except OSError:
-        return False
-
-
-def wait_until(true, seconds=30.0):
-    end = time.monotonic() + seconds
-    while not true():
-        assert time.monotonic() < end, "it never came"
-        time.sleep(0.02)
 
 
 @pytest.mark.long

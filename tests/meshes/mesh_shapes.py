@@ -3,7 +3,6 @@
 import numpy as np
 
 import meshes
-from meshes.hexmesh import FACES
 
 RADIUS = 9.5e-3
 
@@ -68,8 +67,3 @@ def interior(mesh):
     mask = np.ones(len(mesh.points), bool)
     mask[mesh.faces] = False
     return mask
-
-
-def whole_faces(mesh):
-    """Corner sets of all faces of all cells."""
-    return {frozenset(face) for face in mesh.cells[:, FACES].reshape(-1, 4).tolist()}

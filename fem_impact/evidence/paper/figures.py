@@ -202,7 +202,6 @@ def figure_6(out: Path) -> Drawn:
         axes = drawn.add_subplot()
         for curve, s, colour in zip(curves, experiments.angle_sets(), COLOURS, strict=True):
             _draw_6(axes, curve, s, PALETTE[colour])
-        # set axes, grid and legend
         axes.axhline(0.0, color=QUIET, linewidth=0.7)
         axes.set(xlabel="impulse ratio μ", ylabel="total loss $(E_{ln} + E_{lt})/E_0$")
         axes.set(xlim=(0, 1.2), ylim=(-0.06, 1.0))
