@@ -33,12 +33,17 @@ def require_gauge(scene: Scene) -> None:
     rod, gauge = scene.projectile, scene.save.gauge
     least = SLICES * rod.diameter if rod.is_rod else 0.0
     if gauge is not None and not least < gauge < rod.length:
-        raise SceneError(
-            "lies where the strain along the axis is not read.",
-            key="save.gauge",
-            value=f"{gauge * 1e3:.4g} mm",
-            remedy=f"Give a place between {least * 1e3:.4g} and {rod.length * 1e3:.4g} mm from the tip.",
-        )
+        raise off_gauge(gauge, least, rod.length)
+
+
+def off_gauge(gauge: float, first: float, last: float) -> SceneError:
+    """Return the refusal of a strain gauge that lies beside the places, m from the tip, that are read."""
+    return SceneError(
+        "lies where the strain along the axis is not read.",
+        key="save.gauge",
+        value=f"{gauge * 1e3:.4g} mm",
+        remedy=f"Give a place between {first * 1e3:.4g} and {last * 1e3:.4g} mm from the tip.",
+    )
 
 
 @lru_cache(maxsize=256)

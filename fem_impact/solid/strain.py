@@ -8,7 +8,7 @@ import numpy as np
 
 from fem_impact.arrays import Array
 from fem_impact.case.case import Case
-from fem_impact.errors import SceneError
+from fem_impact.case.mesh import off_gauge
 from fem_impact.fem.flight import FreeVibration
 from fem_impact.files.waves import Ringing, Waves, write_waves
 from fem_impact.physics.beam import bar_speed, bending_group_speed
@@ -113,12 +113,7 @@ class StrainWatch:
         watch = cls(model, sections, path, rod.length, speeds, interval, every)
         gauge, places = case.scene.save.gauge, watch._position
         if gauge is not None and not places[0] <= gauge <= places[-1]:
-            raise SceneError(
-                "lies where the strain along the axis is not read.",
-                key="save.gauge",
-                value=f"{gauge * 1e3:.4g} mm",
-                remedy=f"Give {places[0] * 1e3:.4g} to {places[-1] * 1e3:.4g} mm from the tip.",
-            )
+            raise off_gauge(gauge, places[0], places[-1])
         return watch
 
     @property
