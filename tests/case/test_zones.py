@@ -10,10 +10,9 @@ from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.types import digest
 
 
-def zones(name="t5b", **changes):
-    return Case.of(
-        replace_all(load(name), {f"accuracy.{key}": value for key, value in changes.items()})
-    ).zones
+def zones(**changes):
+    accuracy = {f"accuracy.{key}": value for key, value in changes.items()}
+    return Case.of(replace_all(load("t5b"), accuracy)).zones
 
 
 def test_finer_levels_reach_less_far():

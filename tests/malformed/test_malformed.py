@@ -138,8 +138,9 @@ def test_spoiled_tables(how):
 STATE = State(np.arange(30.0), np.ones(30), np.zeros(30), 1e-5, 7, 1e-8, 1e-8, 1e-8)
 
 
-def checkpoint(stamp="scene 1\nsources 2\n"):
+def checkpoint():
     """A checkpoint of a small state."""
+    stamp = "scene 1\nsources 2\n"
     return Checkpoint(Path("run.checkpoint"), stamp, {"0-State": STATE}, 1.0, lambda: False)
 
 

@@ -46,9 +46,9 @@ def assert_bottom_and_side(body, bottom="bottom", side="side", moved=1e-9):
     assert place == pytest.approx([6.0, 3.0, 30.0], abs=moved)
 
 
-def lines_of(quads, width, first=1, more=()):
+def lines_of(quads, width, first=1):
     rows = quads + 1
-    return ["".join(f"{n:{width}d}" for n in (k, *more, *row)) for k, row in enumerate(rows.tolist(), first)]
+    return ["".join(f"{n:{width}d}" for n in (k, *row)) for k, row in enumerate(rows.tolist(), first)]
 
 
 def abaqus_sides(points, cells, kind):

@@ -11,11 +11,11 @@ RHO = 2700.0
 CONE = shapes.cone(0.12, 0.02, np.radians(20.0), 4e-3, 0.0)
 
 
-def of_mesh(half, rho=RHO):
+def of_mesh(half):
     part = cell_moments(half)
     quads = half.faces_with(SKIN)
     nodes, facets = np.unique(quads, return_inverse=True)
-    moments = [rho * moment for moment in (part.volume, part.x, part.z, part.xx, part.zz)]
+    moments = [RHO * moment for moment in (part.volume, part.x, part.z, part.xx, part.zz)]
     parts = np.column_stack([part.low, part.high, *moments])
     return Faceted(half.points[nodes], facets.reshape(quads.shape), parts)
 

@@ -16,7 +16,7 @@ from fem_impact.solid.heatwatch import HeatWatch
 DT = 2e-8
 
 
-def _swarm(seed, count=40, kick=DT):
+def _swarm(seed, count=40):
     rng = np.random.default_rng(seed)
     nodes = rng.permutation(3 * count).reshape(-1, 3)
     x, v, force = rng.normal(size=(3, 3 * count)) * np.array([[1e-3], [2.0], [300.0]])
@@ -26,7 +26,7 @@ def _swarm(seed, count=40, kick=DT):
     inverse = 1 / mass
     mirror = nodes[: count // 4, 1]
     inverse[mirror], v[mirror], force[mirror] = 0.0, 0.0, 0.0
-    before = v - kick * inverse * force
+    before = v - DT * inverse * force
     return nodes, x, v, force, inverse, mass, before
 
 

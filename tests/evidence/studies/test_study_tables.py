@@ -49,9 +49,9 @@ OUTCOME = outcome(
 )
 
 
-def tables(outcomes, comparison=COMPARISON):
+def tables(outcomes):
     """The tables of the study by name."""
-    return {sheet.name: sheet.table for sheet in sets_report(outcomes, comparison).sheets}
+    return {sheet.name: sheet.table for sheet in sets_report(outcomes, COMPARISON).sheets}
 
 
 def test_marks_tell_inside_undecided_and_outside_apart():
