@@ -168,7 +168,7 @@ def _basis(fidelity: str, pace: Pace) -> str:
     ran = f"{pace.measured} that ran" if pace.measured else "none that ran"
     if fidelity != "solid":
         return f"  {fidelity}: median of {ran}" if pace.measured else f"  {fidelity}: assumed, {ran}"
-    return f"  solid: the plan of each scene, times {pace.ratio:.2g} by {ran}"
+    return f"  solid: the forecast of each scene, times {pace.ratio:.2g} by {ran}"
 
 
 def _checked_ids(ids: Sequence[str], own: bool) -> tuple[str, ...]:

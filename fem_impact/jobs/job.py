@@ -122,7 +122,7 @@ class Job:
 
     @property
     def planned_s(self) -> float:
-        """Processor time, s, as the plan of its scene expects it; `GUESS` for a fidelity without a mesh."""
+        """Processor time, s, as the case of its scene expects it; `GUESS` for a fidelity without a mesh."""
         return _planned(self.scene)[1] if self.fidelity == "solid" else GUESS[self.fidelity]
 
     def run(self) -> str:

@@ -38,7 +38,7 @@ def paces(jobs: Iterable[Work[Any]], results: Mapping[str, Any]) -> dict[str, Pa
 def expected_costs(jobs: Iterable[Work[Any]], results: Mapping[str, Any]) -> dict[str, float]:
     """Return the expected processor time, s, of each job without a result, by its name.
 
-    It is what the plan of the job says, times the pace of the jobs of its fidelity that have run.
+    It is what the case of the job says, times the pace of the jobs of its fidelity that have run.
     """
     every = list(jobs)
     pace = paces(every, results)
@@ -213,7 +213,7 @@ def estimate(
 ) -> WorkForecast:
     """Return how long the jobs that are not stored will take on 1 to 1000 workers.
 
-    A job takes the processor time that the plan of its scene says, times the median ratio of measured to
+    A job takes the processor time that the case of its scene says, times the median ratio of measured to
     planned time of the jobs of its fidelity. Where none has run yet, a few of the cheaper half do.
     Compilation, the start of workers and sharing a machine's memory among them are not in the figures.
     """

@@ -101,7 +101,7 @@ def begin(scene: Scene, out: Path) -> None:
 
 
 def _compute(case: Case, options: RunOptions) -> tuple[Outcome, ContactRecord | None]:
-    """Run the model of the plan's fidelity, whose modules are imported only here."""
+    """Run the model of the case's fidelity, whose modules are imported only here."""
     if case.fidelity == "rigid":
         from fem_impact.run.rigid import rigid_outcome
 

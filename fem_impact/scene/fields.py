@@ -221,7 +221,7 @@ def check_id(value: Any) -> None:
 
 
 def check_names(value: Any) -> tuple[str, ...]:
-    """Return names of effects, a list or "auto", as a tuple; what they name is the plan's business."""
+    """Return names of effects, a list or "auto", as a tuple; what they name is the case's business."""
     names = (value,) if value == "auto" else value
     if not isinstance(names, (list, tuple)) or not all(isinstance(name, str) for name in names):
         raise SceneError('must be "auto" or a list of names.', key="effects", value=value)

@@ -49,7 +49,7 @@ class Accuracy:
     withheld (null, with the reason) or reported all the same.
     ``grid_shift`` is the place of a meshed barrier's grid along t, in cells at the contact.
     ``across`` that is not stated follows from the projectile, see `Scene.across`; ``max_time`` from the rod's
-    bending and the contact time, see `Plan.max_time`.
+    bending and the contact time, see `Case.max_time`.
     ``levels`` is the number of meshes of a finite-element run, of which the last counts.
     ``offsets`` is the number of places of a meshed barrier's grid at which each level but the first runs.
     ``target`` is the wanted relative error; levels then go on until it is reached, by ``target_of`` alone if
@@ -138,7 +138,7 @@ class Scene:
 
     ``measured`` names the published set it repeats, or the CSV file of a user's own tests, if any;
     ``restitution`` (energetic, 0 to 1) is what the rigid fidelity takes instead of Thornton's law.
-    ``effects`` is what was stated, with or without ``"auto"``; the plan tells what the model has.
+    ``effects`` is what was stated, with or without ``"auto"``; the case tells what the model has.
     """
 
     id: str

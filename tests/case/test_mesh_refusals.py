@@ -1,4 +1,4 @@
-"""Projectiles of which no mesh can be made are refused by the plan, with remedies that work."""
+"""Projectiles of which no mesh can be made are refused by the case, with remedies that work."""
 
 from __future__ import annotations
 

@@ -102,4 +102,4 @@ def test_samples_are_cheap_and_each_group_tells_its_times(tmp_path):
     text, (fidelity, size) = _estimate_text(found), jobs[-1].kind
     last = next(line for line in text.splitlines() if f"{fidelity}, tip {size * 1e3:.2g} mm" in line)
     assert f"{max(left):.2g} s each" in last
-    assert f"solid: the plan of each scene, times {pace:.2g} by 8 that ran\n" in text
+    assert f"solid: the forecast of each scene, times {pace:.2g} by 8 that ran\n" in text

@@ -143,7 +143,7 @@ class OverBudgetError(RunError):
 def lasting(shown_s: float, planned_s: float) -> float:
     """Return how long an impact lasts over its plan, where a level before showed ``shown_s``; 0: none did.
 
-    It is the geometric mean of both: on a coarse mesh a contact is too stiff, and the plan knows no mesh.
+    It is the geometric mean of both: on a coarse mesh a contact is too stiff, and the estimate knows no mesh.
     """
     return sqrt(shown_s / planned_s) if shown_s else 1.0
 

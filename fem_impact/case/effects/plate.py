@@ -12,7 +12,7 @@ def number(bodies: Bodies) -> float:
 
 
 def fill(bodies: Bodies, spec: ModelSpec) -> None:
-    """Set the impedance of the plate; where finite elements mesh it through, the plan takes it back.
+    """Set the impedance of the plate; where finite elements mesh it through, the case takes it back.
 
     Raises
     ------

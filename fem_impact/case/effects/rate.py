@@ -1,7 +1,7 @@
 """Rate hardening: the flow stress of a metal grows with the strain rate, by the law of its own data.
 
 The law is Johnson and Cook's or Cowper and Symonds' (`fem_impact.scene.material`). A metal without data has
-none, and the plan says so; no law of another metal takes its place.
+none, and the case says so; no law of another metal takes its place.
 """
 
 from dataclasses import replace
