@@ -21,7 +21,7 @@ def yield_ratio(bodies: Bodies) -> float:
     """Return the peak pressure over that of first yield in the plate, the largest of its layers."""
     strata, pair = bodies.barrier.strata, bodies.contact
     under = [buried_yield_ratio(pair, metal, depth) for (depth, _), (_, metal) in pairwise(strata)]
-    return max([first_yield_ratio(pair, pair.barrier, pair.rod), *under])
+    return max([first_yield_ratio(pair, pair.barrier, pair.rod if pair.rod_yields else None), *under])
 
 
 def fill_rigid(bodies: Bodies, spec: ModelSpec) -> None:

@@ -14,10 +14,11 @@ WIDE = 2.0  # estimated radii of the contact, under which a layer is told to be 
 HARDEST = 1.0  # plastic strain that no dent of a slender body exceeds by much: the largest seen is .95
 
 
-def first_yield_ratio(pair: ContactPair, material: Material, other: Material) -> float:
+def first_yield_ratio(pair: ContactPair, material: Material, other: Material | None) -> float:
     """Return the peak pressure over that of first yield, min(1.6, 1/(sqrt(3) f)) sigma_y.
 
-    The pressure is the elastic one, or the limit pressure of the ``other`` body where that is less.
+    The pressure is the elastic one, or the limit pressure of the ``other`` body where that is less and may
+    yield; None of one that may not.
     """
     first = min(DEEP, 1 / (sqrt(3) * pair.f)) if pair.f > 0 else DEEP
     return _peak(pair, other) / (first * material.yield_stress)
@@ -30,14 +31,14 @@ def buried_yield_ratio(pair: ContactPair, material: Material, depth: float) -> f
     """
     z, nu = depth / pair.elastic.estimate.radius, pair.barrier.nu
     across = (1 + nu) * (1 - z * atan(1 / z)) - 0.5 / (1 + z * z)
-    stress = abs(1 / (1 + z * z) - across) * _peak(pair, pair.rod)
+    stress = abs(1 / (1 + z * z) - across) * _peak(pair, pair.rod if pair.rod_yields else None)
     return stress / material.yield_stress
 
 
-def _peak(pair: ContactPair, other: Material) -> float:
+def _peak(pair: ContactPair, other: Material | None) -> float:
     """Return the peak pressure, Pa, of the elastic contact, or the limit pressure of ``other`` if less."""
     peak = max(1.5 * pair.elastic.estimate.pressure, _on_side(pair))
-    if pair.compliant:
+    if pair.compliant and other is not None:
         peak = min(peak, LIMIT_PRESSURE * strength_of(other))
     return peak
 
@@ -114,7 +115,8 @@ def struck(bodies: Bodies) -> list[Material]:
 def number(bodies: Bodies) -> float:
     """Return the peak pressure over that of first yield in the rod, by the strongest that it strikes."""
     pair = bodies.contact
-    return max(first_yield_ratio(pair, pair.rod, metal) for metal in struck(bodies))
+    limits = struck(bodies) if pair.barrier_yields else [None]
+    return max(first_yield_ratio(pair, pair.rod, metal) for metal in limits)
 
 
 def fill(bodies: Bodies, spec: ModelSpec) -> None:

@@ -17,6 +17,7 @@ from fem_impact.case.measured import expected_shares
 from fem_impact.physics.beam import bending_period
 from fem_impact.physics.contact import FLATTEST
 from fem_impact.physics.flash import expected_rise, flash_bound
+from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.shipped import replace as changed
 
@@ -234,3 +235,28 @@ def test_a_side_that_lands_all_along_yields_as_a_line_does():
     at_first = min(1.6, 1 / (sqrt(3) * side.contact.f)) * side.contact.barrier.yield_stress
     assert measured < number(scene, "barrier-elastoplastic") * at_first < 1.5 * measured
     assert {"rod-plasticity", "barrier-elastoplastic"} <= set(side.active)
+
+
+@pytest.mark.parametrize(
+    ("rod", "forced", "yields"),
+    [
+        ("steel-4340", "barrier-elastic", "rod-plasticity"),
+        ("lead", "-rod-plasticity", "barrier-elastoplastic"),
+    ],
+)
+def test_a_body_that_is_kept_elastic_caps_no_pressure(rod, forced, yields):
+    """A ball at 10 m/s on a softer plate that may not yield: the stronger one does, e is not 1."""
+    ball = {"shape": "ball", "diameter": "10 mm", "material": rod}
+    stated = load(
+        {
+            "id": "ball",
+            "projectile": ball,
+            "barrier": {"material": "s355"},
+            "surface": {"state": "custom", "friction": 0.2, "source": "test"},
+            "impact": {"angle": "0 deg", "speed": "10 m/s"},
+        }
+    )
+    assert yields not in Case(stated).active
+    kept = changed(stated, "effects", ["auto", forced])
+    assert yields in Case(kept).active
+    assert simulate(kept, "rigid").restitution.edge.e < 0.75
