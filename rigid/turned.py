@@ -161,7 +161,8 @@ class Turned:
         """Lowest point (x, z), m, of the outline at inclination `alpha` (rad), below 0 on the side x < 0.
 
         It is a vertex of the outline's convex hull; on a smooth curve, the point of the circle of curvature
-        there whose normal is that of the barrier. Of a part that is equally low it is one end: see `touch`.
+        there whose normal is that of the barrier. Of a part that is equally low it is the wider end, of
+        a side that nearest the tip: see `touch`.
         """
         alpha = inclinations(alpha)
         place, (low, high) = self._touching(alpha), self._normals()
@@ -242,11 +243,11 @@ class Turned:
         return Turned(behind, tuple(density), bore)
 
     def _touching(self, alpha: Floats) -> np.ndarray[tuple[int, ...], np.dtype[np.int64]]:
-        """Return the vertex that is lowest; of those equally low, the one furthest from the tip."""
-        alpha = np.abs(alpha)
-        rho, z = self.outline[::-1].T
+        """Return the vertex that is lowest; of those equally low the widest nearest the tip."""
+        alpha, (rho, z), level = np.abs(alpha), self.outline.T, LEVEL * self.length
         height = z * np.cos(alpha)[..., None] - rho * np.sin(alpha)[..., None]
-        return np.asarray(len(rho) - 1 - np.argmin(height, axis=-1))
+        wide = np.where(height <= height.min(axis=-1)[..., None] + level, rho, -np.inf)
+        return np.asarray(np.argmax(wide >= wide.max(axis=-1)[..., None] - level, axis=-1))
 
     def _normals(self) -> tuple[Floats, Floats]:
         """(k,) angle of the outward normal from the axis, rad, before and behind each vertex."""

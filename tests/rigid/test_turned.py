@@ -77,6 +77,15 @@ def test_the_thick_tail_of_an_inclined_body_touches_first():
     assert rho.tolist() == [0.004, 0.02]
 
 
+@pytest.mark.parametrize("scale", [1.0, 1.7, 2.5, 0.6, 3.3])
+def test_of_a_level_side_the_end_nearest_the_tip_touches_whatever_the_unit(scale):
+    """At the other end by round-off, the places of its contacts began there."""
+    side = scale * np.array([[0.0, 0.0], [6e-3, 0.0], [8e-3, 2e-3], [8e-3, 0.0123], [0.0, 0.0123]])
+    x, z = solid(side).contact_point(np.array([-np.pi / 2, 0.0, np.pi / 2]))
+    assert x / scale == pytest.approx([-8e-3, 6e-3, 8e-3])
+    assert z / scale == pytest.approx([2e-3, 0.0, 2e-3], abs=1e-12)
+
+
 def test_smooth_curves_keep_between_their_points_and_are_round_on_the_axis():
     points = np.array([[0.0, 0.0], [4e-3, 1e-3], [7e-3, 5e-3], [9e-3, 60e-3], [6e-3, 80e-3]])
     line = shapes.smooth(points)
