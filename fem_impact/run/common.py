@@ -236,7 +236,7 @@ def restitution(case: Case, motion: RodMotion, barrier: BarrierMotion, fallen: f
     impulse vanishes: d_c = (k^2 (Omega - omega) + d_d (V_t - v_t)) / (V_n - v_n), so e_m = -1.
     """
     if not isinstance(barrier.Omega_b, Unknown):
-        return _on_turning(case, motion, barrier, barrier.Omega_b)
+        return _on_turning(case, motion, barrier, barrier.Omega_b, fallen)
     (d_c, d_d), omega, m = case.contact.arms, case.scene.impact.omega, as_on_massive(case, motion, barrier)
     before, (V_n, V_t, Omega) = (m.v_n, m.v_t), after(m)
     if V_n <= m.v_n:
@@ -259,7 +259,9 @@ def restitution(case: Case, motion: RodMotion, barrier: BarrierMotion, fallen: f
     )
 
 
-def _on_turning(case: Case, motion: RodMotion, barrier: BarrierMotion, Omega_b: float) -> Restitution:
+def _on_turning(
+    case: Case, motion: RodMotion, barrier: BarrierMotion, Omega_b: float, fallen: float
+) -> Restitution:
     """Return the coefficients on a barrier that turns: of the velocities of the two points that touch.
 
     The works of the normal and the tangential impulse are those of the mean relative velocity of the points.
@@ -282,8 +284,11 @@ def _on_turning(case: Case, motion: RodMotion, barrier: BarrierMotion, Omega_b: 
         E_ln=-0.5 * P_n * (before_n + after_n) / E_0,
         E_lt=-0.5 * P_t * (before_t + after_t) / E_0,
     )
-    other = unknown(ArmCoefficients, TURNING.reason)
-    return Restitution(mu=P_t / P_n, mu_c=TURNING, paper=other, edge=edge, impulse=other)
+    other, alpha = unknown(ArmCoefficients, TURNING.reason), case.scene.impact.vertical
+    still = V_n + fallen * cos(alpha), V_t + fallen * sin(alpha)
+    pushed = still[0] > motion.v_n
+    mu: Num = float(rigid.impulse_ratio(motion.v_n, motion.v_t, *still)) if pushed else NO_PUSH
+    return Restitution(mu=mu, mu_c=TURNING, paper=other, edge=edge, impulse=other)
 
 
 def _with_arms(d_c: float, d_d: float, omega: float, m: RodMotion, E_0: float) -> ArmCoefficients:

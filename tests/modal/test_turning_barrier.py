@@ -151,3 +151,19 @@ def test_a_rod_that_lands_on_its_side_keeps_the_angular_momentum_of_both(tip, an
     assert known(outcome.barrier.angular_momentum_error) < 1e-6
     assert known(outcome.barrier.momentum_error) < 1e-10
     assert abs(known(outcome.barrier.Omega_b)) < 1.0
+
+
+def test_what_gravity_gives_between_contacts_is_no_impulse_on_a_barrier_that_turns():
+    """A rubber bar touches twice; on a barrier too heavy to turn mu is that of a massive one."""
+    bar = {
+        "projectile": {"shape": "flat", "length": "12 mm", "diameter": "3 mm", "material": "natural-rubber"},
+        "surface": {"state": "custom", "friction": 0.3, "source": "test"},
+        "impact.angle": "88 deg",
+        "impact.v_n": "-0.3 m/s",
+        "impact.v_t": "0.25 m/s",
+        "accuracy.across": 6,
+    }
+    heavy = {"barrier.mass": "1e9 kg", "barrier.inertia": "1e12 kg m2", "barrier.centre_depth": "0.1 m"}
+    massive, turning = run(bar), run(bar, heavy)
+    assert len(known(massive.contact.intervals)) > 1
+    assert known(turning.restitution.mu) == pytest.approx(known(massive.restitution.mu), rel=1e-9)
