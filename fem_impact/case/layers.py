@@ -132,7 +132,15 @@ def as_one(bodies: Bodies) -> Material:
         stress = layered.hardness(depth, size.radius, (flows[at], upper.E), (stress, strata[at + 1][1].E))
     starts = first.yield_stress * (stress / flows[0] if first.yields else 1.0)
     ultimate = max(first.ultimate_stress, starts)  # of a soft thin layer on a hard base the own one is less
-    return replace(first, E=E, nu=nu, yield_stress=starts, ultimate_stress=ultimate)
+    try:
+        return replace(first, E=E, nu=nu, yield_stress=starts, ultimate_stress=ultimate)
+    except SceneError:  # no metal is so soft and so strong
+        raise SceneError(
+            f"are {first.name} that yields on what is so much softer that no one material stands for all of "
+            f"them (E {E / 1e9:.2g} GPa, yield stress {starts / 1e6:.3g} MPa), as the reduced model needs.",
+            key="barrier.layers",
+            remedy="Use fidelity solid, or leave the layers out.",
+        ) from None
 
 
 def flows_below(bodies: Bodies) -> str:

@@ -138,3 +138,15 @@ def test_a_thin_soft_layer_bears_more_than_its_ultimate_stress_on_a_hard_base():
     """The scene was refused, as if its author had stated the strength of both together."""
     scene = layered([{"thickness": "0.05 mm", "material": "aluminium-1350-h14"}], "modal", material="100cr6")
     assert Case.of(scene, "modal").contact.barrier.yield_stress > scene.barrier.struck.ultimate_stress
+
+
+def test_the_reduced_model_refuses_metal_on_rubber_for_what_it_is():
+    """It asked for the unit of a modulus that no one had stated, and finite elements take the scene."""
+    sandwich = [
+        {"thickness": "1 mm", "material": "s355"},
+        {"thickness": "6 mm", "material": "natural-rubber"},
+    ]
+    assert layered(sandwich, material="s355")
+    with pytest.raises(SceneError) as refused:
+        layered(sandwich, "modal", material="s355")
+    assert refused.value.key == "barrier.layers" and "unit" not in str(refused.value)
