@@ -226,7 +226,7 @@ def _finished(
     buffer: int,
     joint: float,
 ) -> RodMesh:
-    """Put the parts together, the cells that stay whole first; refine; find the slices above a ``joint``, m."""
+    """Put the parts together, the cells that stay whole first; refine; find slices above ``joint``, m."""
     cells, layer = (np.concatenate(part) for part in zip(*parts, strict=True))
     (low, high), nodes = exact[1], len(body.half.unit)
     first = min(int(np.searchsorted(heights, high - SAME * body.length)), len(heights) - 1)
@@ -287,8 +287,8 @@ def _refined(
 def _run(body: Revolved, heights: FloatArray, first: int, high: float, joint: float) -> int:
     """Return the first section from which on to a flat tail all slices are the same; else their number.
 
-    Sections up to the height ``high`` are round, those above have the area of the circle. Slices below the last
-    ``joint``, m, may be of another material.
+    Sections up to the height ``high`` are round, those above have the area of the circle. Slices below the
+    last ``joint``, m, may be of another material.
     """
     if body.line[-1, 0] <= 0.0:
         return len(heights)

@@ -215,34 +215,6 @@ def test_gravity_between_contacts_is_no_impulse():
     assert outcome.restitution.mu == pytest.approx(0, abs=1e-9)
 
 
-def metal(name, E, nu, rho, yields, ultimate):
-    strength = {"yield_stress": f"{yields} MPa", "ultimate_stress": f"{ultimate} MPa"}
-    return {"name": name, "E": f"{E} GPa", "nu": nu, "rho": f"{rho} kg/m3"} | strength
-
-
-@pytest.mark.slow
-def test_the_step_follows_the_contact_of_a_thin_rod_too():
-    """On its wide contact the tip swings faster than its modes: steps for those miss 1.8e-4 of E_0."""
-    changes = {
-        "projectile.tip": "plain",
-        "projectile.tip_radius": "0 mm",
-        "projectile.length": "805 mm",
-        "projectile.diameter": "6.27 mm",
-        "projectile.material": metal("tungsten", 400, 0.28, 19250, 750, 980),
-        "barrier.material": metal("mild steel", 210, 0.29, 7850, 350, 520),
-        "surface.state": "custom",
-        "surface.friction": 0.81,
-        "surface.friction_low": 0.81,
-        "surface.friction_high": 0.81,
-        "surface.source": "chosen",
-        "impact.angle": "20 deg",
-        "impact.v_n": "-18.35 m/s",
-        "impact.v_t": "-16.79 m/s",
-    }
-    found = result_of(replace_all(load("t5b"), changes))
-    assert abs(found.residual) < 1e-5 * found.E_0
-
-
 def test_an_open_ledger_is_closed_by_smaller_steps(monkeypatch):
     """The first march is spoiled; the next, with half the step, is not."""
     steps = []
