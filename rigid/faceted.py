@@ -21,6 +21,8 @@ Coordinates in a text file of six digits or more lie so near to where they shoul
 """
 STEEP = math.sin(math.radians(45.0))
 """Sine of the angle to the convex outline from which on a facet at one of its vertices makes that an edge."""
+UNEVEN = 0.3
+"""Share by which a wall around the axis may differ from that of a ring, as that of a square tube does."""
 HEIGHTS = 400
 """Heights at which the width of the body is tabulated."""
 
@@ -260,6 +262,29 @@ class Faceted:
     def holds(self, rho: Floats, z: Floats) -> NDArray[np.bool_]:
         """Whether points at distances `rho` from the axis and heights `z`, m, lie within the outer width."""
         return np.asarray((rho <= self.radius(z)) & (z >= 0.0) & (z <= self.length))
+
+    def wall(self, z: Floats) -> tuple[Floats, Floats]:
+        """Outer and inner radii, m, (k,) of a wall around the axis at heights `z`, m; inner 0 where none is.
+
+        The plane of motion cuts such a wall twice, alike on both sides, and the section is that of a ring.
+        """
+        ends = _edges(self.facets).reshape(-1, 2)
+        ends = ends[(np.abs(self.points[ends, 1]) <= LEVEL * self.length).all(axis=1)]
+        (a, low), (b, high) = np.moveaxis(self.points[ends][:, :, [0, 2]], 0, -1)
+        found, looked, ring = np.zeros((2, len(z))), np.zeros(4), False
+        for k, height in enumerate(z):
+            cut = (low > height) != (high > height)
+            x = np.sort((a + (height - low) / np.where(high == low, 1.0, high - low) * (b - a))[cut])
+            if len(x) != 4:
+                continue
+            outer, inner = 0.5 * (x[3] - x[0]), 0.5 * (x[2] - x[1])
+            if np.abs(x - looked).max() > LEVEL * self.length:
+                area, apart = math.pi * (outer**2 - inner**2), x[1] - x[0] - (x[3] - x[2])
+                even = abs(apart) < UNEVEN * (outer - inner) and len(self.strips(height)) == 1
+                looked, ring = x, even and abs(self.section(0.0, height) / area - 1.0) < UNEVEN
+            if ring:
+                found[:, k] = outer, inner
+        return found[0], found[1]
 
     def within(self, x: Floats, z: Floats) -> NDArray[np.bool_]:
         """Whether points (x, z), m, lie inside the body where the plane of motion cuts it (even-odd rule)."""

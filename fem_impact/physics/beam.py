@@ -59,7 +59,7 @@ def bending_group_speed(rod: ProjectileSpec) -> float:
 def bending_period(rod: ProjectileSpec) -> float:
     """Return the first free-free bending period, s; that of prongs or of a short body's plate, if longer.
 
-    Of a mesh that is shorter than wide the plate is as thick as it is long.
+    Of a mesh that is shorter than wide, and has no wall, the plate is as thick as it is long.
     """
     as_beam = 2 * pi / float(bending_frequencies(rod)[0])
     return max(as_beam, prongs(rod).period, disc_period(rod) if rod.length < rod.diameter else 0.0)
@@ -115,6 +115,17 @@ def latest_time(rod: ProjectileSpec, duration: float) -> float:
     return max(LATEST, SPAN * (bending_period(rod) + duration))
 
 
+@lru_cache(maxsize=32)
+def wall(rod: ProjectileSpec) -> tuple[Array, Array, Array]:
+    """Return places along the axis of a bore, outer and inner radii there, m, (k,) each; of a mesh, too."""
+    body = rod.body()
+    if not isinstance(body, Faceted):
+        return rod.wall() if rod.bore else (np.zeros(0),) * 3
+    z = (np.arange(SLICES) + 0.5) * body.length / SLICES
+    outer, inner = body.wall(z)
+    return z[inner > 0], outer[inner > 0], inner[inner > 0]
+
+
 def ovalling_period(rod: ProjectileSpec) -> float:
     """Return the period of the wall's ovalling, s; 0 of a body without a bore.
 
@@ -126,9 +137,9 @@ def ovalling_period(rod: ProjectileSpec) -> float:
     Elasticity, 4th ed. 1927, section 293. A closed end holds the wall, which this does not know: the period
     is the longest there may be.
     """
-    if not rod.bore:
+    z, outer, inner = wall(rod)
+    if not len(z):
         return 0.0
-    z, outer, inner = rod.wall()
     of = np.searchsorted([part.to for part in rod.segments[:-1]], z)
     E, nu, rho = stepped_beam.elastic_constants(rod.materials, of)
     h, R = outer - inner, 0.5 * (outer + inner)
@@ -190,13 +201,14 @@ def disc_period(rod: ProjectileSpec) -> float:
     holds: the period is the longest there may be.
     """
     metal, thickness, hole = rod.material, rod.length, 0.0
-    if rod.bore:
-        first, last = rod.bore[0][0], rod.bore[-1][0]
-        closing = [h for h in (first, rod.length - last) if h > 0]
+    z, outer, inner = wall(rod)
+    if len(z):
+        half = 0.0 if rod.bore else 0.5 * rod.length / SLICES  # of a slice
+        first, last = (rod.bore[0][0], rod.bore[-1][0]) if rod.bore else (z[0] - half, z[-1] + half)
+        closing = [h for h in (first, rod.length - last) if h > half]
         if closing:
             thickness = min(closing)
         else:
-            _, outer, inner = rod.wall()
             hole = float((inner / outer).mean())
     root = free_plate_root(SADDLE, metal.nu, hole)
     speed = sqrt(bending_stiffness(metal.E, metal.nu, thickness) / (metal.rho * thickness))

@@ -82,15 +82,17 @@ def sections(rod: ProjectileSpec) -> Sections:
 
 
 def _faceted(body: Faceted, z: Array, steels: list[Material], of: Ints) -> Sections:
-    """Return the elements of a body of any section, with the shear coefficient of a solid round one.
+    """Return the elements of a body of any section, with the shear coefficient of a round one, hollow or not.
 
     ``of`` (m,) says of which of ``steels`` each of its parts is; those side by side bend about the axis of
     their stiffness.
     """
     E, nu, rho = elastic_constants(steels, of)
     (mass, turning), (EA, EI) = body.sections(z).T, body.sections(z, E / rho).T
-    shear = shear_coefficient(nu, np.zeros_like(nu)) / (2 * (1 + nu))
-    return Sections(z, EI, EA, body.sections(z, shear * E / rho)[:, 0], mass, turning)
+    outer, inner = body.wall(0.5 * (z[1:] + z[:-1]))
+    hollow = np.divide(inner, outer, out=np.zeros_like(outer), where=outer > 0)
+    shear = shear_coefficient(body.sections(z, nu)[:, 0] / mass, hollow)
+    return Sections(z, EI, EA, shear * body.sections(z, E / rho / (2 * (1 + nu)))[:, 0], mass, turning)
 
 
 @lru_cache(maxsize=32)

@@ -2,6 +2,7 @@
 
 import math
 
+import numpy as np
 import pytest
 
 from fem_impact.answers.verdict.screening import screening
@@ -10,8 +11,10 @@ from fem_impact.case.effects.vibration import number
 from fem_impact.fem.eigen import rod_modes
 from fem_impact.physics.beam import bending_period, ovalling_period
 from fem_impact.run.simulate import simulate
+from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.solid.build import build
+from tests.own_bodies import box, write
 
 RING = {"length": "60 mm", "diameter": "60 mm", "tip_radius": "3 mm"}
 
@@ -78,3 +81,41 @@ def test_the_reduced_model_has_the_ovalling_in_its_modes(bore, share):
     """Finite elements gave these shares, and .074 and .012 with 8 cells over the diameter; this has .091."""
     energy = simulate(replace_all(ring(bore), {"accuracy.across": 16}), "modal").energy
     assert energy.vibration == pytest.approx(share, rel=0.45)
+
+
+@pytest.mark.parametrize("bottom", [0.0, 3e-3])
+def test_a_mesh_of_a_ring_or_a_cup_has_the_periods_of_the_same_shape(bottom, tmp_path):
+    """A mesh had no ovalling, and bent as a full plate as thick as it is long."""
+    turn, r, z = np.linspace(0, np.pi, 25), np.linspace(18e-3, 20e-3, 3), np.linspace(0, 30e-3, 21)
+    shell, cells = box(24, 2, 20, (0, 0, 0), (24, 2, 20))
+    at = shell.round().astype(int).T
+    points = np.stack([r[at[1]] * np.cos(turn[at[0]]), r[at[1]] * np.sin(turn[at[0]]), z[at[2]]], axis=1)
+    if bottom:  # wedges about the axis close it below; those of the wall are hexahedra
+        row = [
+            np.flatnonzero((at[0] == k) & (at[1] == 0) & (points[:, 2] <= bottom + 1e-9)) for k in range(25)
+        ]
+        axis = len(points) + np.arange(3)
+        points = np.concatenate([points, [[0, 0, one] for one in z[:3]]])
+        wedges = [
+            [axis[k], row[i][k], row[i + 1][k], axis[k + 1], row[i][k + 1], row[i + 1][k + 1]]
+            for i in range(24)
+            for k in range(2)
+        ]
+        write(tmp_path / "own.vtu", points, cells, wedge=np.array(wedges))
+    else:
+        write(tmp_path / "own.vtu", points, cells)
+    bore = [[f"{bottom} m", "18 mm"], ["30 mm", "18 mm"]]
+    size = {"length": "30 mm", "diameter": "40 mm", "tip": "plain", "tip_radius": "0 mm", "bore": bore}
+    shape = replace_all(load("tube"), {f"projectile.{key}": value for key, value in size.items()})
+    stated = {"mesh": str(tmp_path / "own.vtu"), "material": "rod-steel", "mesh_symmetry": "half"}
+    own = read_dict(
+        {
+            "id": "own",
+            "projectile": {**stated, "mesh_tip": "-z"},
+            "barrier": {"material": "plate-steel"},
+            "surface": {"state": "machined"},
+            "impact": {"angle": "20 deg", "speed": "2 m/s"},
+        }
+    ).projectile
+    assert ovalling_period(own) == pytest.approx(ovalling_period(shape.projectile), rel=0.02)
+    assert bending_period(own) == pytest.approx(bending_period(shape.projectile), rel=0.02)
