@@ -122,6 +122,8 @@ def read_own(path: str | Path, unit: float = 1.0, stated: Stated | None = None) 
         stated = replace(stated, symmetry=PARTS[len(stated.planes)])
         if not is_oblique(stated.tip):
             frame = Frame(shift=shift)
+    elif stated.symmetry in (None, "whole") and not is_oblique(stated.tip):
+        points, frame, stood = _at_its_plane(points, np.unique(used[used >= 0]), stated.tip)
     if is_oblique(stated.tip):
         whole = as_hexahedra(points, blocks)
         points, stated, stood = _stood(whole.points, whole.cells, points, stated)
@@ -150,6 +152,30 @@ def read_own(path: str | Path, unit: float = 1.0, stated: Stated | None = None) 
     dropped = np.setdiff1d(np.flatnonzero(chosen), of)
     uneven = lopsided(stored, files, _axes(made.points, stated.tip), dropped)
     return replace(body, sets=sets, faces=faces, lopsided=uneven, masses=masses, told=told)
+
+
+def _at_its_plane(
+    points: FloatArray, used: IntArray, tip: Tip | None
+) -> tuple[FloatArray, Frame, tuple[str, ...]]:
+    """Return a whole body moved to y = 0 if its ``used`` nodes are alike about the middle of its width alone.
+
+    With it come how it lies in its file, and what is told.
+    """
+    from scipy.spatial import cKDTree  # here: every command imports this room, few read such a mesh
+
+    turned, shift, (axis, sign) = _axes(points[used], tip), np.zeros(3), TIPS[str(tip or "-z")][1]
+    y, near = turned[:, 1], NEAR * float(np.ptp(turned[:, :2], axis=0).max())
+    middle = 0.5 * float(y.min() + y.max())
+    if not y.min() < 0.0 < y.max() or abs(middle) <= near:
+        return points, Frame(), ()
+    tree = cKDTree(turned)
+    images = (turned * [1.0, -1.0, 1.0] + [0.0, 2.0 * at, 0.0] for at in (0.0, middle))
+    here, there = (float(tree.query(image)[0].max()) for image in images)
+    if not there < 2.0 * near < here:
+        return points, Frame(), ()
+    shift[axis] = sign * middle
+    frame = Frame(shift=shift)
+    return points - shift, frame, (f"its plane of symmetry is taken at {frame.plane(axis)}",)
 
 
 def _corners(cells: IntArray) -> IntArray:

@@ -153,6 +153,21 @@ def test_an_unsymmetric_body_is_refused():
         own_body(points, cells)
 
 
+@pytest.mark.parametrize("away", [4e-6, 3e-3])
+@pytest.mark.parametrize("tip", ["-z", "+x", "-y"])
+def test_a_whole_mesh_beside_its_plane_has_the_same_half(tmp_path, away, tip):
+    """It was refused, or, of tetrahedra, cut beside the middle of its width."""
+    points, cells = taper(whole=True)
+    in_place = own_body(points, cells).half
+    points = points + np.array([0.0, away, 0.0])
+    moved = {"-z": points, "+x": points[:, [2, 1, 0]] * [-1, 1, 1], "-y": points[:, [1, 2, 0]]}[tip]
+    found = read_own(write(tmp_path / "bar.vtu", moved, cells), 1.0, meshes.Stated(tip=tip))
+    assert meshes.volume(found.half) == pytest.approx(meshes.volume(in_place), rel=1e-9)
+    assert found.half.points == pytest.approx(in_place.points, abs=1e-9)
+    axis = "x" if tip == "-y" else "y"
+    assert found.told[0] == f"its plane of symmetry is taken at {axis} = {1e3 * away:g} mm"
+
+
 def test_half_at_negative_y_is_mirrored():
     points, cells = taper()
     half = own_body(points * [1, -1, 1], cells[:, TURNED]).half
