@@ -54,6 +54,42 @@ def halved_layer(points: FloatArray, cells: IntArray) -> tuple[FloatArray, IntAr
     return np.concatenate([points, places]), made, y.max(axis=1) > 0.0
 
 
+def halved_diagonally(
+    points: FloatArray, cells: IntArray, near: float
+) -> tuple[IntArray, IntArray, IntArray] | None:
+    """Return wedges of the half y >= 0 of hexahedra (m, 8) that the plane halves from edge to edge.
+
+    With them come the cells that they are halves of, and those that lie in the half as they are. None where
+    another cell lies across, or nodes or cells are not mirror images of each other.
+    """
+    from scipy.spatial import cKDTree  # here: every command imports this room, few read such a mesh
+
+    y = points[cells][:, :, 1]
+    crossing = np.flatnonzero(across(points[:, 1], cells, near))
+    wedges = np.full((len(crossing), 6), -1)
+    kept = y[crossing] > -near
+    for axis in range(3):
+        low = np.flatnonzero(CORNERS[:, axis] == 0)
+        ends = low, np.array([_facing(k, axis) for k in low.tolist()])
+        alike = (kept[:, ends[0]] == kept[:, ends[1]]).all(axis=1) & (kept[:, low].sum(axis=1) == 3)
+        for row in np.flatnonzero(alike):
+            three = kept[row, low]
+            wedges[row] = cells[crossing[row]][np.concatenate([end[three] for end in ends])]
+    if not len(crossing) or wedges.min() < 0 or (np.abs(points[wedges, 1]) <= near).sum(axis=1).min() < 4:
+        return None
+    used = points[np.unique(cells)]
+    for places in (used, points[cells].mean(axis=1)):
+        if cKDTree(places).query(places * [1.0, -1.0, 1.0])[0].max() > 2.0 * near:
+            return None
+    return wedges, crossing, np.flatnonzero(y.min(axis=1) >= -near)
+
+
+def _facing(corner: int, axis: int) -> int:
+    """Return the corner of a hexahedron at the other end of its edge along an axis."""
+    there = CORNERS[corner] + np.eye(3, dtype=np.int64)[axis]
+    return int(np.flatnonzero((CORNERS == there).all(axis=1))[0])
+
+
 def _along(axis: int) -> BoolArray:
     """Return which edges (12,) of a hexahedron run along an axis of its unit cell."""
     return np.asarray(CORNERS[EDGES[:, 0], axis] != CORNERS[EDGES[:, 1], axis])

@@ -10,7 +10,7 @@ from meshes.common import BoolArray, FloatArray, IntArray, MeshError
 from meshes.faces import file_faces, filling, lopsided, named_faces
 from meshes.fallen import as_they_are
 from meshes.gauss import jacobians
-from meshes.halving import across, halved_tetrahedra, straight
+from meshes.halving import across, halved_diagonally, halved_tetrahedra, straight
 from meshes.hexahedra import as_hexahedra
 from meshes.hexmesh import SYMMETRY, HexMesh, from_cells, half_body_tags
 from meshes.masses import LooseMass, loose_masses
@@ -243,13 +243,23 @@ def _chosen(stored: StoredMesh, sets: tuple[str, ...]) -> BoolArray:
 def _halved(
     points: FloatArray, blocks: tuple[tuple[str, IntArray], ...], stated: Stated
 ) -> tuple[FloatArray, tuple[tuple[str, IntArray], ...], IntArray, tuple[str, ...]]:
-    """Return tetrahedra of a whole body cut in y = 0, or all cells; where each lies; what is told."""
+    """Return cells of a whole body cut in y = 0, or all cells; where each lies; what is told."""
     numbers = np.arange(sum(len(cells) for _, cells in blocks))
-    if any(not kind.startswith("tetra") for kind, _ in blocks) or stated.symmetry not in (None, "whole"):
+    if stated.symmetry not in (None, "whole"):
         return points, blocks, numbers, ()
     turned = _axes(points, stated.tip)
     used = np.unique(np.concatenate([cells.ravel() for _, cells in blocks]))
     near = NEAR * float(np.ptp(turned[used][:, :2], axis=0).max())
+    plain = [kind for kind, _ in blocks] == ["hexahedron"]
+    if plain and (edge_to_edge := halved_diagonally(turned, blocks[0][1], near)):
+        wedges, crossing, kept = edge_to_edge
+        places = turned.copy()
+        places[np.abs(places[:, 1]) <= near, 1] = 0.0
+        halves = tuple(one for one in (("hexahedron", blocks[0][1][kept]), ("wedge", wedges)) if len(one[1]))
+        halved = f"{len(crossing)} cells are halved from edge to edge by the plane y = 0"
+        return places, halves, np.concatenate([kept, crossing]), (halved,)
+    if any(not kind.startswith("tetra") for kind, _ in blocks):
+        return points, blocks, numbers, ()
     parts = [straight(cells) for _, cells in blocks]
     cells = np.concatenate([part for part, _ in parts])
     own = np.repeat(numbers, np.concatenate([np.full(len(part) // times, times) for part, times in parts]))

@@ -3,7 +3,7 @@
 import decks
 import numpy as np
 import pytest
-from own_bodies import box
+from own_bodies import box, write
 
 import meshes
 from meshes import MeshError, Stated, own_body, quality, read_own
@@ -109,3 +109,20 @@ def test_tetrahedra_whose_surface_crosses_the_plane_aslant_are_refused(tmp_path)
     path = decks.write(tmp_path / "roof.vtu", points, cells[:, SIX].reshape(-1, 4))
     with pytest.raises(MeshError, match=r"would change its volume by|is not symmetric"):
         read_own(path, 1e-3)
+
+
+def test_hexahedra_that_the_plane_halves_from_edge_to_edge_are_cut(tmp_path):
+    """A cube on its corner was refused for cells across its plane; its inertia is that about any axis."""
+    points, cells = box(4, 4, 4, (-10e-3, -10e-3, -10e-3), (10e-3, 10e-3, 10e-3))
+    path = write(tmp_path / "cube.vtu", points, cells)
+    body = read_own(path, 1.0, meshes.Stated(tip=(1.0, 1.0, -1.0)))
+    part = meshes.cell_moments(body.half)
+    assert 2 * part.volume.sum() == pytest.approx(8e-6, rel=1e-9)
+    height = float((part.z.sum()) / part.volume.sum())
+    assert height == pytest.approx(10e-3 * np.sqrt(3), rel=1e-9)
+    assert 2 * (part.zz.sum() - height**2 * part.volume.sum()) == pytest.approx(
+        8e-6 * 20e-3**2 / 12, rel=1e-6
+    )
+    assert 2 * part.xx.sum() == pytest.approx(8e-6 * 20e-3**2 / 12, rel=1e-6)
+    assert body.half.points[:, 1].min() == 0.0
+    assert any("16 cells are halved from edge to edge" in one for one in body.told)
