@@ -91,7 +91,7 @@ def _faceted(body: Faceted, z: Array, steels: list[Material], of: Ints) -> Secti
     (mass, turning), (EA, EI) = body.sections(z).T, body.sections(z, E / rho).T
     outer, inner = body.wall(0.5 * (z[1:] + z[:-1]))
     hollow = np.divide(inner, outer, out=np.zeros_like(outer), where=outer > 0)
-    shear = shear_coefficient(body.sections(z, nu)[:, 0] / mass, hollow)
+    shear = shear_coefficient(body.sections(z, 1 + nu)[:, 0] / mass - 1, hollow)
     return Sections(z, EI, EA, shear * body.sections(z, E / rho / (2 * (1 + nu)))[:, 0], mass, turning)
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from fem_impact.case.case import Case
 from fem_impact.errors import SceneError
-from fem_impact.modal.impact import solve
+from fem_impact.modal.impact import FASTEST, STEPS, solve
 from fem_impact.modal.motion import ROW
 from fem_impact.outcome.groups import texts
 from fem_impact.outcome.keys import Unknown
@@ -213,6 +213,28 @@ def test_gravity_between_contacts_is_no_impulse():
     outcome = outcome_of(replace(scene, effects=("vibration", "barrier-elastic", "gravity")))
     assert len(outcome.contact.intervals) == 2
     assert outcome.restitution.mu == pytest.approx(0, abs=1e-9)
+
+
+@pytest.mark.long
+def test_the_step_follows_the_contact_of_a_thin_rod_too():
+    """On its wide contact the tip swings faster than its modes."""
+    light = {"name": "light", "E": "400 GPa", "nu": 0.28, "rho": "2700 kg/m3"}
+    hard = {"name": "hard", "E": "210 GPa", "nu": 0.29, "rho": "7850 kg/m3"}
+    changes = {
+        "projectile.tip": "plain",
+        "projectile.tip_radius": "0 mm",
+        "projectile.length": "805 mm",
+        "projectile.diameter": "6.27 mm",
+        "projectile.material": light | {"yield_stress": "5 GPa", "ultimate_stress": "6 GPa"},
+        "barrier.material": hard | {"yield_stress": "1.2 GPa", "ultimate_stress": "1.56 GPa"},
+        "impact.angle": "20 deg",
+        "impact.v_n": "-18.35 m/s",
+        "impact.v_t": "-16.79 m/s",
+    }
+    scene = replace_all(load("t5b"), changes)
+    found = result_of(scene)
+    by_modes = FASTEST / max(found.rod.omega)
+    assert found.step < 0.75 * min(by_modes, Case.of(scene, "modal").estimate.duration / STEPS)
 
 
 def test_an_open_ledger_is_closed_by_smaller_steps(monkeypatch):
