@@ -27,8 +27,8 @@ Layers of the barrier's own material change e of a steel rod on aluminium by at 
 # half-space springs of a layer are too stiff at its sides: 8 mm of steel on aluminium gave 9 % less under a
 # static load than a layered half-space (Burmister 1945) with 6 mm around, 4 % with 12 mm and 2 % with 24 mm
 AROUND = 1.5
-# margin under a line over half of its length: a rod of 160 x 16 mm on its side, on coarse levels and with plain
-# dashpots, has e .823, .802, .801 and .801 with margins of .08, .2, .5 and .9
+# margin under a line over half of its length: a rod of 160 x 16 mm on its side, on coarse levels and with
+# plain dashpots, has e .823, .802, .801 and .801 with margins of .08, .2, .5 and .9
 BESIDE = 0.25
 # share of a free barrier's mass that its block has at most, and how many times smaller its margin is tried:
 # an aluminium cone of 6 mm on steel at -17 m/s has mu and E_vib / E_0 of .2185 and .01622 with margins of
