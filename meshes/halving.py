@@ -6,6 +6,9 @@ from meshes.common import BoolArray, FloatArray, IntArray, MeshError
 from meshes.hexmesh import CORNERS, EDGES
 from meshes.split import edge_keys
 
+ALONG_Y = np.array([0.0, 1.0, 0.0])
+"""Normal of the plane of symmetry of a body."""
+
 # of the mean length of the edges at a node of tetrahedra: at least so far from the plane it is moved along y,
 # so that none of the cells that are cut is thin; by symmetry the surface there runs along y
 CLEAR = 0.3
@@ -54,6 +57,17 @@ def halved_layer(points: FloatArray, cells: IntArray) -> tuple[FloatArray, IntAr
     return np.concatenate([points, places]), made, y.max(axis=1) > 0.0
 
 
+def from_images(places: FloatArray, normal: FloatArray, at: float = 0.0) -> FloatArray:
+    """Return how far from the nearest place, m, (n,), the mirror image of each of the ``places`` (n, 3) lies.
+
+    The mirror has a ``normal`` (3,) of length 1, along which it lies ``at``, m.
+    """
+    from scipy.spatial import cKDTree  # here: every command imports this room, few read such a mesh
+
+    image = places - 2.0 * (places @ normal - at)[:, None] * normal
+    return np.asarray(cKDTree(places).query(image)[0])
+
+
 def halved_diagonally(
     points: FloatArray, cells: IntArray, near: float
 ) -> tuple[IntArray, IntArray, IntArray] | None:
@@ -62,8 +76,6 @@ def halved_diagonally(
     With them come the cells that they are halves of, and those that lie in the half as they are. None where
     another cell lies across, or nodes or cells are not mirror images of each other.
     """
-    from scipy.spatial import cKDTree  # here: every command imports this room, few read such a mesh
-
     y = points[cells][:, :, 1]
     crossing = np.flatnonzero(across(points[:, 1], cells, near))
     wedges = np.full((len(crossing), 6), -1)
@@ -79,7 +91,7 @@ def halved_diagonally(
         return None
     used = points[np.unique(cells)]
     for places in (used, points[cells].mean(axis=1)):
-        if cKDTree(places).query(places * [1.0, -1.0, 1.0])[0].max() > 2.0 * near:
+        if from_images(places, ALONG_Y).max() > 2.0 * near:
             return None
     return wedges, crossing, np.flatnonzero(y.min(axis=1) >= -near)
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from meshes.common import FloatArray, IntArray, MeshError
 from meshes.gauss import gauss_points
-from meshes.halving import across
+from meshes.halving import across, from_images
 from meshes.symmetry import NEAR
 
 #: Where a tip points in a file: an axis of it, see `TIPS`, one of `FOUND`, or a direction.
@@ -143,7 +143,7 @@ def _normal(points: FloatArray, cells: IntArray, masses: _Masses, turn: FloatArr
     angles = np.array([*few, *(0.5 * (angle[ring] + angle[first]) + 0.5 * np.pi)]) % np.pi
     angles = angles[np.argsort(np.abs(angles - 0.5 * np.pi), kind="stable")]
     distinct = angles[np.append(True, np.abs(np.diff(angles)) > ON)]
-    mirrored = [one for one in distinct if _is_mirrored(used, _at(turn, one), near)]
+    mirrored = [one for one in distinct if (from_images(used, _at(turn, one)) < 2.0 * near).all()]
     if mirrored:
         away = [(points - masses.centre) @ _at(turn, one) for one in mirrored]
         return _at(turn, mirrored[int(np.argmin([across(one, cells, near).sum() for one in away]))])
@@ -154,14 +154,6 @@ def _normal(points: FloatArray, cells: IntArray, masses: _Masses, turn: FloatArr
 def _at(turn: FloatArray, angle: float) -> FloatArray:
     """Return the unit vector at an angle from x towards y of a body."""
     return np.asarray(np.cos(angle) * turn[0] + np.sin(angle) * turn[1])
-
-
-def _is_mirrored(places: FloatArray, normal: FloatArray, near: float) -> bool:
-    """Return whether the nodes (n, 3) about the centre are symmetric to the plane with a normal."""
-    from scipy.spatial import cKDTree  # here: every command imports this room, few read such a mesh
-
-    image = places - 2.0 * (places @ normal)[:, None] * normal
-    return bool((cKDTree(places).query(image)[0] < 2.0 * near).all())
 
 
 def _text(direction: FloatArray) -> str:

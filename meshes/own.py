@@ -10,7 +10,7 @@ from meshes.common import BoolArray, FloatArray, IntArray, MeshError
 from meshes.faces import file_faces, filling, lopsided, named_faces
 from meshes.fallen import as_they_are
 from meshes.gauss import jacobians
-from meshes.halving import across, halved_diagonally, halved_tetrahedra, straight
+from meshes.halving import ALONG_Y, across, from_images, halved_diagonally, halved_tetrahedra, straight
 from meshes.hexahedra import as_hexahedra
 from meshes.hexmesh import SYMMETRY, HexMesh, from_cells, half_body_tags
 from meshes.masses import LooseMass, loose_masses
@@ -161,16 +161,12 @@ def _at_its_plane(
 
     With it come how it lies in its file, and what is told.
     """
-    from scipy.spatial import cKDTree  # here: every command imports this room, few read such a mesh
-
     turned, shift, (axis, sign) = _axes(points[used], tip), np.zeros(3), TIPS[str(tip or "-z")][1]
     y, near = turned[:, 1], NEAR * float(np.ptp(turned[:, :2], axis=0).max())
     middle = 0.5 * float(y.min() + y.max())
     if not y.min() < 0.0 < y.max() or abs(middle) <= near:
         return points, Frame(), ()
-    tree = cKDTree(turned)
-    images = (turned * [1.0, -1.0, 1.0] + [0.0, 2.0 * at, 0.0] for at in (0.0, middle))
-    here, there = (float(tree.query(image)[0].max()) for image in images)
+    here, there = (from_images(turned, ALONG_Y, at).max() for at in (0.0, middle))
     if not there < 2.0 * near < here:
         return points, Frame(), ()
     shift[axis] = sign * middle

@@ -7,7 +7,7 @@ import numpy as np
 
 from meshes.common import BoolArray, FloatArray, IntArray, MeshError
 from meshes.gauss import gauss_points
-from meshes.halving import across, halved_layer
+from meshes.halving import ALONG_Y, across, from_images, halved_layer
 from meshes.hexmesh import TURNED, outer_quads, quad_normals
 
 PARTS = ("whole", "half", "quarter", "eighth")  # by the number of planes of symmetry in which it was cut
@@ -290,11 +290,8 @@ def _cut(part: Part) -> Part:
             "symmetry must lie between cells: give a mesh with faces there, or half of it."
         )
     # refuse a body whose nodes or cells on both sides of y = 0 are not mirror images of each other
-    from scipy.spatial import cKDTree  # here: every command imports this room, few read such a mesh
-
     for what, places in (("node", points), ("cell", points[part.cells].mean(axis=1))):
-        away = cKDTree(places).query(places * [1.0, -1.0, 1.0])[0]
-        lonely: BoolArray = away > 2.0 * near
+        lonely: BoolArray = from_images(places, ALONG_Y) > 2.0 * near
         if lonely.any():
             raise MeshError(
                 f"is not symmetric about the plane {plane}: {int(lonely.sum())} of {len(places)} {what}s "
