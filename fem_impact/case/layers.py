@@ -10,7 +10,7 @@ from fem_impact.arrays import Array
 from fem_impact.case.bodies import Bodies
 from fem_impact.case.effects.plasticity import buried_yield_ratio, hardening_of, struck
 from fem_impact.case.plates import rows_through, widening
-from fem_impact.case.recorded import AnyZones, RecordedZones
+from fem_impact.case.recorded import AnyZones
 from fem_impact.case.zones import Corners, zones_of
 from fem_impact.errors import SceneError
 from fem_impact.physics import layered
@@ -58,7 +58,7 @@ def block_of(bodies: Bodies, zones: AnyZones) -> Corners:
         return np.array([*low[:2], -rows_through(bodies, zones.base) * zones.base]), high
     ends, whole = interfaces(bodies), bodies.barrier.mass
     margin = min(bodies.scene.accuracy.block_margin, bodies.scene.projectile.diameter)
-    line = zones.line if isinstance(zones, RecordedZones) and whole is None else 0.0
+    line = zones.line if whole is None else 0.0
     margin = max(margin, AROUND * ends.max(initial=0.0), BESIDE * line)
     low, high = zones.block(margin)
     most = inf if len(ends) else MOST_CELLS * zones.base**3

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 from math import ceil, copysign, cos, floor, log2
+from typing import ClassVar
 
 import numpy as np
 
@@ -75,6 +76,10 @@ class Zones:
     skin_rows: int
     edges: float = 0.0
     rod_rows: int = 0
+    # what a run finds of a contact, and its estimate does not know
+    line: ClassVar[float] = 0.0
+    lasts: ClassVar[float | None] = None
+    ends: ClassVar[tuple[float, float] | None] = None
 
     @property
     def tip_size(self) -> float:

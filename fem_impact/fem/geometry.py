@@ -114,7 +114,7 @@ def build_geometry(
         may_yield,
         touching,
         zones.middle,
-        zones.line if isinstance(zones, RecordedZones) else 0.0,
+        zones.line,
     )
 
 
@@ -249,8 +249,8 @@ def _block(bodies: Bodies, zones: AnyZones) -> HexMesh:
             value=str(bodies.scene.across),
             remedy="Give a smaller one.",
         )
-    ends = zones.ends if isinstance(zones, RecordedZones) else None
-    columns = None if ends is None else meshes.drawn_to_ends(ends, h, (float(low[0]), float(high[0])))
+    pressed, width = zones.ends, (float(low[0]), float(high[0]))
+    columns = None if pressed is None else meshes.drawn_to_ends(pressed, h, width)
     if columns is not None:
         boxes = [_before_columns(zone, *columns) for zone in boxes]
     coarse = meshes.block(low, high, base, boxes, buffer=BUFFER)

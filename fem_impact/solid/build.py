@@ -15,7 +15,6 @@ import numpy as np
 from fem_impact.arrays import Array, Bools
 from fem_impact.case.case import Case
 from fem_impact.case.effects.registry import EFFECTS
-from fem_impact.case.recorded import RecordedZones
 from fem_impact.fem.body import Elastic, MeshedBodies, MeshedBody, slices_of
 from fem_impact.fem.eigen import MassStiffness, rod_modes
 from fem_impact.fem.geometry import POINTS, Geometry
@@ -169,10 +168,8 @@ class Builder:
         step = stable_step(block.stiffness, inverse[layout.barrier_slice], share)
         if self.scene.barrier.mass is not None:
             step = self.foundation_step(step)
-        zones, radiating = self.case.zones, self.spec.radiating
-        found = zones.lasts if isinstance(zones, RecordedZones) else None
-        lasts = found or self.case.estimate.duration
-        pots = [dashpots(self.meshed.barrier, layout, inverse, block, lasts)] if radiating else []
+        lasts = self.case.zones.lasts or self.case.estimate.duration
+        pots = [dashpots(self.meshed.barrier, layout, inverse, block, lasts)] if self.spec.radiating else []
         if self.spec.bending:
             pots = [plate_dashpots(layout, inverse, block)]
         if not self.ground.turns:
